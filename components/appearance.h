@@ -1,4 +1,4 @@
-// How things look: materials, textures, lights, cameras, the environment. Rate: visual. Writer: content at spawn.
+// Appearance: materials, textures, lights, cameras, the environment. Rate: visual. Writer: content at spawn.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +53,7 @@ struct Material {
   bool double_sided = false;
 };
 
-// Something that is drawn: vertices in the object frame of the entity's Pose (deformables) or WorldTransform.
+// A mesh that is drawn: vertices in the object frame of the entity's Pose (deformables) or WorldTransform.
 struct Drawable {
   Handle<DrawMesh> mesh;
 };
@@ -73,7 +73,7 @@ struct Camera {
   float znear = 0.001f, zfar = 100.0f;  // [m]
 };
 
-// What surrounds the scene. One per level, in World::environment.
+// The surroundings of the scene. One per level, in World::environment.
 struct Environment {
   Panorama panorama;       // width 0: none, a plain gradient is drawn
   float intensity = 1.0f;  // [1]

@@ -1,7 +1,7 @@
 // Where a probe touches a deformable, and how deep. A probe may touch an object in several places at once: the walls of
-// a groove, the folds of an organ. Contacts are a pool of each object; a contact belongs to a probe while it is
+// a groove, the folds of an organ. Each object has a pool of contacts; a contact belongs to a probe while it is
 // tracked. Rate: touch. Writer: collision (geometry), force_field (amplitude), friction_feedback (law, bristle, force).
-// Lives from the level's preparation to its end; `state` says whether it means anything now.
+// Lives from the level's preparation to its end; `state` tells which members are valid.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ namespace pliant {
 
 enum class ContactState : std::uint8_t {
   kFree,     // the probe is outside the rest surface; nothing else here is valid
-  kInside,   // below the rest surface, but in a dent: another probe's, or one that is still recovering. No force
-  kTouching  // it presses
+  kInside,   // below the rest surface, but in another probe's dent or in a recovering one. No force
+  kTouching  // the probe presses
 };
 
 struct Contact {
-  Entity probe;                   // has a Probe; kNoEntity: nobody's, or tissue presses here (systems/touch/press.h)
-  std::uint8_t tip = 0;           // which of the probe's tips (ProbeState::tips)
+  Entity probe;                   // has a Probe; kNoEntity: unused, or tissue presses here (systems/touch/press.h)
+  std::uint8_t tip = 0;           // index into ProbeState::tips
   Entity object;                  // has a Deformable
-  std::uint32_t object_slot = 0;  // its place in TouchState::objects
+  std::uint32_t object_slot = 0;  // index into TouchState::objects
   ContactState state = ContactState::kFree;
 
   // The foot (P1: interpolated contact vertex), object frame. Written by collision.
@@ -30,26 +30,26 @@ struct Contact {
   dvec3 foot{0};                 // [m]   its rest position
   dvec3 normal{0, 1, 0};         // [1]   unit, outward, object frame
   double height = 0.0;           // [m]   t: of the probe's lowest point over the foot; < 0: below the rest surface
-  double previous_height = 0.0;  // [m]   t one tick ago, and two: what the surface would do if the probe let go now
+  double previous_height = 0.0;  // [m]   t one tick ago, and two: extrapolates the surface if the probe lets go now
   double older_height = 0.0;     // [m]
 
   // Force law (methods.md 1.8, 1.10). Started by collision, advanced by friction_feedback.
-  double free_height = 0.0;    // [m]   y <= 0: what the surface's height would be had the probe not come
+  double free_height = 0.0;    // [m]   y <= 0: height that the surface would have without the probe
   double free_velocity = 0.0;  // [m/s]
-  double unpushed = 0.0;       // [m]   depth that no hand pushed: it began inside, or came to a deeper place at once
+  double unpushed = 0.0;       // [m] depth not pushed by the hand: the contact began inside or jumped to a deeper place
   double load = 0.0;           // [sqrt J] l: its part of the shared load, last tick
-  double share = 0.0;          // [1]   of its own law: 1 alone, 0 in another's dent
+  double share = 0.0;          // [1]   of its law: 1 alone, 0 in another's dent
   double normal_force = 0.0;   // [N]   >= 0
   dvec3 bristle{0};            // [m]   e: tangential deflection, object frame
   bool sliding = false;
   dvec3 force{0};  // [N]   on the probe, world frame
 
-  // How the force changes near, for what goes by it between two ticks (systems/device/device_model.h); zero where it
-  // does not press. Written by friction_feedback.
+  // Local derivatives of the force, for extrapolation between two ticks (systems/device/device_model.h). Zero where the
+  // contact does not press. Written by friction_feedback.
   dvec3 gradient{0};               // [1]     d height / dx, world frame
   double stiffness = 0.0;          // [N/m]   along the gradient
   double damping = 0.0;            // [N s/m] the same
-  double bristle_stiffness = 0.0;  // [N/m]   across the normal; zero while it slides
+  double bristle_stiffness = 0.0;  // [N/m]   tangential; zero while it slides
   double bristle_damping = 0.0;    // [N s/m] the same
 
   // Field. Written by force_field.

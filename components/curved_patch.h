@@ -1,6 +1,6 @@
-// A triangle as the curved surface that the eye takes it for: a cubic patch through its corners with its corner normals
-// as true normals (PN triangle; Vlachos et al. 2001). Neighbours over a smooth edge share its curve, and over a crease
-// too: there the curve runs along both sides. On facets whose normals are the facet's the patch is flat.
+// A triangle as a smooth curved surface: a cubic patch through its corners whose normals there are the corner normals
+// (PN triangle; Vlachos et al. 2001). Neighbours share the boundary curve over a smooth edge and over a crease; the
+// curve of a crease is tangent to both sides. The patch is flat where the corner normals are the facet's normal.
 //
 // Legend: b[0..2] corners; b[3 + 2 i], b[4 + 2 i] on the edge from corner i to i+1, nearer to i and to i+1; b[9]
 // middle. (u, v) are the barycentrics of corners 1 and 2, w = 1 - u - v that of corner 0.
@@ -39,7 +39,7 @@ struct CurvedPatch {
   }
 };
 
-// How far a control point may leave its edge, as a share of the edge's length: bad normals must not throw a patch.
+// Largest distance of a control point from its edge, as a share of the edge's length: bounds the effect of bad normals.
 inline constexpr double kMostPatchBulge = 0.25;
 
 inline CurvedPatch curved_patch(const Mesh& mesh, std::uint32_t triangle) {
@@ -55,7 +55,7 @@ inline CurvedPatch curved_patch(const Mesh& mesh, std::uint32_t triangle) {
     const int j = (i + 1) % 3;
     const dvec3 e = patch.b[j] - patch.b[i];
     const double most = kMostPatchBulge * length(e);
-    // Tangents at both ends: in the tangent plane, or along the crease, where both sides agree on it.
+    // Tangents at both ends: in the tangent plane, or along the crease, where both sides share it.
     dvec3 across_i(0), across_j(0);
     const bool crease = mesh.is_crease(triangle, i) && mesh.across[triangle][i] != kBorder;
     if (crease) {
@@ -66,7 +66,7 @@ inline CurvedPatch curved_patch(const Mesh& mesh, std::uint32_t triangle) {
         if (o[k] == t[j]) across_j = dvec3(mesh.normal(other, k));
       }
     }
-    const auto offset = [&](dvec3 along, dvec3 own, dvec3 across) {  // what takes `along` / 3 off the chord
+    const auto offset = [&](dvec3 along, dvec3 own, dvec3 across) {  // offset of a control point from the chord
       dvec3 off = -(dot(along, own) / 3) * own;
       if (crease) {
         const dvec3 line = cross(own, across);

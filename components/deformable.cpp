@@ -19,8 +19,8 @@ double default_reach(const Mesh& mesh) {
   return kDefaultReach * static_cast<double>(mesh.box.diagonal());
 }
 
-// A dent is bent where the contact ends, as far as that is across: with edges of a third of this radius two of them go
-// from the middle to there.
+// A dent bends at the rim of the contact, over about the contact's width. With edges of a third of this radius, two
+// edges reach from the middle to the rim.
 constexpr double kRadiusOverContact = 1.5;
 
 double DentSize::radius(const Mesh& mesh) const {

@@ -1,4 +1,4 @@
-// A deformable surface: P1's local model, authored by what a person can feel (methods.md 1.1 to 1.4).
+// A deformable surface: P1's local model with perceptual parameters (methods.md 1.1 to 1.4).
 // Rate: touch (read). Writer: content at spawn; editor and --set between ticks. Keys of PLIANT_deformable.
 #pragma once
 
@@ -15,7 +15,7 @@ struct Deformable : DeformableParameters {
   Handle<HeightField> field;  // set at spawn
 };
 
-// What its numbers may be: the bounds of the keys of PLIANT_deformable, and of what the touch clock takes.
+// Bounds of the parameters: of the keys of PLIANT_deformable and of the values that the touch clock accepts.
 struct DeformableRange {
   static constexpr Range kStiffness{1e-6, 1e7};           // [N/m]
   static constexpr Range kCubic{0.0, 1e15};               // [N/m3]
@@ -30,31 +30,31 @@ struct DeformableRange {
   static constexpr Range kContactRadius{0.0, 1e6};        // [m]
 };
 
-// Whether a shape is of an indenter on a half-space, so that `contact_radius` says something.
+// Whether a shape is that of an indenter on a half-space, so that `contact_radius` has an effect.
 inline bool depends_on_contact(Shape shape) {
   return shape == Shape::kPunch || shape == Shape::kHertz || shape == Shape::kKelvinlet;
 }
 
-inline constexpr double kMostContactShare = 0.95;  // [1] of the reach: what contact_radius may be
+inline constexpr double kMostContactShare = 0.95;  // [1] of the reach: upper bound of contact_radius
 inline constexpr double kDefaultReach = 0.08;      // [1] of the diagonal of the object's box
-// [m] The reach of a deformable that says none.
+// [m] The reach of a deformable that gives none.
 double default_reach(const Mesh& mesh);
 
-// What dents ask of the mesh that is to show them. Lengths as DeformableParameters has them.
+// Sizes of dents that the mesh must resolve. Lengths as in DeformableParameters.
 struct DentSize {
   double reach = 0.0;    // [m] 0: the default one
-  double contact = 0.0;  // [m] of a shape that depends on it; 0: none is said
+  double contact = 0.0;  // [m] of a shape that depends on it; 0: not given
   bool operator==(const DentSize&) const = default;
-  double radius(const Mesh& mesh) const;  // [m] of a dent without an edge of its own that asks for the same
+  double radius(const Mesh& mesh) const;  // [m] of the rimless dent that needs the same resolution
 };
 DentSize dent_size(const DeformableParameters& deformable);
 
-// Whether a released dent has a closed form in time: then the GPU evaluates a list of sources (systems/touch/field.h),
-// else it takes every step (components/field_feed.h).
+// Whether a released dent has a closed form in time. If so, the GPU evaluates a list of sources
+// (systems/touch/field.h); else it takes every step (components/field_feed.h).
 bool has_closed_form(const Deformable& deformable, const Mesh& mesh);
 
-// Whether the GPU has its law and its shape. Registered ones are functions of the program (pliant/surface_law.h): their
-// fields are stepped on the CPU, whatever is asked for.
+// Whether the GPU implements its law and its shape. Registered laws and shapes are functions of the program
+// (pliant/surface_law.h): their fields are always stepped on the CPU.
 bool gpu_knows(const Deformable& deformable);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// The field around one contact, as numbers: what the zone kernels evaluate and what travels to the GPU. Object frame,
-// single precision; the arithmetic is shaders/shared/field.glsl.
+// The field around one contact: input of the zone kernels and of the GPU. Object frame, single precision; the
+// arithmetic is in shaders/shared/field.glsl.
 #pragma once
 
 #include "components/deformable.h"

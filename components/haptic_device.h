@@ -1,5 +1,5 @@
-// A device that moves a probe and may push back. Drivers (pliant/driver.h), paths and the mouse write its pose; this is
-// all that the touch tick knows of them. `scale` is for drivers: scripts are in metres, world.
+// A device that moves a probe and may render force. Drivers (pliant/driver.h), paths and the mouse write its pose. The
+// touch tick uses no other data of them. `scale` is for drivers: scripts are in metres, world.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,19 @@ namespace pliant {
 
 enum class DriverKind : std::uint8_t { kNull, kScript, kOrbit, kMouse, kExternal };
 
-// Where no driver has said anything, nothing is limited but by the level.
+// Without a driver, only the level's limits apply.
 inline constexpr DeviceCapabilities kNoDriver{.senses_rotation = true, .renders_torque = true};
 
 // Unknown state means zero force.
 enum class DeviceStatus : std::uint8_t { kLost, kReady };
 
-// Rate: touch. Writer: read_devices (what was sensed), write_devices (what was sent). Keys of PLIANT_haptic_device.
+// Rate: touch. Writer: read_devices (sensed), write_devices (sent). Keys of PLIANT_haptic_device.
 struct HapticDevice : DeviceParameters {
   DriverKind driver = DriverKind::kNull;
   std::string file;  // of the script, relative to the level
-  std::string id;    // external drivers: which one
+  std::string id;    // external drivers: identifies the device
 
-  // Its driver's. Written where one is connected or released and never by an edit, so that none can lift them.
+  // Capabilities of its driver. Written on connection and release, never by an edit: an edit cannot lift them.
   DeviceCapabilities can = kNoDriver;
   double workspace = 1.0;  // [1] world metres per metre of the driver's; 1 where poses are in world coordinates
   dvec3 origin{0};         // [m] world: where the origin of the driver's workspace lies
@@ -37,17 +37,17 @@ struct HapticDevice : DeviceParameters {
   DeviceStatus status = DeviceStatus::kReady;
   dvec3 position{0};  // [m] world, as last sensed
   dquat rotation{1, 0, 0, 0};
-  double sensed_at = 0.0;  // [s] when; older than kStaleAfter: treated as lost
-  dvec3 force_sent{0};     // [N] world, what left for the hand in this tick
-  dvec3 torque_sent{0};    // [N m] world, the same; only tools make any
+  double sensed_at = 0.0;  // [s] time of that pose; older than kStaleAfter: treated as lost
+  dvec3 force_sent{0};     // [N] world, sent to the hand in this tick
+  dvec3 torque_sent{0};    // [N m] world, the same; only tools produce torque
 };
 
-// What its numbers may be, in a file and in code.
+// Bounds of its parameters, in a file and in code.
 struct DeviceRange {
   static constexpr Range kScale{0.0, 1e6, true};   // [1]
   static constexpr Range kMaxForce{0.0, 1e3};      // [N]
   static constexpr Range kMaxStiffness{0.0, 1e7};  // [N/m]
-  static constexpr Range kMaxSlew{1.0, 1e7};       // [N/s] slower, and no contact could be felt
+  static constexpr Range kMaxSlew{1.0, 1e7};       // [N/s] below it no contact could be felt
 };
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Vectors in a running hash, one number after the other.
+// Adds vectors to a running hash, component by component.
 #pragma once
 
 #include "components/math.h"

@@ -10,9 +10,9 @@ namespace {
 
 using glm::dvec4;
 
-constexpr double kSame = 1e-6;  // [1] of a value's size: a motion that ends this near to its beginning is closed
+constexpr double kSame = 1e-6;  // [1] relative: a motion whose end differs from its beginning by less is closed
 
-// The keys on both sides of a time, and where between them it is.
+// The keys on both sides of a time, and its position between them.
 struct Span {
   std::size_t from = 0, to = 0;
   double share = 0.0;    // [1] 0..1
@@ -34,8 +34,8 @@ dvec4 key(const Track& track, std::size_t i) {
   return track.values[track.interpolation == Interpolation::kCubicSpline ? 3 * i + 1 : i];
 }
 
-// glTF 2.0, appendix C.5: the cubic Hermite spline through v_k and v_{k+1}, with the out-tangent b_k of the one and the
-// in-tangent a_{k+1} of the other.
+// glTF 2.0, appendix C.5: the cubic Hermite spline through v_k and v_{k+1}, with the out-tangent b_k and the in-tangent
+// a_{k+1}.
 dvec4 spline(const Track& track, const Span& span) {
   const double t = span.share, t2 = t * t, t3 = t2 * t, td = span.seconds;
   const dvec4 v0 = track.values[3 * span.from + 1], b0 = track.values[3 * span.from + 2];
@@ -48,7 +48,8 @@ dquat unit(const dvec4& q, const dquat& otherwise) {
   return norm > 0.0 && std::isfinite(norm) ? dquat(q.w, q.x, q.y, q.z) * (1.0 / norm) : otherwise;
 }
 
-// The direction of v, or of the axis least along `avoid` and perpendicular to it where v has none.
+// The direction of v. If v has none: the part of an axis perpendicular to `avoid`; the axis is x, or y where `avoid` is
+// near x.
 dvec3 direction(dvec3 v, dvec3 avoid) {
   const double l = length(v);
   if (l > 0.0 && std::isfinite(l)) return v / l;

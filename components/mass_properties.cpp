@@ -1,6 +1,6 @@
 // By the divergence theorem, as the sum of the signed tetrahedra between each triangle (a, b, c) and one point o:
 //   V = det/6,  centre sum V (a+b+c)/4,  second moments det/120 (s s^T + a a^T + b b^T + c c^T), s = a + b + c,
-// all from o (Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia tensor", 2005).
+// all relative to o (Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia tensor", 2005).
 #include "components/mass_properties.h"
 
 namespace pliant {

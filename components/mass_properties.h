@@ -1,4 +1,4 @@
-// What a solid body of unit density weighs, where its weight sits and how it resists turning, from its closed surface.
+// Volume, centre of mass and inertia of a solid of unit density, from its closed surface.
 #pragma once
 
 #include "components/mesh.h"
@@ -11,8 +11,8 @@ struct MassProperties {
   dmat3 inertia{0.0};   // [m5] about the centre, object axes, for 1 kg/m3: times density it is [kg m2]
 };
 
-// Exact for a closed surface, whichever way it faces; the small holes of one that is almost closed are bridged towards
-// the middle of its box. All zero where nothing is enclosed.
+// Exact for a closed surface of either orientation. Small holes of an almost closed surface are bridged towards the
+// middle of its box. All zero where nothing is enclosed.
 MassProperties mass_properties(const Mesh& mesh);
 
 }  // namespace pliant

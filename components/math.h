@@ -1,4 +1,4 @@
-// Vectors and boxes, as the public headers have them.
+// Vectors and boxes, as in the public headers.
 #pragma once
 
 #include "pliant/math.h"

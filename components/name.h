@@ -1,4 +1,4 @@
-// What a person calls a node. Rate: set at spawn. Writer: content.
+// Name of a node, for people. Rate: set at spawn. Writer: content.
 #pragma once
 
 #include <string>

@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-// What was registered of one kind. Entries are written under the lock and counted after that.
+// Registered entries of one kind. An entry is written under the lock; the count is raised afterwards.
 template <class Value>
 class Table {
  public:
@@ -20,7 +20,7 @@ class Table {
 
   explicit Table(const char* kind) : kind_(kind) {}
 
-  // The place of the new entry.
+  // Returns the index of the new entry.
   Result<std::size_t> add(const std::string& name, Value value) {
     const std::string where = std::string(kind_) + " `" + name + "`";
     if (name.empty()) return Error{where, "has no name; give it one"};
@@ -56,7 +56,7 @@ Table<SolverFactory>& solvers() {
 }
 
 template <class Enum>
-std::size_t place_of(Enum value, Enum last) {  // behind every table for the built-in ones
+std::size_t place_of(Enum value, Enum last) {  // indices of tables begin after the built-in ones
   return static_cast<std::size_t>(value) - static_cast<std::size_t>(last) - 1;
 }
 template <class Enum, class Value>
@@ -70,7 +70,7 @@ Result<Enum> added(Table<Value>& table, const std::string& name, Value value, En
   return static_cast<Enum>(static_cast<std::size_t>(last) + 1 + *place);
 }
 
-// Near enough to be the derivative, by central differences.
+// Whether a derivative agrees with the central difference.
 bool agrees(double derivative, double difference, double scale) {
   return std::abs(derivative - difference) <= 1e-3 * (std::abs(derivative) + scale);
 }

@@ -1,5 +1,5 @@
-// Spring laws, shapes and linear solvers that were registered (pliant/surface_law.h, pliant/linear_solver.h): they take
-// the values behind the last enumerator of their kind. Reading takes no lock: an entry never changes once it is there.
+// Registered spring laws, shapes and linear solvers (pliant/surface_law.h, pliant/linear_solver.h). They use the values
+// after the last enumerator of their kind. Reading takes no lock: an entry never changes once it exists.
 #pragma once
 
 #include "pliant/linear_solver.h"
@@ -11,7 +11,7 @@ inline constexpr SpringLaw kLastSpring = SpringLaw::kStandardLinearSolid;
 inline constexpr Shape kLastShape = Shape::kKelvinlet;
 inline constexpr SolverKind kLastSolver = SolverKind::kDense;
 
-// nullptr for the built-in ones, and where nothing is registered.
+// nullptr for built-in ones and for unused values.
 const SpringFunction* registered_spring(SpringLaw law);
 const ShapeFunction* registered_shape(Shape shape);
 const SolverFactory* registered_solver(SolverKind kind);
@@ -19,8 +19,8 @@ const char* registered_word(SpringLaw law);
 const char* registered_word(Shape shape);
 const char* registered_word(SolverKind kind);
 
-// The word that stands for each in level files, registered ones included; nullptr past the last. A new enumerator
-// without a word does not compile (-Wswitch).
+// The word for each in level files, registered ones included; nullptr past the last. A new enumerator without a word
+// does not compile (-Wswitch).
 inline const char* word_of(SpringLaw law) {
   switch (law) {
     case SpringLaw::kLinear:

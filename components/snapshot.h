@@ -1,6 +1,6 @@
-// What the touch clock shows to the visual clock: the streams of zones that changed, the probes, and what moves.
-// Travels by TripleBuffer. A snapshot carries at most kMaxPublishedZones zones an object, so publishing has a bounded
-// cost; what did not fit, or was replaced before the reader saw it, stays dirty and comes with a later one.
+// State sent from the touch clock to the visual clock: the streams of changed zones, the probes, and moving objects.
+// Exchanged by TripleBuffer. A snapshot has at most kMaxPublishedZones zones per object, so publishing has a bounded
+// cost. Zones that did not fit, or were replaced before the reader saw them, stay dirty and are sent later.
 #pragma once
 
 #include <array>
@@ -20,14 +20,14 @@ inline constexpr std::uint32_t kMaxPublishedZones = 512;
 struct ObjectSnapshot {
   Entity object;                     // has a Deformable
   std::uint32_t zone_count = 0;      // valid entries of `zones`
-  std::vector<std::uint32_t> zones;  // which zones, capacity min(all, kMaxPublishedZones)
+  std::vector<std::uint32_t> zones;  // zone indices, capacity min(all, kMaxPublishedZones)
   std::vector<vec4> stream;          // kZoneSize (nx, ny, nz, h) for each of them, packed in the same order
   std::uint32_t awake_vertices = 0;
   bool on_gpu = false;  // no zones: the whole field is these sources, evaluated by the GPU
   std::uint32_t term_count = 0;
   std::vector<FieldSource> terms;  // capacity for every source and release
-  // Fields that the GPU steps on its own copy: their inputs up to this snapshot's tick while `told`, else `zones` hold
-  // the field.
+  // Fields that the GPU steps on its copy: their inputs up to this snapshot's tick while `told`, else `zones` holds the
+  // field.
   std::shared_ptr<FieldFeed> feed;
   bool told = false;
 };
@@ -51,7 +51,7 @@ struct ProbeSnapshot {
   std::array<ProbeContact, kMostShownContacts> contacts;
 };
 
-// One Drawable that a prescribed motion carries.
+// A Drawable moved by a prescribed motion.
 struct MovedSnapshot {
   Entity object;
   mat4 to_world{1};  // object frame to world
@@ -63,7 +63,7 @@ struct Snapshot {
   bool complete = true;  // false: more dirty zones are waiting
   std::vector<ObjectSnapshot> objects;
   std::vector<ProbeSnapshot> probes;
-  std::vector<MovedSnapshot> moved;  // all that can move, each time
+  std::vector<MovedSnapshot> moved;  // all that can move, in every snapshot
 };
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// The second system's authoring (P2): tissue, its rigid handle, and rigid bodies. Keys of PLIANT_soft_body,
+// Authored parameters of the second system (P2): tissue, its rigid handle, and rigid bodies. Keys of PLIANT_soft_body,
 // PLIANT_handle and PLIANT_rigid_body. Rate: soft (read). Writer: content at spawn.
 #pragma once
 
@@ -19,7 +19,7 @@ struct SoftBody : SoftBodyParameters {
   Handle<Mesh> collision_mesh;  // set at spawn: the embedded surface, which collides and is drawn
 };
 
-// A mesh that is only drawn and goes with what it lies in (Carries). Writer: content at spawn.
+// A mesh that is only drawn and moves with the body around it (Carries). Writer: content at spawn.
 struct Carried {
   Entity by;                 // has a SoftBody or a Deformable
   Handle<Mesh> mesh;         // of its vertices, in the frame of `by`
@@ -34,7 +34,7 @@ struct RigidBody : RigidBodyParameters {
   Handle<Mesh> collision_mesh;  // set at spawn
 };
 
-// What their numbers may be, in a file and in code.
+// Bounds of their parameters, in a file and in code.
 struct SoftBodyRange {
   static constexpr Range kYoung{0.0, 1e12, true};   // [Pa]
   static constexpr Range kPoisson{0.0, 0.499};      // [1]
@@ -43,7 +43,7 @@ struct SoftBodyRange {
   static constexpr Range kThickness{0.0, 1e3};      // [m]
   static constexpr Range kMass{0.0, 1e9};           // [kg] of a rigid body
 };
-inline constexpr Range kPairRange{0.0, 1e9};        // of couplings' springs and dampers, and of Rayleigh's damping
+inline constexpr Range kPairRange{0.0, 1e9};        // of springs and dampers of couplings, and of Rayleigh damping
 inline constexpr Range kSaturationRange{0.0, 1e4};  // [N], [N m] of a coupling
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// The inside of a soft body: tetrahedra at rest, and how its collision mesh rides on them. Object frame, scale baked
-// in. Lifetime: from load to unload. Writer: content. Read by every clock.
+// The inside of a soft body: tetrahedra at rest, and the embedding of its collision mesh. Object frame, scale baked in.
+// Lifetime: from load to unload. Writer: content. Read by every clock.
 #pragma once
 
 #include <array>
@@ -17,49 +17,49 @@ struct Mesh;
 
 using Tet = std::array<std::uint32_t, 4>;  // nodes; positive volume: (b-a) x (c-a) . (d-a) > 0
 
-// Where a point of the collision mesh stands in the tetrahedra: sum of weight[i] * node[tets[tet][i]]. Weights sum to 1
-// and may be negative where the collision mesh stands a little outside.
+// Embedding of a point of the collision mesh in the tetrahedra: sum of weight[i] * node[tets[tet][i]]. Weights sum to
+// 1; they may be negative where the collision mesh is slightly outside.
 struct Embedding {
   std::uint32_t tet = 0;
   std::array<double, 4> weight{1, 0, 0, 0};  // [1]
 };
 
-// Shape of the worst and of the usual element.
+// Shape of the worst and of the median element.
 struct TetQuality {
   double smallest_dihedral = 0.0, largest_dihedral = 0.0;  // [rad] over all elements
   double worst_ratio = 0.0, median_ratio = 0.0;            // [1] 3 x inradius / circumradius: 1 regular, 0 flat
 };
 
-// How tetrahedra came out of a surface, for whoever looks at them before they are simulated. Zeros: from a file.
+// Result of meshing a surface with tetrahedra, for inspection before the simulation. Zeros: from a file.
 struct TetReport {
-  double cell = 0.0;                  // [m] of the lattice, in its focus where it has one
-  double coarsest = 0.0;              // [m] cell farthest from the focus; `cell` where there is none
-  double wall = 0.0;                  // [m] median thickness of the thin wall that the surface is; 0: it is none
+  double cell = 0.0;                  // [m] of the lattice, in its focus if it has one
+  double coarsest = 0.0;              // [m] cell farthest from the focus; `cell` without a focus
+  double wall = 0.0;                  // [m] median thickness of a surface that is a thin wall; 0: not a thin wall
   std::uint32_t parts_dropped = 0;    // too small to keep
-  double volume_dropped = 0.0;        // [1] share of the tissue that they were
-  double thin = 0.0;                  // [1] share of the surface with less tissue behind it than thin_places.h asks for
+  double volume_dropped = 0.0;        // [1] their share of the tissue
+  double thin = 0.0;                  // [1] share of the surface with less tissue behind it than thin_places.h requires
   double least_thickness = 0.0;       // [m] of that tissue; 0: nothing is thin
   vec3 thinnest{0};                   // [m] where
-  std::vector<std::string> findings;  // what a person should know, one sentence each, without the body's name
+  std::vector<std::string> findings;  // warnings and remarks, one sentence each, without the body's name
 };
 
-// A mesh that is only drawn and goes with the tissue around it.
+// A mesh that is only drawn and moves with the tissue around it.
 struct CarriedPart {
   Entity entity;
   Handle<Mesh> mesh;                 // in the body's object frame
   std::vector<Embedding> embedding;  // of each of its vertices
-  std::vector<vec3> aside;           // [m] of those outside of the tissue: from where they are embedded; else empty
+  std::vector<vec3> aside;           // [m] of vertices outside of the tissue: offset from their embedding; else empty
 };
 
 struct TetMesh {
   std::string name;
   std::vector<dvec3> nodes;        // [m] rest. Order: free ones, then those on the handle, then the pinned
-  std::uint32_t free_count = 0;    // nodes [0, free_count) move by themselves
+  std::uint32_t free_count = 0;    // nodes [0, free_count) are free
   std::uint32_t handle_count = 0;  // nodes [free_count, free_count + handle_count) belong to the rigid handle
   std::vector<Tet> tets;
   std::vector<Embedding> embedding;  // of each vertex of the body's touch mesh (SoftBody::collision_mesh)
   std::vector<CarriedPart> parts;
-  // [m] Where the nodes are at the start, if that is not at rest (UnderGravity). Writer: prepare_soft.
+  // [m] Initial positions of the nodes, if not at rest (UnderGravity). Writer: prepare_soft.
   std::vector<dvec3> start;
   TetQuality quality;
   TetReport report;

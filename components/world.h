@@ -1,4 +1,4 @@
-// A level in memory: one registry, the stores of what is too large for components, and the touch tick's working memory.
+// A level in memory: one registry, the stores of large data, and the touch tick's working memory.
 #pragma once
 
 #include <memory>
@@ -28,21 +28,21 @@
 
 namespace pliant {
 
-// What a step had to leave out, as bits; each says its cure.
-enum DroppedBit : std::uint32_t {  // 8 was one more, and is not given again
+// Parts that a step had to drop, as bits; each with its cure.
+enum DroppedBit : std::uint32_t {  // 8 was used by an earlier bit and stays unused
   kDroppedContacts = 1,   // more contacts on one object than it has room for: use fewer probes, or split the object
   kDroppedNonFinite = 2,  // a pose or force was not a number and was replaced by zero: check device and registered laws
   kDroppedTravel = 4,     // a probe moved farther in a tick than the level is large: check the device's units
-  kDroppedReleases = 32,  // more dents were recovering at once than the GPU's list holds: the oldest vanished
-  kDroppedFactor = 64,    // a body's step could not be solved and it stood still: raise `young` or `density`, or mend
+  kDroppedReleases = 32,  // more dents were recovering at once than the GPU's list can hold: the oldest vanished
+  kDroppedFactor = 64,    // a body's step could not be solved and it did not move: raise `young` or `density`, or mend
                           // its mesh
   kDroppedMotion = 128,   // a body's motion was not a number and it was stopped: reduce `soft_step`
-  kDroppedStale = 16,     // a device's pose came too late and its force went to zero: check its connection
+  kDroppedStale = 16,     // a device's pose was stale and its force went to zero: check its connection
   kDroppedJump = 256,  // a device jumped farther than a hand can move, and its force went to zero: check its tracking
-  kDroppedSetBack = 512,  // a tool got away from its device and was set back into the hand: reduce `soft_step`
+  kDroppedSetBack = 512,  // a tool got away from its device and was set back to it: reduce `soft_step`
 };
 
-struct MouseInput;  // systems/device/mouse.h: what a window says of the mouse
+struct MouseInput;  // systems/device/mouse.h: mouse input of a window
 struct SoftState;   // systems/soft/soft_state.h: working memory of the soft step, made by prepare_soft
 struct ToolTouch;   // systems/tool/tool_touch_state.h: tools on the touch clock, made by prepare_tools
 struct TouchState;  // systems/touch/touch_state.h: working memory of the touch tick, made by prepare_touch
@@ -51,7 +51,7 @@ inline constexpr Range kTouchRateRange{10.0, 100000.0};  // [Hz] of Simulation::
 inline constexpr Range kSoftStepRange{1e-4, 1.0};        // [s] of Simulation::soft_step
 inline constexpr Range kGravityRange{-1e3, 1e3};         // [m/s2] of each of its components
 
-// Where height fields live (systems/touch/field.h).
+// Where height fields are stored (systems/touch/field.h).
 enum class FieldPlace : std::uint8_t { kProcessor, kGpu };
 
 struct World {
@@ -77,8 +77,8 @@ struct World {
       FieldPlace::kProcessor;         // kGpu: of every object whose parameters allow it; read by prepare_touch
   std::uint32_t dropped = 0;          // DroppedBit
   std::shared_ptr<TouchState> touch;  // null until prepare_touch
-  std::shared_ptr<SoftState> soft;    // null where nothing is soft or rigid, and until prepare_soft
-  std::shared_ptr<ToolTouch> tools;   // null where no level has a tool, and until prepare_tools
+  std::shared_ptr<SoftState> soft;    // null in levels without soft or rigid bodies, and until prepare_soft
+  std::shared_ptr<ToolTouch> tools;   // null in levels without tools, and until prepare_tools
   std::shared_ptr<MouseInput> mouse;  // null unless a window drives a probe
   std::unique_ptr<TripleBuffer<Snapshot>> snapshots;           // touch clock -> visual clock; null until prepare_touch
   std::unique_ptr<TripleBuffer<SoftSnapshot>> soft_snapshots;  // soft clock -> visual clock; null until prepare_soft

@@ -1,6 +1,6 @@
-// ASSERT: an assertion that is checked in every build; where it fails, the program stops and names the place. VALIDATE:
-// the same for checks that cost more than they guard; compiled only into debug and sanitizer builds. UNREACHABLE: the
-// end of a function whose switch has a case for every enumerator; a new one without a case does not compile (-Wswitch).
+// ASSERT checks in every build. On failure the program stops and prints the place. VALIDATE is for expensive checks; it
+// is compiled only into debug and sanitizer builds. UNREACHABLE marks the end of a function whose switch has a case for
+// every enumerator; a new enumerator without a case does not compile (-Wswitch).
 #pragma once
 
 #include <cstdio>

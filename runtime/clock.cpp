@@ -18,7 +18,7 @@ Tick RealtimeClock::next() {
   } else {
     ++index_;
   }
-  // From the index: a period that is no whole number of nanoseconds adds up no error.
+  // Computed from the index: a period that is not a whole number of nanoseconds accumulates no error.
   const auto due = start_ + std::chrono::nanoseconds(std::llround(static_cast<double>(index_) * 1e9 / rate_));
   const auto now = clock::now();
   std::uint64_t late = 0;

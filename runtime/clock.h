@@ -1,5 +1,5 @@
-// Time for a schedule. In lockstep, virtual time: tick n is at n*dt, whatever the machine does. In real time, a thread
-// that wakes on a fixed period and counts the ticks that it could not begin in time.
+// Time for a schedule. Lockstep is virtual time: tick n is at n*dt, independent of the machine. Real time: a thread
+// wakes with a fixed period and counts the ticks that it could not begin in time.
 #pragma once
 
 #include <chrono>
@@ -11,9 +11,9 @@ namespace pliant {
 struct Tick {
   std::uint64_t index = 0;  // 0, 1, 2, ...
   double dt = 1e-3;         // [s] length of the step
-  double time = 0.0;        // [s] since the start, at the step's beginning
-  double skipped = 0.0;     // [s] of ticks before it that could not begin in time
-  // [s] Since the tick before: over which what comes from outside has moved.
+  double time = 0.0;        // [s] since the start, at the beginning of the step
+  double skipped = 0.0;     // [s] total length of the ticks just before it that could not begin in time
+  // [s] Time since the previous tick; external inputs moved during it.
   double elapsed() const { return dt + skipped; }
 };
 
@@ -32,9 +32,9 @@ class LockstepClock {
   std::uint64_t index_ = 0;
 };
 
-// Wall time, for the thread that owns the clock. An overrun is a period that had already passed when its tick was asked
-// for: it is counted, and the missed ticks are skipped (virtual time jumps with wall time, so the world never runs
-// slow).
+// Wall time, for the thread that owns the clock. An overrun is a period that had already passed when its tick was
+// requested. Overruns are counted and the missed ticks are skipped: virtual time jumps with wall time, so the world
+// never runs slow.
 class RealtimeClock {
  public:
   explicit RealtimeClock(double rate_hz);
@@ -49,7 +49,7 @@ class RealtimeClock {
   bool started_ = false;
 };
 
-// Asks for SCHED_FIFO for the calling thread; false (and no harm) where the system does not grant it.
+// Requests SCHED_FIFO for the calling thread. Returns false, without effect, where the system does not grant it.
 bool request_realtime_priority();
 
 // Monotonic nanoseconds for measuring durations.

@@ -1,4 +1,4 @@
-// Disjoint sets of 0 ... n - 1, joined one by one; a set is known by its lowest member. Path halving.
+// Disjoint sets of 0 ... n - 1, joined one by one. The lowest member represents a set. Path halving.
 #pragma once
 
 #include <algorithm>

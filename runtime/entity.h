@@ -1,5 +1,5 @@
-// An entity is a name for a row across component pools: a slot and the version of its occupant, so that a stale
-// name is known to be stale.
+// An entity identifies a row across component pools: a slot and the version of its occupant. The version detects stale
+// identifiers.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What travels between clocks: TripleBuffer (newest state wins) and Ring (every item, in order).
-// Both are wait-free for one writer and one reader; neither allocates after construction.
+// Exchange between clocks: TripleBuffer (newest state wins) and Ring (every item, in order). Both are wait-free for one
+// writer and one reader; neither allocates after construction.
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace pliant {
 
-// Newest state wins. The writer fills `write()` and calls publish(); the reader calls acquire() and looks at `read()`.
-// Three slots: one being written, one being read, one in between that the two sides swap for theirs.
+// Newest state wins. The writer fills `write()` and calls publish(); the reader calls acquire() and uses `read()`.
+// Three slots: one being written, one being read, and one between, which either side swaps for its slot.
 template <class T>
 class TripleBuffer {
  public:
   TripleBuffer() = default;
-  // Every slot starts as a copy of `initial`, so that a reader that comes first sees something whole.
+  // Every slot starts as a copy of `initial`: a reader that is first sees a complete state.
   explicit TripleBuffer(const T& initial) : slots_{initial, initial, initial} {}
 
   // Writer. The slot may hold any older state; overwrite all of it.
@@ -29,7 +29,7 @@ class TripleBuffer {
     return (previous & kFresh) == 0;
   }
 
-  // Writer. True while the reader has not taken what was published last.
+  // Writer. True while the reader has not taken the last published state.
   bool unseen() const { return (between_.load(std::memory_order_relaxed) & kFresh) != 0; }
 
   // Reader. Takes the newest state if there is one; returns whether it did.
@@ -61,7 +61,7 @@ class Ring {
     items_.resize(size);
   }
 
-  // Writer. False when the reader is a whole ring behind: the item was not taken, and the writer must count it as lost.
+  // Writer. False when the ring is full: the item was not taken, and the writer must count it as lost.
   bool push(const T& item) {
     const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
     if (tail - head_.load(std::memory_order_acquire) == items_.size()) return false;
@@ -70,12 +70,12 @@ class Ring {
     return true;
   }
 
-  // Writer. A push will be taken; the reader can only make more room.
+  // Writer. True: the next push succeeds; the reader can only make more room.
   bool has_room() const {
     return tail_.load(std::memory_order_relaxed) - head_.load(std::memory_order_acquire) < items_.size();
   }
 
-  // Reader. False when there is nothing.
+  // Reader. False when the ring is empty.
   bool pop(T& item) {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
     if (head == tail_.load(std::memory_order_acquire)) return false;

@@ -1,4 +1,4 @@
-// Who hangs from whom. Entities are kept so that parents stand before children: one pass over order() updates a tree.
+// Parents and children. Parents precede their children in order(): one pass updates a tree.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Durations, kept so that percentiles can be told later: logarithmic buckets, 64 to an octave (about 1 % apart), fixed
-// memory, no allocation. The maximum is exact.
+// Histogram of durations, for percentiles: logarithmic buckets, 64 per octave (about 1 % apart), fixed memory, no
+// allocation. The maximum is exact.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ class Histogram {
   std::uint64_t count() const { return count_; }
   double max_us() const { return static_cast<double>(max_) * 1e-3; }
 
-  // The duration that a share q of all does not exceed, in microseconds.
+  // The duration that a share q of all durations does not exceed. [us]
   double percentile_us(double q) const {
     if (count_ == 0) return 0.0;
     const double wanted = q * static_cast<double>(count_);

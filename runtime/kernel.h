@@ -1,5 +1,5 @@
-// PLIANT_KERNEL before a function: it is compiled twice, for plain x86-64 and for AVX2, and the loader picks. Without
-// contraction both give the same bits. Sanitizers do not mix with this mechanism, so they get the plain version.
+// PLIANT_KERNEL before a function compiles it twice, for plain x86-64 and for AVX2; the loader chooses. Without
+// contraction both give the same bits. Sanitizers do not work with this mechanism, so they get the plain version.
 #pragma once
 
 #if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)

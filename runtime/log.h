@@ -1,4 +1,4 @@
-// One way out for what the library says beside its results (pliant/process.h). Never from a tick.
+// The only output of the library besides its results (pliant/process.h). Never called from a tick.
 #pragma once
 
 #include "pliant/process.h"

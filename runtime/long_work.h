@@ -1,4 +1,4 @@
-// Long work that says where it is: to whoever watches this thread, who may end it, or to the log.
+// Progress of long work. It is reported to the watch of this thread, which may stop the work, or else to the log.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace pliant {
 
-// Thrown where a watch ends the work; caught where the watch began.
+// Thrown where a watch stops the work; caught where the watch began.
 struct WorkStopped {};
 
-// While it lives, long work on this thread tells `progress`; an empty one watches nothing. Not across threads: work
-// that is shared out says where it is between its parts, on the thread that shares it out.
+// During its lifetime, long work on this thread reports to `progress`; an empty function watches nothing. Not across
+// threads: parallel work reports between its parts, on the thread that distributes it.
 class WatchedWork {
  public:
   explicit WatchedWork(const OpenProgress& progress);
@@ -26,33 +26,33 @@ class WatchedWork {
   friend void check_in();
   const OpenProgress& progress_;
   WatchedWork* before_;
-  double from_ = 0.0, to_ = 1.0;  // [1] of the whole: the part under way
-  double share_ = 0.0;            // [1] as it was told last
-  std::string doing_;             // the same
-  std::uint64_t told_ = 0;        // [ns] when
+  double from_ = 0.0, to_ = 1.0;  // [1] of the whole: the current part
+  double share_ = 0.0;            // [1] as last reported
+  std::string doing_;             // as last reported
+  std::uint64_t told_ = 0;        // [ns] time of the last report
 };
 
-// What follows on this thread is from `from` to `to` [1] of the whole that is watched.
+// The work that follows on this thread covers `from` to `to` [1] of the watched whole.
 void begin_part(double from, double to);
 
 class LongWork {
  public:
   LongWork();
-  // `doing`: "preparing meshes, now `heart`". `done` [1]: of the part under way; below 0: not known. To a watch fifty
-  // times a second at most: it throws WorkStopped where the watch ends the work. To the log (LogLevel::kInfo) once the
-  // work has taken over a second, then at most once a second.
+  // `doing`: "preparing meshes, now `heart`". `done` [1]: share of the current part; below 0: unknown. A watch is
+  // called at most fifty times a second; WorkStopped is thrown where it stops the work. The log (LogLevel::kInfo) gets
+  // a line once the work has taken over a second, then at most one a second.
   void say(const std::string& doing, double done = -1.0);
 
  private:
   std::uint64_t last_;  // [ns]
 };
 
-// A place in work that has no LongWork of its own.
+// Reports from work without a LongWork object.
 inline void check_in(const std::string& doing, double done = -1.0) {
   LongWork().say(doing, done);
 }
 
-// Within what was said last.
+// Repeats the last report.
 void check_in();
 
 }  // namespace pliant

@@ -29,15 +29,15 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
   const std::size_t runs = (count + grain - 1) / grain;
   std::atomic<std::size_t> next{0};
   std::exception_ptr thrown;
-  std::mutex mutex;  // of it
+  std::mutex mutex;  // guards `thrown`
   const auto work = [&] {
     try {
       for (std::size_t run = next++; run < runs; run = next++) {
         body(run * grain, std::min(count, (run + 1) * grain));
-        check_in();  // of the thread that called: nobody watches the others
+        check_in();  // only the calling thread is watched
       }
     } catch (...) {
-      next = runs;  // the others end after what they are at
+      next = runs;  // the other threads stop after their current part
       const std::lock_guard lock(mutex);
       if (!thrown) thrown = std::current_exception();
     }

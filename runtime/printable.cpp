@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-// The code point at the beginning of `text`, and how many bytes it has; 0 bytes: no UTF-8 (RFC 3629).
+// The code point at the beginning of `text` and its length in bytes; 0 bytes: not valid UTF-8 (RFC 3629).
 struct Decoded {
   std::uint32_t point = 0;
   std::size_t bytes = 0;
@@ -22,7 +22,7 @@ Decoded decode(std::string_view text) {
     if ((byte(i) & 0xc0u) != 0x80u) return {};
     point = point << 6 | (byte(i) & 0x3fu);
   }
-  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};  // less is an overlong form
+  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};  // below it: an overlong form
   const bool surrogate = point >= 0xd800 && point <= 0xdfff;
   return point < kLeast[bytes] || point > 0x10ffff || surrogate ? Decoded{} : Decoded{point, bytes};
 }

@@ -1,6 +1,6 @@
-// Rows written by one clock and kept by another: the writer pushes into a ring and never waits; whoever owns the file
-// drains the ring between ticks (lockstep) or from another thread (real time). A row that found the ring full is
-// counted.
+// Rows written by one clock and kept by another. The writer pushes into a ring and never waits. The owner of the file
+// drains the ring between ticks (lockstep) or from another thread (real time). Rows that find the ring full are counted
+// as lost.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class Recorder {
   void record(const Row& row) {
     if (!ring_.push(row)) lost_.fetch_add(1, std::memory_order_relaxed);
   }
-  // Owning side: moves what has come since into `rows`.
+  // Owner: moves the rows recorded since the last call into `rows`.
   void drain(std::vector<Row>& rows) {
     Row row;
     while (ring_.pop(row)) rows.push_back(row);

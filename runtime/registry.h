@@ -2,8 +2,8 @@
 //
 // A pool keeps its components dense (iteration touches nothing else) and finds an entity's row through a sparse index.
 // Views walk the smallest pool they name; `const T` in a view means "only reads". Creating, destroying, adding and
-// removing may allocate and move rows, so they happen between ticks only, never inside a system and never while a view
-// is being walked.
+// removing may allocate and move rows, so they happen only between ticks, never inside a system or while a view is
+// being walked.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@
 
 namespace pliant {
 
-// What a pool can do without knowing its component type.
+// Operations on a pool that do not depend on its component type.
 class PoolBase {
  public:
   virtual ~PoolBase() = default;
@@ -40,7 +40,7 @@ class PoolBase {
   std::vector<Entity> entities_;       // row -> entity
 };
 
-// The components of one type, dense, in no promised order.
+// The components of one type, dense, in unspecified order.
 template <class T>
 class Pool final : public PoolBase {
  public:
@@ -83,7 +83,7 @@ template <class... Ts>
 class View {
  public:
   explicit View(Pool<std::remove_const_t<Ts>>*... pools) : pools_(pools...) {
-    // A type that nobody ever added has no pool: the view is empty.
+    // A type that was never added has no pool: the view is empty.
     const bool all = ((pools != nullptr) && ...);
     if (all) ((smallest_ = (!smallest_ || pools->size() < smallest_->size()) ? pools : smallest_), ...);
   }
@@ -193,7 +193,7 @@ class Registry {
   }
 
  private:
-  // Component types are numbered in the order in which the program first meets them.
+  // Component types are numbered in the order of first use.
   static std::size_t next_type() {
     static std::atomic<std::size_t> count{0};
     return count++;

@@ -1,4 +1,4 @@
-// Errors at the border, as the public headers have them; inside the house, broken promises are ASSERTs.
+// Errors at the border, as in the public headers. Inside, use ASSERT.
 #pragma once
 
 #include "pliant/result.h"

@@ -1,5 +1,5 @@
-// A schedule is a list of systems in the order in which they run, and what each of them cost.
-// A system is a plain function `void name(World&, Tick)`; if B follows A, the schedule says so.
+// A schedule is a list of systems in the order in which they run, with the cost of each. A system is a plain function
+// `void name(World&, Tick)`; if B follows A, the schedule says so.
 #pragma once
 
 #include <string_view>
@@ -21,7 +21,7 @@ class Schedule {
  public:
   explicit Schedule(std::vector<System<World>> systems) : systems_(std::move(systems)), cost_(systems_.size()) {}
 
-  // Every system once. Does not allocate.
+  // Runs every system once. Does not allocate.
   void run(World& world, Tick tick) {
     const std::uint64_t begin = now_ns();
     std::uint64_t before = begin;

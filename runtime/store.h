@@ -1,5 +1,5 @@
-// A typed store for what is too large for a component (meshes, height fields, textures): the component holds the
-// handle. Addresses stay put for the store's life, so a system may keep a reference through a tick.
+// A typed store for data too large for a component (meshes, height fields, textures); the component holds the handle.
+// Addresses stay valid for the life of the store, so a system may keep a reference during a tick.
 #pragma once
 
 #include <cstdint>

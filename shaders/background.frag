@@ -1,4 +1,4 @@
-// The surroundings, where nothing stands before them.
+// The surroundings, behind all objects.
 #include "frame.glsl"
 #include "environment.glsl"
 #include "tone.glsl"

@@ -1,5 +1,5 @@
-// Relief finer than the mesh: a tangent-space normal map, or the slope of a height map (Mikkelsen, Bump Mapping
-// Unparametrized Surfaces on the GPU, 2010: screen derivatives stand in for tangents).
+// Relief finer than the mesh: a tangent-space normal map, or the slope of a height map. For the latter screen
+// derivatives replace tangents (Mikkelsen, Bump Mapping Unparametrized Surfaces on the GPU, 2010).
 
 layout(binding = 3) uniform sampler2D normal_map;
 layout(binding = 6) uniform sampler2D height_map;  // r
@@ -12,7 +12,7 @@ vec3 normal_mapped(vec3 n, vec4 tangent, vec2 uv, float scale) {
   return normalize(scale * (m.x * t + m.y * tangent.w * cross(n, t)) + m.z * n);
 }
 
-// `height` [m] is that of white above black.
+// `height` [m]: of white above black.
 vec3 height_mapped(vec3 n, vec3 position, vec2 uv, float height) {
   vec3 along_x = dFdx(position), along_y = dFdy(position);
   vec2 uv_x = dFdx(uv), uv_y = dFdy(uv);

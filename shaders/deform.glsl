@@ -1,10 +1,10 @@
-// P1's two lines, for every pass that draws a surface: colour, shadow and picking alike.
+// P1's two lines, for every pass that draws a surface: colour, shadow and picking.
 //
 //   position = P0 + h N0
 //   normal   = N0 + (nx, ny, nz)
 //
-// P0 and N0 never change and lie in vertex buffers; (nx, ny, nz, h) comes from the stream of the touch vertex. The
-// height acts along the touch normal; the correction is a gradient, in the object frame, for any unit shading normal.
+// P0 and N0 are constant, in vertex buffers; (nx, ny, nz, h) is read from the stream of the touch vertex. The height
+// acts along the touch normal. The correction is a gradient in the object frame and applies to any unit shading normal.
 
 layout(std430, binding = 0) readonly buffer Stream { vec4 stream[]; };  // [1,1,1,m] by touch vertex
 

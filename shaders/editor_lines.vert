@@ -2,7 +2,7 @@
 layout(location = 0) in vec3 position;  // [m] world
 layout(location = 1) in vec4 tint;      // encoded
 layout(location = 0) uniform mat4 clip_from_world;
-layout(location = 1) uniform float nearer;  // [1] share of the depth, so that what lies on a surface is not buried
+layout(location = 1) uniform float nearer;  // [1] share of the depth, so that lines on a surface are not hidden by it
 
 layout(location = 0) out vec4 line_tint;
 

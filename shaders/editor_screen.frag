@@ -1,4 +1,4 @@
-// The finished picture: what was drawn, and a line around what is selected or under the mouse.
+// The finished picture, with a line around the selected object and the one under the mouse.
 layout(location = 0) in vec2 place;
 layout(location = 0) uniform sampler2D scene;
 layout(location = 1) uniform usampler2D numbers;

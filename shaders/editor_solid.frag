@@ -16,7 +16,7 @@ layout(location = 10) uniform vec4 line_color;
 layout(location = 0) out vec4 color;
 layout(location = 1) out uint picked;
 
-// Even steps for the eye, dark to light for whoever does not see the hue.
+// Perceptually even colour ramp, dark to light, so that it is legible without the hue.
 vec3 ramp(float t) {
   const vec3 c0 = vec3(0.2777, 0.0054, 0.3341), c1 = vec3(0.1051, 1.4046, 1.3846), c2 = vec3(-0.3309, 0.2148, 0.0951),
              c3 = vec3(-4.6342, -5.7991, -19.3324), c4 = vec3(6.2283, 14.1799, 56.6906),
@@ -38,12 +38,12 @@ void main() {
     float t = shows_value == 1 ? (log2(max(shown_value, 1e-6)) - value_range.x) / (value_range.y - value_range.x)
                                : (shown_value - value_range.x) / (value_range.y - value_range.x);
     surface = ramp(clamp(t, 0.0, 1.0));
-    // Contour lines, so that steps are seen without the hue.
-    // Set apart from 0, 1 and the powers of two, which large level places have.
+    // Contour lines, so that steps are visible without the hue. Offset from 0, 1 and the powers of two, which are
+    // common on large areas.
     float lines = t * 10.0, slope = fwidth(lines), near_line = abs(fract(lines + 0.25) - 0.5) / max(slope, 1e-6);
     if (slope > 1e-4 && slope < 0.35) surface *= mix(0.72, 1.0, clamp(near_line, 0.0, 1.0));
   }
-  if (!gl_FrontFacing) surface = mix(surface, vec3(0.45, 0.32, 0.42), 0.6);  // an inside that shows is seen as one
+  if (!gl_FrontFacing) surface = mix(surface, vec3(0.45, 0.32, 0.42), 0.6);  // a visible inside is marked by its colour
   float key = max(dot(n, normalize(vec3(-0.4, 0.65, 0.65))), 0.0), fill = max(dot(n, normalize(vec3(0.7, -0.1, 0.4))), 0.0);
   float rim = pow(1.0 - max(n.z, 0.0), 3.0);
   color = vec4(surface * (0.36 + 0.58 * key + 0.16 * fill) + 0.10 * rim * vec3(0.8, 0.9, 1.0), 1.0);

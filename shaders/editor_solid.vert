@@ -1,7 +1,7 @@
-// The editor's own view of a level: a mesh where its node stands, as it is being edited.
+// The editor's view of a level: a mesh at its node, in its edited state.
 layout(location = 0) in vec3 position;  // [m] mesh frame
 layout(location = 1) in vec3 normal;    // [1] mesh frame
-layout(location = 2) in float value;    // what is painted and shown
+layout(location = 2) in float value;    // displayed painted value
 
 layout(location = 0) uniform mat4 clip_from_world;
 layout(location = 1) uniform mat4 world_from_mesh;

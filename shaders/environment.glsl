@@ -1,4 +1,4 @@
-// Light from all around: a cube map whose levels are filtered for growing roughness (systems/visual/cube.h), and its
+// Environment light: a cube map whose levels are filtered for increasing roughness (systems/visual/cube.h), and its
 // irradiance as a quadratic polynomial (Ramamoorthi and Hanrahan, An Efficient Representation for Irradiance
 // Environment Maps, SIGGRAPH 2001, equation 13).
 
@@ -10,7 +10,7 @@ vec3 to_panorama(vec3 d) {
   return vec3(surroundings.x * d.x - surroundings.y * d.z, d.y, surroundings.y * d.x + surroundings.x * d.z);
 }
 
-// Radiance about world direction `d`, as a coat of this roughness gathers it; roughness 0 is sharp.
+// Radiance about world direction `d`, filtered for a coat of this roughness; roughness 0 is sharp.
 vec3 radiance_from(vec3 d, float roughness) {
   return surroundings.z * textureLod(surroundings_map, to_panorama(d), roughness * surroundings.w).rgb;
 }

@@ -1,5 +1,5 @@
-// The whole height field from the list of sources, on the GPU: stream[v] = sum of the sources' targets at v. Nothing else
-// travels, and nothing is kept from frame to frame (P1 section 5).
+// The whole height field from the list of sources, on the GPU: stream[v] = sum of the sources' targets at v. No other
+// data is uploaded, and nothing is kept from frame to frame (P1 section 5).
 layout(local_size_x = 128) in;
 
 #define SHARED
@@ -25,7 +25,7 @@ void main() {
   vec3 N = vec3(a.w, rest_yz[v]);
   vec4 sum = vec4(0);
   for (int i = 0; i < source_count; ++i) {
-    // A vertex out of reach of a source is given nothing: skip its arithmetic.
+    // A source has no effect on a vertex out of reach: skip its arithmetic.
     vec3 d = P - sources[i].place.xyz;
     if (dot(d, d) * sources[i].place.w >= 1.0) continue;
     sum += field_target(sources[i].place, sources[i].push, sources[i].kind, P, N);

@@ -1,9 +1,9 @@
-// What is the same for everything in one picture. Mirrors systems/visual/frame.h.
+// Constants of one picture. Mirrors systems/visual/frame.h.
 
 struct Lamp {  // a punctual light
   vec4 place;  // xyz: [1] direction to the light (w = 0), or [m] its position (w = 1)
-  vec4 color;  // [lx] (place.w = 0) or [cd] (place.w = 1); w: [m] how far it reaches, 0: any distance
-  vec4 axis;   // xyz: [1] where a spot points; w: scale of the cone's falloff, 0: not a spot
+  vec4 color;  // [lx] (place.w = 0) or [cd] (place.w = 1); w: [m] its range, 0: unlimited
+  vec4 axis;   // xyz: [1] direction of a spot; w: scale of the cone's falloff, 0: not a spot
   vec4 more;   // x: offset of the cone's falloff
 };
 
@@ -17,7 +17,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 picture;            // exposure, brightness of the background, [1/m] height as colour (0: off), background's blur
   vec4 shadow;             // [m] width of a shadow map's texel in the scene, [1] its share of the map
   Lamp lamps[4];           // the first casts the shadow
-  uvec4 modes;             // number of lamps, what is switched on
+  uvec4 modes;             // number of lamps, enabled modes
 };
 
 const uint kReflection = 1u, kRefraction = 2u, kBump = 4u, kShadows = 8u, kZones = 16u, kBehind = 32u, kLinear = 64u;

@@ -1,12 +1,12 @@
-// One step of the free surface by the cubic and the exponential law, as systems/touch/nonlinear_step.cpp takes it: the
-// discrete gradient, or backward Euler where the step is long for the spring (methods.md 1.2). Heights [m], forces per
-// unit of stiffness [m], mass m/k [s2], damping b/k [s].
+// One step of the free surface by the cubic and the exponential law, as in systems/touch/nonlinear_step.cpp. Discrete
+// gradient, or backward Euler for steps that are long for the spring (methods.md 1.2). Heights [m], forces per unit of
+// stiffness [m], mass m/k [s2], damping b/k [s].
 
 uniform uint law;  // SpringLaw: 0 linear, 1 cubic, 2 exponential, 3 standard linear solid
 uniform float cubic, stiffening;  // [1/m2] [1/m]
 uniform float dt;  // [s]
 
-// e^x to float precision; GLSL promises less for its own.
+// e^x to float precision; GLSL guarantees less for its function.
 float law_exp(float x) {
   float n = floor(clamp(x, -80.0, 80.0) * 1.44269504 + 0.5);
   float r = (x - n * 0.693359375) + n * 2.12194440e-4;
@@ -46,17 +46,17 @@ float law_gradient(float h0, float d) {
   }
   float U0 = h0 * h0 * (h0 < 0.0 ? law_second(-stiffening * h0) : 0.5);
   float U1 = h1 * h1 * (h1 < 0.0 ? law_second(-stiffening * h1) : 0.5);
-  return (U1 - U0) / d;  // d joins opposite sides of zero
+  return (U1 - U0) / d;  // d crosses zero
 }
 
-// state and rate: (normal correction, height); target: what the spring pulls to, 0 if none.
+// state and rate: (normal correction, height); target: equilibrium of the spring, 0 if none.
 void law_step(inout vec4 state, inout vec4 rate, vec4 target, float m, float b) {
   float h0 = state.w, v0 = rate.w;
   bool stiff = law_slope(h0) * dt * dt > 2.25 * m;
   float whole = (stiff ? 1.0 : 2.0) * m / (dt * dt);
   float inertia = whole + b / dt;
   float constant = -whole * dt * v0 - law_force(target.w);
-  // The spring only ever shortens the step that mass and damping alone would make: d lies between 0 and that.
+  // The spring can only shorten the step that mass and damping alone would make: d is between 0 and that step.
   float r = law_force(h0) + constant;
   float farthest = -r / inertia;
   float low = min(farthest, 0.0), high = max(farthest, 0.0);
@@ -65,7 +65,7 @@ void law_step(inout vec4 state, inout vec4 rate, vec4 target, float m, float b) 
     float h1 = h0 + d;
     r = inertia * d + (stiff ? law_force(h1) : law_gradient(h0, d)) + constant;
     if (r < 0.0) low = d; else high = d;
-    // The gradient's slope is near half the force's for steps this short; the bracket takes care of the rest.
+    // The gradient's slope is close to half the force's for such short steps; the bracket handles the rest.
     float next = d - r / (inertia + (stiff ? 1.0 : 0.5) * law_slope(h1));
     if (!(next >= low && next <= high)) next = 0.5 * (low + high);
     bool settled = abs(next - d) <= 1e-7 * (abs(h0) + abs(d));

@@ -1,12 +1,12 @@
-// How a surface answers light: Lambert's diffuse layer under a GGX coat, as glTF has it (Walter et al., EGSR 2007;
-// height-correlated shadowing as in Heitz, JCGT 2014).
+// Reflection model: Lambert's diffuse layer under a GGX coat, as in glTF (Walter et al., EGSR 2007; height-correlated
+// shadowing as in Heitz, JCGT 2014).
 
 struct Surface {
   vec3 position;      // [m] world
   vec3 normal;        // [1]
   vec3 to_eye;        // [1]
-  vec3 diffuse;       // [1] albedo of what enters and comes back
-  vec3 reflectance;   // [1] of the coat, seen straight on
+  vec3 diffuse;       // [1] diffuse albedo
+  vec3 reflectance;   // [1] of the coat, at normal incidence
   float roughness;    // [1] perceptual
   float occlusion;    // [1] 1: open to the sky
 };
@@ -25,7 +25,7 @@ float visibility(float n_l, float n_v, float alpha) {
   return 0.5 / max(v + l, 1e-5);
 }
 
-// One lamp: unit direction towards it, and what arrives from there at `position` [lx].
+// One lamp: unit direction towards it, and its illuminance at `position` [lx].
 vec3 arriving_from(Lamp lamp, vec3 position, out vec3 to_light) {
   vec3 way = lamp.place.xyz - lamp.place.w * position;
   float distance2 = max(dot(way, way), 1e-8);
@@ -44,10 +44,10 @@ vec3 lit_by(Lamp lamp, Surface s) {
   float alpha = s.roughness * s.roughness;
   vec3 mirrored = fresnel(s.reflectance, max(dot(l, h), 0.0));
   vec3 coat = mirrored * ggx(max(dot(s.normal, h), 0.0), alpha) * visibility(n_l, n_v, alpha);
-  return arriving * n_l * ((1.0 - mirrored) * s.diffuse / kPi + coat);  // what the coat mirrors does not enter
+  return arriving * n_l * ((1.0 - mirrored) * s.diffuse / kPi + coat);  // light mirrored by the coat does not enter
 }
 
-// Every lamp; of the first only the share `open` that its shadow leaves.
+// All lamps; the first is scaled by `open`, its unshadowed share.
 vec3 lit_by_lamps(Surface s, float open) {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < modes.x; ++i) sum += (i == 0u ? open : 1.0) * lit_by(lamps[i], s);

@@ -1,4 +1,4 @@
-// Points that lines run between.
+// End points of lines.
 #include "frame.glsl"
 
 layout(location = 0) in vec3 position;  // [m] world

@@ -1,4 +1,4 @@
-// A unit shape, placed many times.
+// A unit shape, drawn as instances.
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;

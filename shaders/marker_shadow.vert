@@ -1,4 +1,4 @@
-// A ball as the first lamp sees it.
+// A ball in the first lamp's view.
 #include "frame.glsl"
 #include "marker_place.glsl"
 

@@ -1,8 +1,8 @@
-// What a surface is made of. Mirrors systems/visual/material.cpp.
+// Material constants. Mirrors systems/visual/material.cpp.
 
 layout(std140, binding = 2) uniform MaterialOf {
   vec4 base_color;
-  vec4 emissive;   // w: alpha below which nothing is drawn
+  vec4 emissive;   // w: alpha cutoff
   vec4 numbers;    // metallic, roughness, scale of the normal map, strength of the occlusion map
   vec4 coat;       // x: 1 if alpha blends; y: reflectance of a dielectric; z: [m] height of white in the height map
   vec4 volume;     // transmission, index of refraction, [m] thickness

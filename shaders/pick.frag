@@ -1,4 +1,4 @@
-// Which object stands here, and where. Numbers as bits: an integer target keeps them exactly.
+// The object at this pixel, and its position. Numbers as bits: an integer target keeps them exactly.
 #include "placement.glsl"
 #include "material.glsl"
 

@@ -1,4 +1,4 @@
-// The surface as it is seen through one pixel: where it is, and where that very place is at rest.
+// The surface seen through one pixel: its position, and the rest position of the same point.
 #include "vertex.glsl"
 
 uniform mat4 clip_from_world;  // of the view, narrowed to the pixel

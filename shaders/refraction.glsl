@@ -1,9 +1,9 @@
-// What is seen through a body. A body of some thickness bends the ray twice, as if it were, right here, a ball whose
-// diameter is the thickness: that alone needs no second surface, and it turns the world upside down as a drop does. A
-// body without thickness is a pane: the ray goes straight on. Where something of the scene stands behind the place at
-// which the ray leaves, it is taken from a picture of what does not transmit; else the surroundings are seen.
+// Refraction through a body. A thick body bends the ray twice, like a ball whose diameter is the local thickness. This
+// needs no second surface, and it inverts the image as a drop does. A body without thickness is a pane: the ray
+// continues straight. If the scene has an object behind the exit point, its colour is sampled from a picture of the
+// opaque objects; else the surroundings are seen.
 
-layout(binding = 11) uniform sampler2D behind_map;        // linear radiance; a: 1 where something stands
+layout(binding = 11) uniform sampler2D behind_map;        // linear radiance; a: 1 where an object was drawn
 layout(binding = 12) uniform sampler2D behind_depth_map;
 
 struct Through {
@@ -12,9 +12,9 @@ struct Through {
   vec3 absorption;   // [1/m] Beer's law
 };
 
-// What stands in the picture where world point `p` would, farther than depth `nearest`; a: how much of it. Each of the
-// four pixels around is tested by its own depth: filtered colour with one depth for all would draw the outlines of what
-// stands in front of the body, as dotted lines.
+// Colour of the picture at the projection of world point `p`, farther than depth `nearest`; a: coverage. Each of the
+// four neighbouring pixels is tested by its depth. Filtered colour with a single depth test would draw outlines of
+// objects in front of the body, as dotted lines.
 vec4 standing_behind(vec3 p, float nearest) {
   if (!on(kBehind)) return vec4(0.0);
   vec4 clip = view_projection * vec4(p, 1.0);
@@ -41,9 +41,9 @@ vec3 seen_through(Surface s, Through t, float depth) {
     vec3 far_normal = s.normal - 2.0 * along * inside;  // of the ball, where the chord ends
     leaves -= t.thickness * along * inside;
     remains = exp(t.absorption * t.thickness * along);
-    way = refract(inside, -far_normal, t.ior);          // never totally reflected: the angles are those of entry
+    way = refract(inside, -far_normal, t.ior);          // never totally reflected: exit and entry angles are equal
   }
-  // The blur of a rough surface fades as its index nears that of air.
+  // The blur of a rough surface fades as its index approaches that of air.
   vec3 surrounding = radiance_from(way, s.roughness * clamp(2.0 * t.ior - 2.0, 0.0, 1.0));
   vec4 standing = standing_behind(leaves, depth);
   return remains * (surrounding * (1.0 - standing.a) + standing.rgb);

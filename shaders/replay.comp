@@ -1,5 +1,5 @@
-// A field that has no closed form, stepped tick by tick from what acts on it: the steps of systems/touch/dynamics.cpp
-// and field_kernels.cpp. One work group a zone; the state stays here (methods.md 1.7).
+// A field without a closed form, stepped tick by tick from its inputs: the steps of systems/touch/dynamics.cpp and
+// field_kernels.cpp. One work group per zone; the state stays on the GPU (methods.md 1.7).
 layout(local_size_x = 128) in;  // kZoneSize
 
 #define SHARED
@@ -10,27 +10,27 @@ layout(local_size_x = 128) in;  // kZoneSize
 layout(std430, binding = 0) buffer Stream { vec4 stream[]; };
 layout(std430, binding = 1) readonly buffer Rest { vec4 rest[]; };  // as in field.comp
 layout(std430, binding = 2) readonly buffer RestNormal { vec2 rest_yz[]; };
-layout(std430, binding = 3) buffer State { vec4 state[]; };  // residual, rate; standard linear solid: arm, relaxed too
+layout(std430, binding = 3) buffer State { vec4 state[]; };  // residual, rate; standard linear solid: also arm, relaxed
 layout(std430, binding = 4) readonly buffer Coefficients { float coefficient[]; };
 struct Source {
   vec4 place, push, kind;
 };
-layout(std430, binding = 5) readonly buffer Sources { Source sources[]; };  // each tick's, then what ended: now, before
-// What happens, one record after the other (systems/visual/field_replay.h):
-//   a tick, 2:  (sources that are known, sources that end), (first source, first fold, -, -)
-//   a run, 3:   (first tick, ticks, zone, flags), (sources, sources of the tick before), (offsets, offsets of folds, -, -)
+layout(std430, binding = 5) readonly buffer Sources { Source sources[]; };  // each tick's, then ended ones: now, before
+// Input records, in sequence (systems/visual/field_replay.h):
+//   a tick, 2:  (known sources, ended sources), (first source, first fold, -, -)
+//   a run, 3:   (first tick, ticks, zone, flags), (sources, sources of the tick before), (offsets, fold offsets, -, -)
 //   a zone, 1:  (first run, runs, -, -)
 layout(std430, binding = 6) readonly buffer Steps { uvec4 steps[]; };
 layout(std430, binding = 7) readonly buffer Offsets { vec4 offsets[]; };
 
 uniform uint vertex_count, stride, lags, has_offsets;
-uniform uint first_run, first_zone;  // of steps
+uniform uint first_run, first_zone;  // into steps
 uniform float inv_dt, arm_decay, arm_ramp;
 
 vec3 P, N;
 uint lane;
 
-// How many bits of the mask come before this one.
+// Number of set bits of the mask below this one.
 uint rank(uvec2 mask, int bit) {
   if (bit < 32) return uint(bitCount(mask.x & ((1u << bit) - 1u)));
   return uint(bitCount(mask.x) + bitCount(mask.y & ((1u << (bit - 32)) - 1u)));
@@ -48,7 +48,7 @@ bool next_bit(inout uvec2 mask, out int bit) {
   return true;
 }
 
-// With offsets the distance itself says what belongs to the contact: the angle between normals does not matter.
+// With offsets, the distance already excludes other parts of the surface: the angle between normals is not tested.
 vec4 target_of(Source source, uint block) {
   vec3 d = has_offsets != 0u ? offsets[128u * block + lane].xyz : P - source.place.xyz;
   if (dot(d, d) * source.place.w >= 1.0) return vec4(0);
@@ -77,9 +77,9 @@ void main() {
     uvec4 run = steps[first_run + 3u * i], acting = steps[first_run + 3u * i + 1u], blocks = steps[first_run + 3u * i + 2u];
     uint end = run.x + run.y;
     for (uint t = run.x; t < end; ++t) {
-      uvec4 known = steps[2u * t], from = steps[2u * t + 1u];  // known.zw: sources that end
+      uvec4 known = steps[2u * t], from = steps[2u * t + 1u];  // known.zw: ended sources
       int bit;
-      // What a contact that ended held down goes into the residual.
+      // The target of an ended contact goes into the residual.
       uvec2 folded = known.zw & (t == run.x ? acting.zw : acting.xy);
       for (uint block = blocks.y; next_bit(folded, bit); ++block) {
         uint at = from.y + 2u * rank(known.zw, bit);
@@ -109,7 +109,7 @@ void main() {
       vec4 pulled = follows ? vec4(0) : target;
       if (law == 1u || law == 2u) {
         law_step(residual, rate, pulled, coefficient[c], coefficient[c + 1u]);
-      } else {  // linear: measured from the target it moves freely
+      } else {  // linear: the state relative to the target moves freely
         vec4 x = residual - pulled, w = rate;
         if (solid) {
           vec4 q = arm;
@@ -123,7 +123,7 @@ void main() {
       }
       if (t + 1u == end && (run.w & 1u) != 0u) {
         residual = rate = arm = vec4(0);
-        if (acting.xy == uvec2(0u)) relaxed = vec4(0);  // what is pressed still remembers
+        if (acting.xy == uvec2(0u)) relaxed = vec4(0);  // a pressed zone keeps its relaxation
       }
       shown = residual + (follows ? target : vec4(0));
     }

@@ -1,4 +1,4 @@
-// Depth alone; holes of a mask let light through.
+// Depth only; masked-out texels let light through.
 #include "material.glsl"
 
 in vec2 at;

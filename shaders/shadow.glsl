@@ -1,10 +1,10 @@
-// How much of the first lamp's light is not blocked by what stands before it: nine filtered comparisons in the depth map
-// that the shadow pass drew of the same deformed surfaces.
+// Unblocked share of the first lamp's light: nine filtered comparisons in the depth map, which the shadow pass drew of
+// the same deformed surfaces.
 
 layout(binding = 7) uniform sampler2DShadow shadow_map;
 
-// `normal` is the surface's own, not the bumped one: the place that is asked about is lifted along it, farther where
-// the light grazes, so that a surface does not shadow itself by the width of a texel.
+// `normal` is the geometric normal, without bump mapping. The sample point is offset along it, farther at grazing
+// light, so that a surface does not shadow itself by the width of a texel.
 float open_to_lamp(vec3 position, vec3 normal) {
   if (!on(kShadows)) return 1.0;
   vec3 to_light = normalize(lamps[0].place.xyz - lamps[0].place.w * position);

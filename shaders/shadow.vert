@@ -1,4 +1,4 @@
-// The surface as the first lamp sees it, given way like the one that the eye sees.
+// The deformed surface in the first lamp's view.
 #include "frame.glsl"
 #include "vertex.glsl"
 

@@ -1,10 +1,11 @@
-// Where the skin of a soft body is, for every pass that draws a surface. It goes where its tetrahedra go, so there is
-// no rest normal to count a height along: position and normal themselves travel, 16 bytes a vertex, as P1's stream.
+// The deformed collision mesh of a soft body, for every pass that draws a surface. It moves with its tetrahedra, so
+// there is no rest normal for a height. Position and normal themselves are uploaded, 16 bytes per vertex, as for P1's
+// stream.
 
 layout(std430, binding = 1) readonly buffer Skin { uvec4 skin[]; };  // by touch vertex; xyz: bits of the position [m],
                                                                      // w: the normal, folded; both in world
-// A unit vector from a point of the square into which an octahedron unfolds (Cigolle et al., A Survey of Efficient
-// Representations for Independent Unit Vectors, JCGT 3(2), 2014).
+// A unit vector from its octahedral mapping (Cigolle et al., A Survey of Efficient Representations for Independent Unit
+// Vectors, JCGT 3(2), 2014).
 vec3 unfolded(vec2 f) {
   vec3 n = vec3(f, 1.0 - abs(f.x) - abs(f.y));
   float below = max(-n.z, 0.0);
@@ -16,7 +17,7 @@ vec3 unfolded(vec2 f) {
 vec3 skin_position(uint vertex) { return uintBitsToFloat(skin[vertex].xyz); }
 vec3 skin_normal(uint vertex) { return unfolded(unpackSnorm2x16(skin[vertex].w)); }
 
-// `t` turned the shortest way that turns unit vector `a` into unit vector `b`.
+// `t` rotated by the shortest rotation from unit vector `a` to unit vector `b`.
 vec3 turned(vec3 t, vec3 a, vec3 b) {
   vec3 axis = cross(a, b);
   return dot(a, b) * t + cross(axis, t) + axis * (dot(axis, t) / max(1.0 + dot(a, b), 1e-4));

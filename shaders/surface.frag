@@ -31,13 +31,13 @@ vec3 with_relief(vec3 n) {
   return coat.z > 0.0 ? height_mapped(n, from.position, from.uv, coat.z) : n;
 }
 
-// Height as colour: blue is pushed in, red stands out.
+// Height as colour: blue is pushed in, red is raised.
 vec3 tinted(vec3 albedo) {
   float x = clamp(from.height * picture.z, -1.0, 1.0);
   return mix(albedo, x < 0.0 ? vec3(0.05, 0.2, 0.9) : vec3(0.9, 0.15, 0.05), sqrt(abs(x)));
 }
 
-// A colour for a zone, far from those of its neighbours: steps of the golden ratio around the colour circle.
+// A colour per zone, distinct from its neighbours': steps of the golden ratio around the colour circle.
 vec3 zone_color(uint zone) {
   vec3 hue = fract(float(zone) * 0.61803399 + vec3(0.0, 1.0 / 3.0, 2.0 / 3.0));
   return 0.1 + 0.7 * smoothstep(0.15, 0.85, abs(2.0 * hue - 1.0));

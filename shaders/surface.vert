@@ -1,4 +1,4 @@
-// A surface, given way.
+// A deformed surface.
 #include "frame.glsl"
 #include "vertex.glsl"
 

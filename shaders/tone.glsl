@@ -1,5 +1,5 @@
-// Scene light to what a screen can show: exposure, then Narkowicz's fit of the ACES film curve (2015). Linear in and
-// out; the framebuffer encodes sRGB.
+// Tone mapping: exposure, then Narkowicz's fit of the ACES film curve (2015). Linear in and out; the framebuffer
+// encodes sRGB.
 
 vec3 tone_mapped(vec3 radiance) {
   if (on(kLinear)) return radiance;

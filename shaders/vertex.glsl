@@ -1,5 +1,5 @@
-// A vertex of a surface where it is now, in world: given way by the stream, or riding on a skin. The colour, shadow and
-// picking passes all ask here.
+// Deformed vertex of a surface in world: displaced by the stream, or read from the skin buffer. Used by the colour,
+// shadow and picking passes.
 #include "deform.glsl"
 #include "placement.glsl"
 #include "skin.glsl"
@@ -24,11 +24,11 @@ vec3 world_normal() {
   return mat3(normal_to_world) * deformed_normal(normal, stream[touch_vertex]);
 }
 
-// Not unit, and at right angles to the normal at rest only.
+// Not unit, and perpendicular to the normal only at rest.
 vec3 world_tangent() {
   vec3 t = mat3(to_world) * tangent.xyz;
   return rides() ? turned(t, normalize(mat3(normal_to_world) * normal), skin_normal(touch_vertex)) : t;
 }
 
-// [m] along the normal, of a surface that gives way.
+// [m] along the normal, of a deformable surface.
 float height() { return rides() ? 0.0 : stream[touch_vertex].w; }

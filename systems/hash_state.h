@@ -1,5 +1,5 @@
-// "Same input, same bits": a hash over every field's stream, residual and rate, every probe, every contact
-// and every node that moves.
+// "Same input, same bits": a hash over every field's stream, residual and rate, every probe, every contact and every
+// moving node.
 #pragma once
 
 #include "components/world.h"

@@ -1,4 +1,4 @@
-// The lists of systems, in order. schedule.cpp is where to start reading.
+// The lists of systems, in order. Start reading at schedule.cpp.
 #pragma once
 
 #include <vector>
@@ -9,6 +9,6 @@
 namespace pliant {
 
 std::vector<System<World>> touch_schedule();  // 1 kHz
-std::vector<System<World>> soft_schedule();   // every Simulation::soft_step, where a level has soft or rigid bodies
+std::vector<System<World>> soft_schedule();   // every Simulation::soft_step, in levels with soft or rigid bodies
 
 }  // namespace pliant

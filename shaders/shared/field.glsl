@@ -1,8 +1,8 @@
-// The force field's target at one vertex: arithmetic that is at once GLSL and C++ (systems/touch/shape.h), so that the
-// field on the GPU and the field on the processor agree to rounding. Needs shape.glsl before it. methods.md 1.3, 1.4.
+// The force field's target at one vertex. The arithmetic is valid GLSL and C++ (systems/touch/shape.h), so that the
+// field on the GPU and the field on the CPU agree to rounding. Needs shape.glsl before it. methods.md 1.3, 1.4.
 //
-// A source is three vec4: place = (center [m], 1/R^2), push = (unit normal, amplitude [m]), kind = (parameter, shape, 0, 0),
-// with shapes numbered as in components/deformable.h. Returned: (nx, ny, nz, h), added to N0 and along N0.
+// A source is three vec4: place = (center [m], 1/R^2), push = (unit normal, amplitude [m]), kind = (parameter, shape,
+// 0, 0), with shapes numbered as in components/deformable.h. Returned: (nx, ny, nz, h), added to N0 and along N0.
 
 SHARED vec2 field_profile(int shape, float u, float parameter) {
   if (shape == 4) return shape_volume(u, parameter);
@@ -42,7 +42,7 @@ SHARED vec4 field_kelvinlet(vec3 d, vec3 N, vec3 M, float inv_reach2, float ampl
   return vec4(amplitude * gradient, -amplitude * f * w.x);
 }
 
-// The same with d in place of where the source and the vertex are, and M in place of the source's normal.
+// The same with offset d instead of the positions of source and vertex, and M instead of the source's normal.
 SHARED vec4 field_target_at(vec4 place, vec4 push, vec4 kind, vec3 d, vec3 N, vec3 M) {
   int shape = int(kind.y);
   if (shape == 5) return field_kelvinlet(d, N, M, place.w, push.w, kind.x);

@@ -1,12 +1,13 @@
-// Shape functions of the force field: arithmetic that is at once GLSL and C++ (systems/touch/shape.h), so that the
-// processor and the GPU agree to rounding. methods.md 1.3; P1 section 3.
+// Shape functions of the force field: arithmetic that is valid GLSL and C++ (systems/touch/shape.h), so that the CPU
+// and the GPU agree to rounding. methods.md 1.3; P1 section 3.
 //
-// f(rho) is the share of the amplitude that a vertex at distance r = rho R from the contact gives way; f(0) = 1.
-// Each function takes u = rho^2 in [0, 1] and returns (f, df/du): the gradient along the surface is 2 (df/du) d / R^2,
-// with d the vector from the contact, so no square root is needed where f is a polynomial in u.
-// SHARED is `inline` in C++ and nothing in GLSL.
+// f(rho) is the displacement of a vertex at distance r = rho R from the contact, as a share of the amplitude; f(0) = 1.
+// Each function takes u = rho^2 in [0, 1] and returns (f, df/du). The gradient along the surface is 2 (df/du) d / R^2,
+// with d the vector from the contact, so no square root is needed where f is a polynomial in u. SHARED is `inline` in
+// C++ and nothing in GLSL.
 
-// Volume-preserving: (1-u)^3 (1 - c u). On a flat surface c = 5 leaves no net volume; force_field finds c on the mesh.
+// Volume-preserving: (1-u)^3 (1 - c u). On a flat surface c = 5 leaves no net volume; force_field solves for c on the
+// mesh.
 SHARED vec2 shape_volume(float u, float c) {
   float w = 1.0f - u;
   float w2 = w * w;
@@ -21,7 +22,7 @@ SHARED vec2 shape_wendland(float u) {
   return vec2(w3 * w * (4.0f * rho + 1.0f), -10.0f * w3);
 }
 
-// Takes a shape of infinite support to zero at u = 1: one for u < 1/4, then a C2 fall. Returns (w, dw/du).
+// Window that takes a shape of infinite support to zero at u = 1: one for u < 1/4, then a C2 fall. Returns (w, dw/du).
 SHARED vec2 shape_window(float u) {
   float s = clamp((u - 0.25f) * (4.0f / 3.0f), 0.0f, 1.0f);
   float q = 1.0f - s;
@@ -33,8 +34,8 @@ SHARED vec2 shape_windowed(vec2 f, float u) {
   return vec2(f.x * w.x, f.y * w.x + f.x * w.y);
 }
 
-// e^x for x in [-80, 0] to float precision (the polynomial of Cephes' expf): GLSL promises less for its own, and a
-// library's cannot be computed eight at a time.
+// e^x for x in [-80, 0] to float precision (the polynomial of Cephes' expf): GLSL guarantees less for its function, and
+// a library's cannot be vectorised.
 SHARED float shape_exp(float x) {
   int n = int(x * 1.44269504f - 0.5f);
   float k = float(n);
@@ -49,7 +50,7 @@ SHARED vec2 shape_gaussian(float u) {
   return shape_windowed(vec2(e, -9.0f * e), u);
 }
 
-// asin on [0, 1] to float precision (the polynomial of Cephes' asinf): GLSL promises far less for its own.
+// asin on [0, 1] to float precision (the polynomial of Cephes' asinf): GLSL guarantees far less for its function.
 SHARED float shape_asin(float x) {
   bool upper = x > 0.5f;
   float z = upper ? 0.5f * (1.0f - x) : x * x;
@@ -59,8 +60,8 @@ SHARED float shape_asin(float x) {
   return upper ? 1.57079633f - 2.0f * a : a;
 }
 
-// Rigid flat punch of radius a on a half-space, inner = (a/R)^2: 1 inside, (2/pi) asin(a/r) outside; windowed.
-// Both sides are computed and one is taken: a branch would keep the CPU from eight vertices at a time.
+// Rigid flat punch of radius a on a half-space, inner = (a/R)^2: 1 inside, (2/pi) asin(a/r) outside; windowed. Both
+// sides are computed and one is selected: a branch would prevent vectorisation on the CPU.
 SHARED vec2 shape_punch(float u, float inner) {
   bool inside = u <= inner;
   float q = inside ? 1.0f : inner / u;
@@ -80,6 +81,6 @@ SHARED vec2 shape_hertz(float u, float inner) {
   return shape_windowed(vec2(value, slope), u);
 }
 
-// How much of the field a vertex takes whose normal makes an angle with the contact's: all up to 75 degrees, nothing
-// from 90 on, so that the far side of a thin part is not dented.
+// Share of the field at a vertex, by the angle between its normal and the contact's: all up to 75 degrees, nothing from
+// 90 on. The far side of a thin part is therefore not dented.
 SHARED float shape_facing(float cosine) { return clamp(4.0f * cosine, 0.0f, 1.0f); }

@@ -13,12 +13,12 @@
 namespace pliant {
 namespace {
 
-// Of what is wanted, before safety: minus its derivatives.
+// Of the wanted force, before safety: minus its derivatives.
 struct Slopes {
-  dmat3 stiffness{0.0}, damping{0.0};                  // force by position, by velocity
-  dmat3 lever_stiffness{0.0};                          // force by turn; its transpose: torque by position
-  dmat3 turning_stiffness{0.0}, turning_damping{0.0};  // torque by turn, by spin
-  dvec3 wanted_force{0}, wanted_torque{0}, velocity{0}, spin{0}, of{0};  // `of`: velocity of what is touched
+  dmat3 stiffness{0.0}, damping{0.0};                  // -d force / d position, -d force / d velocity
+  dmat3 lever_stiffness{0.0};                          // -d force / d rotation; its transpose: -d torque / d position
+  dmat3 turning_stiffness{0.0}, turning_damping{0.0};  // -d torque / d rotation, -d torque / d spin
+  dvec3 wanted_force{0}, wanted_torque{0}, velocity{0}, spin{0}, of{0};  // `of`: velocity of the touched surface
 };
 
 dmat3 block(const Matrix6& m, int row, int column) {
@@ -28,13 +28,13 @@ dmat3 block(const Matrix6& m, int row, int column) {
   return out;
 }
 
-// Where pose and handle are those of the same moment (tool_feedback.cpp: pull_device).
+// Valid where pose and handle are of the same time (tool_feedback.cpp: pull_device).
 void add_coupling(const World& world, const ToolTouchState& tool, Slopes& slopes) {
   if (!tool.placed || !tool.sensing) return;
   const HandleModel& model = tool.model.read();
   const RigidMotion target = tool.sensed.at(model.centre);
   const CouplingForce bond = coupling_force(settings_of(world, tool), tool.handle, target);
-  // A twist of the device is one of the target by the arm between them; wrenches come back by its transpose.
+  // The device's twist maps to the target's by the arm between them; wrenches map back by its transpose.
   const Grip grip = grip_matrix(target.pose.position - tool.sensed.pose.position);
   Matrix6 arm = Matrix6::Identity();
   arm.topRows<3>() = grip;
@@ -59,7 +59,7 @@ void add_contacts(const World& world, Entity probe, Slopes& slopes) {
   });
 }
 
-// What is left of a slope matrix on its two sides where safety has let less through.
+// Remaining part of a slope matrix, applied on both sides, where the safety layer reduced the force.
 struct Passed {
   double share = 1.0;  // [1]
   dmat3 side{1.0};     // a projection
@@ -69,7 +69,7 @@ Passed passed(dvec3 wanted, dvec3 sent, const SafetyState& safety, double limit)
   const double size = length(wanted);
   if (!safety.engaged) out.share = 0.0;
   if (!(size > 1e-9)) return out;
-  if (size > limit) {  // the norm is clamped: along it nothing changes, across it as much less
+  if (size > limit) {  // the norm is clamped: no slope along the force; across it the slope scales with the share
     const dvec3 direction = wanted / size;
     out.side = dmat3(1.0) - glm::outerProduct(direction, direction);
   }
@@ -138,7 +138,7 @@ DeviceModel device_model(const World& world, Entity effector, Entity entity, Tic
     stiffness *= limits.stiffness / most;
   model.force_by_position = -stiffness;
   model.force_by_velocity = -push.share * push.side * slopes.damping * push.side * scale;
-  // Off the diagonal no more than both sides pass, so that the whole stays negative semi-definite.
+  // Off the diagonal at most the smaller share of both, so that the whole matrix stays negative semi-definite.
   model.force_by_turn = -both * push.side * slopes.lever_stiffness * turn.side;
   model.torque_by_position = glm::transpose(model.force_by_turn) * scale;
   model.torque_by_turn = -turn.share * turn.side * slopes.turning_stiffness * turn.side;

@@ -1,9 +1,9 @@
-// What the servo of a device goes by until the next touch tick: the force that was sent, and how it changes near.
+// The local model that a device's servo uses until the next touch tick: the sent force and its derivatives.
 //
-// Of a probe: the slopes of its contacts' laws along their normals, and of their bristles across them where they stick;
-// what turns the normals is left out, so that the matrices are negative semi-definite. Of a tool: the coupling to its
-// handle, which goes on with its velocity. Where the safety layer took something from the wanted force, the slopes are
-// lowered with it: of a clipped force nothing along it is left, behind a closed gate nothing at all.
+// Probe: the slopes of its contacts' laws along their normals, and of their bristles across them while they stick. The
+// rotation of the normals is left out, so that the matrices are negative semi-definite. Tool: the coupling to its
+// handle, which continues with its velocity. Where the safety layer reduced the wanted force, the slopes are reduced
+// with it. A clipped force has no slope along it; behind a closed gate all slopes are zero.
 #pragma once
 
 #include "components/world.h"
@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-// After write_devices. In the driver's metres; `time` is the tick's.
+// Called after write_devices. In the driver's metres; `time` is the tick's.
 DeviceModel device_model(const World& world, Entity effector, Entity device, Tick tick);
 
 }  // namespace pliant

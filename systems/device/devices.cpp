@@ -13,8 +13,8 @@
 namespace pliant {
 namespace {
 
-// Drivers whose motion is known beforehand are sampled here; it is in world coordinates, so `scale` is not theirs. The
-// others have written position and sensed_at themselves.
+// Samples drivers with prescribed motion. The motion is in world coordinates, so `scale` does not apply. Other drivers
+// have written position and sensed_at themselves.
 void sense(const World& world, HapticDevice& device, double time) {
   if (!device.path.valid()) return;
   const PathRow row = sample_path(world.paths[device.path], time);
@@ -23,18 +23,18 @@ void sense(const World& world, HapticDevice& device, double time) {
   device.sensed_at = time;
 }
 
-// What is not rendered is not wanted either: there is nothing to clip, and nothing that a hand misses.
+// A force that the device does not render counts as zero: it is neither clipped nor missing.
 dvec3 rendered(dvec3 wanted, bool renders) {
   return renders ? wanted : dvec3(0);
 }
 
-// A tool's wrench, by the same layer: its torque as if it were a force, work counted over the angles turned. What is
-// unknown of the one is unknown of the other, so that both are let go and engaged together. They share one account of
-// energy: a push at a fingertip is a force and a torque about the wrist, which give and take only together.
+// A tool's wrench passes the same safety layer: torque is treated like force, with work counted over rotation angles.
+// If force or torque is unknown, both are; both are released and engaged together. They share one energy account: a
+// push at a fingertip is a force and a torque about the wrist, whose work is only meaningful together.
 void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   HapticDevice& device = world.registry.get<HapticDevice>(tool.device);
   const Handle6& handle = world.registry.get<Handle6>(tool.entity);
-  const bool posed = tool.sensing || device.status != DeviceStatus::kReady;  // Ready without a pose: no pose at all
+  const bool posed = tool.sensing || device.status != DeviceStatus::kReady;  // ready without a pose: unknown pose
   const bool known = posed && tool.device_wrench.allFinite();
   const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
   soften(world, tool.entity, device, tool.force_safety);
@@ -88,7 +88,7 @@ void read_devices(World& world, Tick tick) {
   for (auto [entity, probe] : world.registry.view<Probe>()) {
     const HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
     if (!plausible_position(device.position) || !plausible_rotation(device.rotation)) {
-      world.dropped |= kDroppedNonFinite;  // the probe stays where it was; safety sends nothing
+      world.dropped |= kDroppedNonFinite;  // the probe keeps its position; safety sends no force
       probe.velocity = dvec3(0);
       probe.previous = probe.position;
       probe.previous_rotation = probe.rotation;

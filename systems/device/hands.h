@@ -1,4 +1,4 @@
-// What people hold: probes (P1) and tools (P2). Both are moved by a device and push back through it.
+// Hand-held objects: probes (P1) and tools (P2). Both are moved by a device and return force through it.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace pliant {
 
-// Every Probe, then every tool (an entity with Handle6 and SoftBody), each in the order of its making.
+// Every Probe, then every tool (an entity with Handle6 and SoftBody), each in order of creation.
 std::vector<Entity> hands(const World& world);
 
-// The device that moves this probe or tool; null where nobody does.
+// The device that moves this probe or tool; null without one.
 Entity device_of(const World& world, Entity hand);
 const HapticDevice* find_device(const World& world, Entity hand);
 

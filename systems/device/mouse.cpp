@@ -6,7 +6,7 @@ namespace pliant {
 
 namespace {
 
-// From where its path has led it, so that it does not jump.
+// Starts at the device's last position on its path, so that it does not jump.
 void take_over(World& world, Entity taken, MouseInput& mouse) {
   HapticDevice* device = taken == kNoEntity ? nullptr : world.registry.find<HapticDevice>(taken);
   if (!device || device->driver == DriverKind::kMouse) return;
@@ -32,7 +32,7 @@ void read_mouse(World& world, Tick tick) {
     for (auto [entity, probe] : world.registry.view<Probe>())
       if (world.registry.get<HapticDevice>(probe.device).driver == DriverKind::kMouse)
         probe.hold = mouse.samples.read().hold;
-    free = free_now && mouse.free && arrived;  // the way out of a press is travelled: force acts along it
+    free = free_now && mouse.free && arrived;  // the way out of a press is traversed, not jumped: force acts along it
     mouse.free = free_now;
     mouse.from = free ? mouse.to : mouse.position;
     mouse.lasts = std::max(mouse.lasts, length(mouse.to - mouse.from) / kMouseFastest);
@@ -47,7 +47,7 @@ void read_mouse(World& world, Tick tick) {
     device.sensed_at = tick.time;
   }
   if (!free) return;
-  for (auto [entity, probe] : world.registry.view<Probe>())  // no segment from where it was before
+  for (auto [entity, probe] : world.registry.view<Probe>())  // no swept segment from the earlier position
     if (world.registry.get<HapticDevice>(probe.device).driver == DriverKind::kMouse) probe.placed = false;
 }
 

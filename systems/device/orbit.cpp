@@ -15,9 +15,9 @@ namespace {
 constexpr double kApproachTime = 0.8, kPressTime = 0.5, kSlideTime = 1.6, kLiftTime = 0.5, kReturnTime = 0.6;  // [s]
 constexpr double kPeriod = kApproachTime + kPressTime + kSlideTime + kLiftTime + kReturnTime;                  // [s]
 constexpr double kStep = 0.005;        // [s] between rows
-constexpr double kClearance = 0.12;    // [1] of the diagonal: how far out the approach begins
+constexpr double kClearance = 0.12;    // [1] of the diagonal: distance at which the approach begins
 constexpr double kSlideLength = 0.15;  // [1] of the diagonal
-constexpr double kDepthShare = 0.2;    // [1] of the reach: how deep it presses
+constexpr double kDepthShare = 0.2;    // [1] of the reach: pressing depth
 constexpr int kSlidePoints = 64;
 
 struct Hit {
@@ -41,7 +41,7 @@ std::optional<Hit> cast(const World& world, dvec3 from, dvec3 to) {
   return best;
 }
 
-// For what has a hole in its middle, such as a ring: rays along vertex normals, from above where there are such.
+// For objects with a hole in the middle, such as a ring: rays along vertex normals, preferably from above.
 std::optional<Hit> cast_at_vertices(const World& world, unsigned index, double out) {
   constexpr unsigned kAttempts = 64;
   for (const double least_up : {0.3, -1.0}) {
@@ -63,7 +63,7 @@ double smooth(double s) {
   return s * s * s * (10 + s * (6 * s - 15));
 }  // minimum jerk
 
-// Points on the surface from the first hit along a tangent, as far as the surface goes on without a jump.
+// Points on the surface from the first hit along a tangent, up to the first jump of the surface.
 std::vector<Hit> slide_line(const World& world, const Hit& first, double size) {
   const dvec3 helper = std::abs(first.normal.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
   const dvec3 along = normalize(cross(helper, first.normal));
@@ -86,7 +86,7 @@ Box world_box(const Mesh& mesh, const Pose& pose) {
   return box;
 }
 
-// The highest place of anything else under a box. [m]
+// The highest point of any other object under a box. [m]
 std::optional<double> ground_below(const World& world, Entity tool, const Box& box) {
   std::optional<double> ground;
   const auto offer = [&](Entity entity, Handle<Mesh> mesh, const Pose& pose) {
@@ -143,8 +143,8 @@ Path make_orbit(const World& world, unsigned index, double radius) {
   Path path;
   if (bounds.empty()) return path;
 
-  // The first direction, seen from the front and above, from which something can be entered; each probe begins its
-  // search elsewhere on the golden spiral, so that they take different places.
+  // The first direction, from the front and above, whose ray hits an object. Each probe begins its search elsewhere on
+  // the golden spiral, so that they take different places.
   const dvec3 center(bounds.center());
   const double out = bounds.diagonal();
   std::optional<Hit> first;
@@ -171,7 +171,7 @@ Path make_orbit(const World& world, unsigned index, double radius) {
   };
   const double away = kClearance * size;
   const dvec3 start = on_line(0, away), finish = on_line(1, away);
-  const double late = 0.37 * index;  // [s] phase, so that several orbits do not press together
+  const double late = 0.37 * index;  // [s] phase offset, so that several orbits do not press together
   path.repeats = true;
   for (double t = 0; t < kPeriod; t += kStep) {
     double s = t;

@@ -5,8 +5,8 @@
 
 namespace pliant {
 
-// Linear in between, slerp for rotation; before the first row the first, after the last the last (or from the start
-// again where the path repeats). The path has at least one row.
+// Linear interpolation, slerp for rotation. Clamped to the first and last row; a repeating path starts over. The path
+// has at least one row.
 PathRow sample_path(const Path& path, double time);
 
 }  // namespace pliant

@@ -51,7 +51,7 @@ void repeat_scripts(World& world) {
       if (device.driver == DriverKind::kScript && device.path.valid() && !world.paths[device.path].repeats) act(device);
   };
   each([&](const HapticDevice& device) { period = std::max(period, period_of(world.paths[device.path])); });
-  std::map<std::uint32_t, Handle<Path>> made;  // of each path, which devices may share
+  std::map<std::uint32_t, Handle<Path>> made;  // per path, which devices may share
   each([&](HapticDevice& device) {
     const auto [path, is_new] = made.try_emplace(device.path.index);
     if (is_new) path->second = world.paths.add(repeated(world.paths[device.path], period));

@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-// Of a symmetric matrix, at least its largest eigenvalue: its largest row sum.
+// An upper bound of the largest eigenvalue of a symmetric matrix: its largest row sum.
 double at_least_largest(const dmat3& m) {
   double most = 0.0;
   for (int i = 0; i < 3; ++i) most = std::max(most, std::abs(m[0][i]) + std::abs(m[1][i]) + std::abs(m[2][i]));

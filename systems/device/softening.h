@@ -1,10 +1,10 @@
-// What a device renders stably is limited (DeviceCapabilities::max_stiffness), and what is touched may be stiffer. Then
-// the hand gets as much less of the whole force as that is too stiff. To lower the slope between two ticks alone is not
-// enough: at 1 kHz the ticks' forces themselves follow the stiff surface. To let the force rise slowly and fall fast,
-// as a level's max_stiffness does (systems/safety), is passive in the tick and still shakes a device with a delay.
+// A device has a largest stiffness that it renders stably (DeviceCapabilities::max_stiffness). If the touched object is
+// stiffer, the whole force is scaled down by the ratio. Lowering only the slope between two ticks is not enough: at 1
+// kHz the ticks' forces themselves follow the stiff surface. A force that rises slowly and falls fast, as with a
+// level's max_stiffness (systems/safety), is passive in the tick, but still makes a device with a delay oscillate.
 //
-// A share of a passive force is passive while the share does not grow: it falls at once, and begins anew at 1 only
-// where nothing is touched.
+// A share of a passive force is passive while the share does not grow. It therefore falls at once, and returns to 1
+// only where nothing is touched.
 #pragma once
 
 #include "components/world.h"
@@ -12,15 +12,14 @@
 
 namespace pliant {
 
-// [N/m] per metre of the world: how steeply what this probe or tool feels grows with its pose, at most. Of a probe, the
-// laws of its contacts along their normals; bristles are left out, since friction bounds what they give. Of a tool, its
-// coupling.
+// [N/m] per metre of the world: upper bound of the stiffness that this probe or tool feels. Probe: the laws of its
+// contacts along their normals; bristles are left out, since friction bounds their force. Tool: its coupling.
 double felt_stiffness(const World& world, Entity effector);
 
-// Writes state.share for this tick. Before the force goes into the safety layer.
+// Writes state.share for this tick. Called before the force enters the safety layer.
 void soften(const World& world, Entity effector, const HapticDevice& device, SafetyState& state);
 
-// Of a probe or tool that is prepared; null of others. Its force's.
+// SafetyState of the force of a prepared probe or tool; null for others.
 SafetyState* safety_of(World& world, Entity hand);
 
 }  // namespace pliant

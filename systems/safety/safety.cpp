@@ -10,31 +10,31 @@ bool finite(dvec3 v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// The norm, never each axis: the direction must stay. A limit that is no number lets nothing through.
+// Clamps the norm, never each axis: the direction must be kept. A NaN limit gives zero force.
 dvec3 clamp_norm(dvec3 v, double most) {
   if (!(most > 0.0)) return dvec3(0);
   const double size = length(v);
   return size > most ? v * (most / size) : v;
 }
 
-// Only what senses a person can be stale; scripted motion has no age.
+// Only devices that sense a person can be stale; scripted motion has no age.
 bool stale(const HapticDevice& device, double now) {
   return (device.driver == DriverKind::kExternal || device.driver == DriverKind::kMouse) &&
          now - device.sensed_at > kStaleAfter;
 }
 
-// How large the component along the motion may be, if it is to come down to zero inside the slew limit without giving
-// more than `budget` [J]; the hand goes on by `step` [m] a tick, the force falls by at most `fall` [N] a tick. From p
-// the trapezoids sum to p * step where one tick suffices, else to at most (p/2 + p^2/(2 fall) + fall/8) * step.
+// Largest component along the motion that can be brought to zero within the slew limit without returning more than
+// `budget` [J]. The hand moves by `step` [m] per tick; the force falls by at most `fall` [N] per tick. From p the
+// trapezoids sum to p * step if one tick suffices, else to at most (p/2 + p^2/(2 fall) + fall/8) * step.
 double stoppable(double budget, double step, double fall) {
   const double mean = budget / step;
   const double over_ticks = fall > 0 ? fall * (std::sqrt(2 * mean / fall) - 0.5) : 0.0;
   return std::max(std::min(mean, fall), over_ticks);
 }
 
-// Reduces the component of the force along the motion where the hand would get more energy than it gave. Beyond zero
-// only to take out what was given too much, in proportion to the speed of a slow hand, and never by more than the
-// wanted force: in free space nothing drags. Components across the motion stay.
+// Passivity controller: reduces the component of the force along the motion where the hand would get more energy than
+// it gave. It opposes the motion only to dissipate excess energy, in proportion to the speed of a slow hand. It never
+// exceeds the wanted force: in free space there is no drag. Components across the motion are unchanged.
 dvec3 damp_excess(const SafetyState& state, const SafetyLimits& limits, dvec3 wanted, dvec3 weight, dvec3 dx,
                   double dt) {
   const double way = length(dx);
@@ -42,8 +42,8 @@ dvec3 damp_excess(const SafetyState& state, const SafetyLimits& limits, dvec3 wa
   const dvec3 along = dx / way;
   const double step = kPassivityReserve * way;
   const double given = state.work + 0.5 * dot(state.force - state.weight, dx);
-  // The trapezoid of a spring that the hand leaves in the middle of a step is off by up to |df| step / 8, and by as
-  // much where the hand came in: what sampling does is not taken for the law's.
+  // The trapezoid of a spring that the hand leaves in the middle of a step has an error of up to |df| step / 8, and the
+  // same on entry. This sampling error is not attributed to the law.
   const double sampling = 0.25 * length(wanted - weight - state.wanted) * way;
   const double budget = kPassivityShare * state.stored + kPassivityFloor + sampling - given;
   const double beside = dot(wanted - weight, along), total = dot(wanted, along), size = length(wanted);
@@ -53,15 +53,15 @@ dvec3 damp_excess(const SafetyState& state, const SafetyLimits& limits, dvec3 wa
   } else {
     most = -std::min(-budget / step, size * std::min(1.0, way / (limits.slow * dt)));
   }
-  // What is added against the motion may not make the whole larger than the device's limit.
+  // The force added against the motion must not bring the whole above the device's limit.
   const double across = std::max(0.0, size * size - total * total);
   const double room = total + std::sqrt(std::max(0.0, limits.force * limits.force - across));
   const double reduction = std::min({beside - most, size, room});
   return reduction > 0 ? wanted - reduction * along : wanted;
 }
 
-// `force` without as much as may go at once, at most `most`, of what no longer is in `wanted`: never across, so that
-// nothing comes in by it.
+// Removes the part of `force` that is no longer in `wanted`, at most `most`. Only along the force, so that no new force
+// appears.
 dvec3 let_fall(dvec3 force, dvec3 wanted, double most) {
   const double size = length(force);
   if (!(size > 0.0)) return force;
@@ -69,7 +69,7 @@ dvec3 let_fall(dvec3 force, dvec3 wanted, double most) {
   return kept < size ? force * (std::max(kept, size - most) / size) : force;
 }
 
-// Of a level's limit and a driver's, where 0 is: not said.
+// The smaller of a level's limit and a driver's; 0: none given.
 double smaller(double level, double driver) {
   return driver > 0.0 ? std::min(level, driver) : level;
 }
@@ -79,7 +79,7 @@ void book(SafetyState& state, dvec3 force, dvec3 weight, dvec3 dx) {
   state.stored = std::max(state.stored, -state.work);
 }
 
-// [s] Of ticks before this one that could not begin.
+// [s] Length of the ticks before this one that could not begin.
 double missed_before(SafetyState& state, double now, double dt) {
   const double missed = state.ticked ? now - state.ticked_at - dt : 0.0;
   state.ticked = true;
@@ -87,8 +87,8 @@ double missed_before(SafetyState& state, double now, double dt) {
   return missed > 0.5 * dt ? missed : 0.0;
 }
 
-// After `missed` [s]: `force` has risen meanwhile, and comes in from what the device still has. The way that the hand
-// has gone is counted as if the force had been there, so that it owes nothing for the rise.
+// After `missed` [s]: `force` has risen meanwhile; it fades in from the last force sent. The hand's work is counted as
+// if the force had been present, so that the rise creates no energy deficit.
 void ease_in(SafetyState& state, dvec3 force, dvec3 weight, dvec3 dx, double missed) {
   const double size = length(force), has = length(state.force);
   if (missed < kEasedFrom || !(size > has)) return;
@@ -124,7 +124,7 @@ SafetyLimits force_limits(const HapticDevice& device) {
   SafetyLimits limits;
   limits.scale = device.workspace;
   limits.force = can.renders_force ? smaller(device.max_force, can.max_force) : 0.0;
-  limits.stiffness = device.max_stiffness * limits.scale;  // the driver's: systems/device/softening.h
+  limits.stiffness = device.max_stiffness * limits.scale;  // in the driver's metres: systems/device/softening.h
   limits.slew = device.max_slew;
   return limits;
 }
@@ -206,15 +206,15 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
     count(state.tally, SafetyLimit::kWithheld, length(force - passive), length(force));
     double most = limits.slew * dt;
     if (limits.stiffness > 0) {
-      // The force may grow no faster with displacement than the device can render stably; it may always fall. What
-      // comes in of a weight is no answer to displacement.
+      // The force may grow with displacement no faster than the device can render stably; it may always fall. The
+      // fade-in of a weight is not a response to displacement.
       const double rise = limits.stiffness * length(dx) + length(weight - state.weight) + limits.own_rise;
       if (length(passive) > length(state.force)) most = std::min(most, rise);
     }
     dvec3 last = state.force;
     if (limits.fall > limits.slew) {
       last = let_fall(state.force, passive, limits.fall * dt);
-      most = std::min(most, limits.fall * dt - length(state.force - last));  // what comes in has the rest
+      most = std::min(most, limits.fall * dt - length(state.force - last));  // the rest is left for the rise
     }
     force = last + clamp_norm(passive - last, most);
     count(state.tally, SafetyLimit::kSlewed, length(passive - force), std::max(length(passive), length(force)));
@@ -227,7 +227,7 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
     state.weight = weight;
     return result;
   }
-  // Unknown: nothing leaves, at once, and the gate must be passed again. Work stays counted.
+  // Unknown state: zero force at once, and the gate must be passed again. The work account is kept.
   state.engaged = false;
   state.placed = false;
   state.eased = 1.0;

@@ -1,31 +1,31 @@
-// What may leave for a hand: finite, clamped, slew-limited, passive force, and nothing at all while anything is
-// unknown. Order: finite -> status -> engage gate -> norm clamp -> passivity -> stiffness limit -> slew. What is
-// written to a device is what comes out, unchanged: the account of work is of what the hand got. Whatever is taken from
-// the wanted force while the pose is known is counted (SafetyTally), so that a run can report it.
+// Safety layer of the force sent to a hand: finite, clamped, slew-limited, passive; zero while any input is unknown.
+// Order: finite -> status -> engage gate -> norm clamp -> passivity -> stiffness limit -> slew. The output is written
+// to the device unchanged, so the work account is that of the hand. Any reduction of the wanted force while the pose is
+// known is counted (SafetyTally), so that a run can report it.
 //
-// Passivity (methods.md 1.9). An observer adds up the work on the hand over the whole history, trapezoidal. The force
-// may give back what it took, and kPassivityShare of the most that the hand had stored beside. What would go beyond is
-// taken out by damping: only the component along the motion is reduced, and early enough that the slew limit suffices.
-// Setting the force to zero instead lost: in the middle of a contact that is a jump, and the hand feels a hole.
+// Passivity (methods.md 1.9). An observer integrates the work on the hand over the whole history, by trapezoids. The
+// force may return the energy that it received, plus kPassivityShare of the largest stored energy. Any excess is
+// dissipated by damping: only the component along the motion is reduced, and early enough that the slew limit suffices.
+// Rejected: setting the force to zero, since in the middle of a contact that is a jump, felt as a hole.
 //
-// A tool that nothing carries hangs in the hand: what is wanted of a device that comes back to it is never small. As
-// its weight is known beforehand, the gate also opens on what is wanted beside it; then the weight comes in from zero
-// over kWeightTime. The observer counts work beside the weight: lowered, it may give what lifting it took. Where
-// something else bears it while it is lifted, the observer stands above zero, and lowering it is damped until it does
-// not.
+// A tool without weight compensation hangs in the hand: on reconnection of a device, the wanted force is never small.
+// Its weight is known beforehand, so the gate opens on the wanted force without the weight. The weight then fades in
+// from zero over kWeightTime. The observer excludes the weight's work: lowering may return the energy of lifting. If
+// something else supports the weight while the tool is lifted, the observer is above zero, and lowering is damped until
+// it is not.
 //
-// A device that is farther from its last place than a hand gets in that time did not move there: tracking was lost, or
-// the device was taken elsewhere. No work is counted for the way, the force goes to zero within the slew limit, and the
-// gate must be passed again.
+// A device that is farther from its last position than a hand can move in that time did not move there: tracking was
+// lost, or the device was relocated. No work is counted for that displacement, the force goes to zero within the slew
+// limit, and the gate must be passed again.
 //
-// The slew limit is for what comes in. What of the last force is no longer wanted falls at kLeastFall at least: a limit
-// set low may not hold a hand, nor keep it from a lowered max_force.
+// The slew limit applies to rising force. Force that is no longer wanted falls at least at kLeastFall: a low limit must
+// neither hold the hand back nor delay a lowered max_force.
 //
-// A tick that comes late has not had the time of those that it missed: its force may rise by one tick's slew, and after
-// kEasedFrom what rose meanwhile comes in over kEase, from the force that left last.
+// After missed ticks the force may rise by one tick's slew only. After kEasedFrom, the force that rose meanwhile fades
+// in over kEase, from the last force sent.
 //
-// A surface that a prescribed motion carries may push a hand, as an engine would: passivity and the limit on stiffness
-// hold for the hand's motion against that surface. Clamp and slew bound what the engine can do.
+// A surface with prescribed motion may push a hand, as a motor would: passivity and the stiffness limit apply to the
+// hand's motion relative to that surface. Clamp and slew bound the rest.
 #pragma once
 
 #include <array>
@@ -37,51 +37,52 @@ namespace pliant {
 
 // Tunables of the safety layer. Unit, usual value, and what changing it does.
 inline constexpr double kEngageForce = 0.2;        // [N] the gate opens once the computed force has been below this
-inline constexpr double kWeightTime = 0.5;         // [s] in which a weight comes into the hand, once the gate is open
+inline constexpr double kWeightTime = 0.5;         // [s] in which a weight fades in, once the gate is open
 inline constexpr double kStaleAfter = 0.010;       // [s] a pose older than this counts as lost
 inline constexpr double kPassivityReserve = 1.05;  // [1] the next step is assumed this much longer than the last
-inline constexpr double kPassivityShare = 1e-3;    // [1] of the largest stored energy, which the hand may get beside
+inline constexpr double kPassivityShare = 1e-3;    // [1] of the largest stored energy: what the hand may get in
+                                                   // addition
 inline constexpr double kPassivityFloor = 1e-12;   // [J] what rounding may add
 inline constexpr double kCountedShare = 0.01;      // [1] of the wanted force: less missing is not counted
 inline constexpr double kCountedForce = 1e-3;      // [N] less missing is not counted
 inline constexpr double kSlowHand = 0.01;          // [m/s] a slower hand is damped in proportion to its speed
-inline constexpr double kSlowTurn = 0.2;           // [rad/s] the same of what turns
+inline constexpr double kSlowTurn = 0.2;           // [rad/s] the same for rotation
 
-inline constexpr double kFastestHand = 20.0;   // [m/s] what is faster is a jump, not a hand's motion
-inline constexpr double kFastestTurn = 200.0;  // [rad/s] the same of what turns
+inline constexpr double kFastestHand = 20.0;   // [m/s] a faster motion is a jump, not a hand's
+inline constexpr double kFastestTurn = 200.0;  // [rad/s] the same for rotation
 
-inline constexpr double kLeastFall = 1000.0;  // [N/s] force that is no longer wanted falls as fast as this at least
+inline constexpr double kLeastFall = 1000.0;  // [N/s] least rate at which force that is no longer wanted falls
 
-inline constexpr double kEasedFrom = 0.0105;  // [s] without a tick, then what rose meanwhile comes in slowly,
-inline constexpr double kEase = 0.015;        // [s] in this time
+inline constexpr double kEasedFrom = 0.0105;  // [s] without a tick, after which the force fades in
+inline constexpr double kEase = 0.015;        // [s] over this time
 
-inline constexpr double kFarthest = 1e6;  // [m] a pose farther from the origin is a device's error
+inline constexpr double kFarthest = 1e6;  // [m] a pose farther from the origin is invalid
 
-// [1] How far from unit length a rotation may be: then it is normalised. Farther, it is no pose.
+// [1] Largest deviation of a rotation from unit length: within it, it is normalised; beyond, it is invalid.
 inline constexpr double kUnitWithin = 0.01;
 
-// A rotation that means something: finite and of about unit length.
+// A valid rotation: finite and of about unit length.
 bool plausible_rotation(dquat rotation);
 
-// Finite and not absurdly far away: a position that means something.
+// A valid position: finite and not absurdly far away.
 bool plausible_position(dvec3 position);
 
-// Why a hand got less than, or other than, what was wanted.
+// Reasons for a difference between the sent and the wanted force.
 enum class SafetyLimit : std::uint8_t {
   kClipped,   // wanted more than the device's largest force
-  kWithheld,  // taken out by damping, because the hand would have got more energy than it gave
+  kWithheld,  // reduced by damping, because the hand would have got more energy than it gave
   kGated,     // the gate is closed until the wanted force has been small
-  kSlewed     // the wanted force changed faster than the slew limit or the stiffness limit lets it
+  kSlewed     // the wanted force changed faster than the slew or stiffness limit allows
 };
 inline constexpr std::size_t kSafetyLimits = 4;
 
-// In how many ticks a limit acted, and how much was missing at most, as a share of what was wanted [1].
+// Number of ticks in which a limit acted, and its largest reduction as a share of the wanted force [1].
 struct LimitCount {
   std::uint64_t ticks = 0;
   double largest_share = 0.0;
 };
 
-// Since the start. Clipped ticks all count; the others where both kCountedShare and kCountedForce are missing.
+// Since the start. All clipped ticks count; the others only above both kCountedShare and kCountedForce.
 struct SafetyTally {
   std::array<LimitCount, kSafetyLimits> counts;
   std::uint8_t now = 0;  // the last tick's, as bits: 1 << SafetyLimit
@@ -94,26 +95,26 @@ constexpr std::uint8_t bit(SafetyLimit limit) {
 }
 
 struct SafetyState {
-  double share = 1.0;  // [1] of what is felt that may leave: its device renders no stiffer (systems/device/softening.h)
-  double least_share = 1.0;  // [1] that it ever was
-  bool felt = true;          // false: the guard behind let nothing leave after this tick (engine/run/driver_link.h)
+  double share = 1.0;        // [1] share of the force that is sent: stiffness limit (systems/device/softening.h)
+  double least_share = 1.0;  // [1] its minimum so far
+  bool felt = true;          // false: the guard behind blocked the force after this tick (engine/run/driver_link.h)
   bool engaged = false;      // gate: closed at start and after every loss, opens on a small computed force
-  double hidden = 0.0;       // [1] share of the weight that is not felt yet
+  double hidden = 0.0;       // [1] share of the weight that has not faded in yet
   dvec3 weight{0};           // [N] last tick's, as felt
-  bool placed = false;       // `position` means something
-  double sensed_at = 0.0;    // [s] last tick's pose's
+  bool placed = false;       // `position` is valid
+  double sensed_at = 0.0;    // [s] of the last tick's pose
   dvec3 position{0};         // [m] last tick's, in the hand's metres
   dvec3 force{0};            // [N] last tick's, as sent
-  dvec3 added{0};            // [N] world: the program's own, wanted beside what is touched
-  double added_share = 0.0;  // [1] of it that may have come in, once the gate is open
-  dvec3 own{0};              // [N] as much of it as is wanted now
-  dvec3 wanted{0};           // [N] last tick's beside the weight, clamped to the device's limit
-  double work = 0.0;         // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx
-  double stored = 0.0;       // [J] the largest that -work has been
-  bool ticked = false;       // `ticked_at` means something
+  dvec3 added{0};            // [N] world: the program's additional force
+  double added_share = 0.0;  // [1] share of it that has faded in, once the gate is open
+  dvec3 own{0};              // [N] its currently wanted part
+  dvec3 wanted{0};           // [N] last tick's without the weight, clamped to the device's limit
+  double work = 0.0;         // [J] done on the hand so far, without the weight: sum of (f0 + f1)/2 . dx
+  double stored = 0.0;       // [J] the maximum of -work so far
+  bool ticked = false;       // `ticked_at` is valid
   double ticked_at = 0.0;    // [s] the last tick
-  double eased = 1.0;        // [1] share of what is wanted that may leave since ticks were missed
-  double easing = 0.0;       // [1/s] how fast it grows
+  double eased = 1.0;        // [1] share of the wanted force allowed since missed ticks
+  double easing = 0.0;       // [1/s] its rate of growth
   SafetyTally tally;
 };
 
@@ -124,33 +125,34 @@ struct SafetyResult {
   SafetyEvent event = SafetyEvent::kNone;
 };
 
-// What the layer holds to. A torque has the same, in [N m], [N m/rad], [N m/s] and [rad/s]. Stiffness, speeds and work
-// are of the hand: where a driver's workspace is scaled to the world, a metre of the hand is `scale` metres of it.
+// Limits of the layer. For torques the same, in [N m], [N m/rad], [N m/s] and [rad/s]. Stiffness, speeds and work are
+// in the hand's units: if a driver's workspace is scaled to the world, a metre of the hand is `scale` metres of the
+// world.
 struct SafetyLimits {
   double force = 0.0;             // [N]
   double stiffness = 0.0;         // [N/m] of the hand's metres; 0: none
   double slew = 0.0;              // [N/s]
-  dvec3 weight{0};                // [N] part of what is wanted: of a tool that nothing carries
+  dvec3 weight{0};                // [N] part of the wanted force: weight of a tool without compensation
   double slow = kSlowHand;        // [m/s]
-  dvec3 carried{0};               // [m] world; how far the surface that is touched has come along in this tick
+  dvec3 carried{0};               // [m] world; displacement of the touched surface in this tick
   double fastest = kFastestHand;  // [m/s]
-  bool jumped = false;            // whatever `position` says: the device is somewhere else
-  double fall = kLeastFall;       // [N/s] force that is no longer wanted falls so fast where `slew` is lower
+  bool jumped = false;            // the device is elsewhere, regardless of `position`
+  double fall = kLeastFall;       // [N/s] rate of fall of force that is no longer wanted, if `slew` is lower
   double scale = 1.0;             // [1] world metres per metre of the hand
-  double own_rise = 0.0;          // [N] change of the program's own part in this tick: no answer to displacement
+  double own_rise = 0.0;          // [N] change of the program's part in this tick: not a response to displacement
 };
 
-// `pressed` [N] with the program's own part (SafetyState::added). The gate judges what is touched: while it is closed
-// the part is zero, and behind it comes in over kWeightTime; whenever it changes, within the slew limit. In the safety
-// layer it then counts like any other force.
+// `pressed` [N] plus the program's part (SafetyState::added). The gate depends on the contact force only. While it is
+// closed the part is zero; afterwards it fades in over kWeightTime. Changes obey the slew limit. The safety layer
+// treats it like any other force.
 dvec3 with_own(SafetyState& state, SafetyLimits& limits, dvec3 pressed, double dt);
 
-// Of the level and of the driver, the smaller. What is not rendered has the limit 0.
+// The smaller of the level's and the driver's limits. 0 for components that are not rendered.
 SafetyLimits force_limits(const HapticDevice& device);
 SafetyLimits torque_limits(const HapticDevice& device, const HandleParameters& handle);
 
-// Whether the device has come to `position` faster than a hand can. A device that is sampled more slowly than the touch
-// clock has had the time since its last sample.
+// Whether the device reached `position` faster than a hand can. For a device sampled more slowly than the touch clock,
+// the time since its last sample counts.
 bool jumps(const SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 position, double dt);
 
 // `wanted` [N] world, `position` [m] world, now [s], dt [s]. Without limits: the device's for forces.

@@ -101,12 +101,12 @@ void add_yielding(const World& world, SoftState& soft) {
   }
 }
 
-// Everything of the size that it will have.
+// All arrays have their final size.
 SoftSnapshot first_snapshot(const SoftState& soft) {
   SoftSnapshot snapshot;
   snapshot.contacts.reserve(kMaxShownContacts);
   for (const std::uint32_t i : soft.moving) {
-    if (soft.bodies[i]->kind == BodyKind::kProbe) continue;  // a marker shows it
+    if (soft.bodies[i]->kind == BodyKind::kProbe) continue;  // shown by a marker
     snapshot.objects.emplace_back();
     soft.bodies[i]->show(snapshot.objects.back());
     if (const auto* tissue = soft.bodies[i]->as_tissue())
@@ -120,7 +120,7 @@ SoftSnapshot first_snapshot(const SoftState& soft) {
   return snapshot;
 }
 
-// Whether one of these points has come through the body's collision mesh, all of which is still at rest.
+// Whether one of these points has passed through the body's collision mesh, which is entirely at rest.
 bool come_through(const World& world, const Body& body, const std::vector<dvec3>& from, const std::vector<dvec3>& to) {
   const Pose pose = pose_of(world, body.entity);
   for (std::size_t i = 0; i < from.size(); ++i)
@@ -128,8 +128,8 @@ bool come_through(const World& world, const Body& body, const std::vector<dvec3>
   return false;
 }
 
-// Tools' tissue begins as it rests. It settles without contacts: where it came through something, it begins in its rest
-// shape and falls on it instead.
+// Tissue of tools begins in equilibrium. It settles without contacts; if it passed through something, it begins in its
+// rest shape and falls onto it instead.
 void settle_tools(const World& world, SoftState& soft) {
   for (const std::unique_ptr<Body>& body : soft.bodies) {
     auto* tool = body->as_tool();
@@ -169,7 +169,7 @@ Status prepare_soft(World& world) {
   const double T = world.simulation.soft_step;
   if (!(T > 0.0 && T <= 1.0))
     return Error{"PLIANT_simulation/soft_step", fmt::format("is {} s; give more than 0 and at most 1 s", T)};
-  if (world.touch->presses) add_yielding(world, *soft);  // probes press them by themselves
+  if (world.touch->presses) add_yielding(world, *soft);  // with probes alone, P1 handles these surfaces
   settle_tools(world, *soft);
   soft->proximity = std::make_unique<Proximity>(soft->bodies);
   world.soft_snapshots = std::make_unique<TripleBuffer<SoftSnapshot>>(first_snapshot(*soft));

@@ -1,4 +1,4 @@
-// Between load and the first soft step: a Body for everything that contacts can push or press.
+// Between load and the first soft step: creates a Body for everything that contacts can push or press.
 #pragma once
 
 #include "components/soft_body.h"
@@ -8,12 +8,12 @@
 
 namespace pliant {
 
-// What a rigid body of these parameters weighs, by its collision mesh. An error where it encloses nothing.
+// Mass properties of a rigid body with these parameters, from its collision mesh. An error if it encloses no volume.
 Result<RigidMass> rigid_mass(const World& world, Entity entity, const RigidBody& body);
 
-// Call after prepare_touch and prepare_tools. Makes World::soft and World::soft_snapshots anew from SoftBody, RigidBody
-// and Deformable; where nothing soft or rigid could move they are null, and there is no soft clock. Refuses bodies that
-// weigh nothing, and a soft_step that is no duration. Allocates.
+// Call after prepare_touch and prepare_tools. Rebuilds World::soft and World::soft_snapshots from SoftBody, RigidBody
+// and Deformable. Without movable soft or rigid bodies they are null, and there is no soft clock. Rejects bodies
+// without mass, and an invalid soft_step. Allocates.
 Status prepare_soft(World& world);
 
 }  // namespace pliant

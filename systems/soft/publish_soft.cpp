@@ -41,7 +41,7 @@ void show_bodies(const SoftState& soft, SoftSnapshot& out) {
   }
 }
 
-// Those that push; then, while there is room, those that are only near.
+// Pushing contacts first; then, while there is room, those that are only near.
 void show_contacts(const SoftState& soft, double T, SoftSnapshot& out) {
   out.contact_count = static_cast<std::uint32_t>(soft.contacts.size());
   out.contacts.clear();

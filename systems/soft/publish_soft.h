@@ -1,4 +1,4 @@
-// Bodies, contacts and handles -> SoftSnapshot for whoever draws; presses -> touch clock.
+// Bodies, contacts and handles -> SoftSnapshot for the visual clock; presses -> touch clock.
 #pragma once
 
 #include "components/world.h"

@@ -1,5 +1,5 @@
-// The soft step's working memory. Writer: the soft clock; what the touch clock needs of it travels in HandleModel
-// (handle_model.h), what it must know of the hand in ToolInput.
+// The soft step's working memory. Writer: the soft clock. The touch clock receives HandleModel (handle_model.h) and
+// sends ToolInput.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 
 namespace pliant {
 
-// [1] beta 0.1-0.2: the share of a penetration that a soft step undoes. More adds energy, less leaves bodies sunk in.
+// [1] beta 0.1-0.2: share of a penetration corrected by a soft step. More adds energy, less leaves bodies sunk in.
 inline constexpr double kPenetrationShare = 0.15;
 
 // [ms] of the last step, by stage.
@@ -29,23 +29,23 @@ struct SoftTimes {
   double free_motion = 0, proximity = 0, delassus = 0, sweeps = 0, linearise = 0, total = 0;
 };
 
-// What soft steps had to leave imperfect, from the first one on. For reports: read once the clocks stand still.
+// Imperfections of soft steps, since the first one. For reports: read once the clocks have stopped.
 struct SoftTally {
-  std::uint64_t contacts_cut = 0;  // left out of a solve because a limit was reached, summed over the steps
-  std::uint64_t unconverged = 0;   // steps, some part of which ended above the stated residual
-  double residual = 0.0;           // [m/s] the largest that a step ended with
-  double deepest = 0.0;            // [m] >= 0: the deepest penetration that a step began with
-  std::uint64_t halted = 0;        // times that bodies stopped in a step before a crossing that no contact prevented
-  double halted_for = 0.0;         // [s] that they stood still, as the step had no more parts
+  std::uint64_t contacts_cut = 0;  // contacts dropped because a limit was reached, summed over the steps
+  std::uint64_t unconverged = 0;   // steps with a part that ended above the required residual
+  double residual = 0.0;           // [m/s] largest final residual of a step
+  double deepest = 0.0;            // [m] >= 0: largest penetration at the beginning of a step
+  std::uint64_t halted = 0;        // number of times that bodies stopped in a step before an unprevented crossing
+  double halted_for = 0.0;         // [s] time lost by it, as the step had no more parts
 
-  // [m] How deep the first step found bodies in each other, at most, beyond 1 % of the smaller one's diagonal; and who.
+  // [m] Largest initial penetration in the first step, if beyond 1 % of the smaller body's diagonal; and its bodies.
   double began_inside = 0.0;
   std::uint32_t inside_a = 0, inside_b = 0;  // into SoftState::bodies
 };
 
-// Parameters of a body that change between steps, all of its kind.
+// Parameters of a body that may change between steps, for each kind.
 struct RigidSetting {
-  RigidMass mass;  // of a body that moves
+  RigidMass mass;  // of a movable body
   double friction_static = 0.4, friction_sliding = 0.3;
 };
 struct SoftSetting {
@@ -57,11 +57,11 @@ struct ParameterEdit {
   Entity body;
   std::variant<DeformableParameters, RigidSetting, SoftSetting, CouplingSetting> now;
 };
-inline constexpr std::size_t kMostParameterEdits = 256;  // that wait for a step
+inline constexpr std::size_t kMostParameterEdits = 256;  // capacity of the queue
 
 struct SoftState {
   std::vector<std::unique_ptr<Body>> bodies;  // fixed ones too
-  std::vector<std::uint32_t> moving;          // those with degrees of freedom, which a snapshot shows
+  std::vector<std::uint32_t> moving;          // those with degrees of freedom, which are in the snapshot
   std::vector<std::uint32_t> yielding;        // YieldingBody, one per Deformable
   std::unique_ptr<Proximity> proximity;
   std::vector<ContactPoint> contacts;  // of the last step, with their impulses
@@ -71,17 +71,17 @@ struct SoftState {
   SoftTally tally;
   SoftTimes times;
   std::uint64_t steps = 0;                                   // done
-  int parts = 1, part = 0;                                   // of the step under way (run_soft_step)
+  int parts = 1, part = 0;                                   // of the current step (run_soft_step)
   int more = 0;                                              // parts that may still be added to it
-  double share = 1.0;                                        // [1] of the part under way that bodies go
-  double step = 0.0;                                         // [s] T of the step under way, all its parts together
-  bool settled = true;                                       // so far in the step under way
-  std::uint64_t began = 0;                                   // [ns] of the step under way
-  std::uint32_t dropped = 0;                                 // DroppedBit, the soft clock's own
-  Ring<ParameterEdit> parameter_edits{kMostParameterEdits};  // who owns the run -> soft clock
+  double share = 1.0;                                        // [1] of the current part that bodies complete
+  double step = 0.0;                                         // [s] T of the current step, all its parts together
+  bool settled = true;                                       // so far in the current step
+  std::uint64_t began = 0;                                   // [ns] beginning of the current step
+  std::uint32_t dropped = 0;                                 // DroppedBit, of the soft clock
+  Ring<ParameterEdit> parameter_edits{kMostParameterEdits};  // owner of the run -> soft clock
   Ring<BodyEdit> body_edits{kMostBodyEdits};                 // the same
 
-  // [1] Of a penetration, in a part of T [s]: pushed out as fast in many parts as in one.
+  // [1] Share of a penetration corrected in a part of T [s]: the same rate in many parts as in one.
   double undone_in(double T) const { return kPenetrationShare * std::min(1.0, T / step); }
   YieldingBody& surface(std::uint32_t body) { return static_cast<YieldingBody&>(*bodies[body]); }
 };

@@ -1,5 +1,5 @@
-// One step of everything soft and rigid (P2; methods.md 2.1-2.6). What fails stands still and says so: a factorisation
-// that does not exist, or a motion that is no number, must not spread through the contacts.
+// One step of all soft and rigid bodies (P2; methods.md 2.1-2.6). A body that fails stops and reports it: a failed
+// factorisation, or a non-finite motion, must not spread through the contacts.
 #include "systems/soft/soft_step.h"
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 namespace pliant {
 namespace {
 
-// Looser, and stacks and grips creep: 1e-6 of what a step's gravity gives is 0.2 um/s.
+// Looser: stacks and grips creep. 1e-6 of gravity's velocity change per step is 0.2 um/s.
 constexpr SweepLimits kSweeps{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
 
-constexpr double kShortOf = 0.9;     // [1] of the way to a crossing
-constexpr double kLeastPart = 0.02;  // [1] of a step: what is left of it and shorter is not worth a part
+constexpr double kShortOf = 0.9;     // [1] of the motion up to a crossing
+constexpr double kLeastPart = 0.02;  // [1] of a step: a shorter remainder does not become a part
 
-constexpr double kSunken = 0.01;  // [1] of a body's diagonal: what lies so deep in another when a level begins is said
+constexpr double kSunken = 0.01;  // [1] of a body's diagonal: larger initial penetrations are reported
 
 void change(Body& body, const DeformableParameters& now) {
   if (body.kind == BodyKind::kSurface) static_cast<YieldingBody&>(body).set(now);
@@ -36,7 +36,7 @@ void change(Body& body, const CouplingSetting& now) {
   if (auto* tool = body.as_tool()) tool->set_coupling(now);
 }
 
-// Contacts with a body that has no solution in this step.
+// Removes contacts with a body that has no solution in this step.
 void leave_out_failed(SoftState& soft) {
   const auto failed = [&](const ContactPoint& contact) {
     return !soft.bodies[contact.body_a]->solvable() || !soft.bodies[contact.body_b]->solvable();
@@ -44,7 +44,7 @@ void leave_out_failed(SoftState& soft) {
   soft.contacts.erase(std::remove_if(soft.contacts.begin(), soft.contacts.end(), failed), soft.contacts.end());
 }
 
-// Bodies that a level puts into each other.
+// Records bodies that the level places into each other.
 void tally_beginning(SoftState& soft) {
   const auto size = [&](std::uint32_t body) {
     return static_cast<double>(soft.bodies[body]->collision_mesh->box.diagonal());
@@ -57,7 +57,7 @@ void tally_beginning(SoftState& soft) {
   }
 }
 
-// A body whose velocity is no number is stopped.
+// Stops bodies with a non-finite velocity.
 void stop_non_finite(SoftState& soft) {
   for (const std::uint32_t i : soft.moving) {
     if (soft.bodies[i]->velocity().allFinite()) continue;
@@ -66,8 +66,8 @@ void stop_non_finite(SoftState& soft) {
   }
 }
 
-// Nothing goes through anything: what no contact prevents, bodies stop before, and what is left of the step becomes
-// one more part of it, in which they are contacts from its beginning.
+// Prevents tunnelling: bodies stop before a crossing that no contact prevents. The remainder of the step becomes an
+// additional part, which has these contacts from its beginning.
 void stop_before(SoftState& soft, const Crossings& left, double T) {
   soft.share = 1.0;
   if (left.count == 0) return;

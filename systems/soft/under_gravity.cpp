@@ -12,8 +12,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kFarAtEnd = 0.1;    // [1] of a body's size: farther from where it began is said after a run
-constexpr double kOutOfScene = 5.0;  // [1] of its size: a body that has fallen so far lies on nothing
+constexpr double kFarAtEnd = 0.1;    // [1] of a body's size: larger displacements from the start are reported
+constexpr double kOutOfScene = 5.0;  // [1] of its size: a body that has fallen this far is not supported
 
 std::string name_in_quotes(const World& world, Entity entity) {
   const Name* name = world.registry.find<Name>(entity);
@@ -25,7 +25,7 @@ dvec3 gravity_of(const World& world, Entity entity) {
   return pose ? glm::conjugate(pose->rotation) * world.simulation.gravity : world.simulation.gravity;
 }
 
-// Of a tool, the handle decides where it is; it always begins as it rests.
+// The pose of a tool is set by its handle; it always begins in equilibrium.
 bool decides(const World& world, Entity entity, const SoftBody& body, const TetMesh& tets) {
   return body.under_gravity != UnderGravity::kFalls && length(world.simulation.gravity) > 0.0 &&
          !(world.registry.has<Handle6>(entity) && tets.handle_count > 0);

@@ -1,4 +1,4 @@
-// How soft bodies begin under gravity (UnderGravity), and what there is to say about it.
+// Initial state of soft bodies under gravity (UnderGravity), and findings about it.
 #pragma once
 
 #include <string>
@@ -8,19 +8,19 @@
 
 namespace pliant {
 
-// Before bodies are made: TetMesh::start, and where the mesh is the shape under its weight, its nodes without. A body
-// that cannot have what it asks for begins as modelled and falls; TetReport::findings of its tetrahedra say so.
+// Before bodies are made: sets TetMesh::start. If the mesh is modelled under load, its nodes become the unloaded shape.
+// A body for which this fails begins as modelled and falls; TetReport::findings of its tetrahedra report it.
 void begin_under_gravity(World& world);
 
-// For whoever looks at a level before it runs: what sags far, turns over or finds no rest is said in
-// TetReport::findings. Some tenths of a second a body. After begin_under_gravity.
+// For inspection of a level before it runs: large sag, rotation, or lack of equilibrium is reported in
+// TetReport::findings. Some tenths of a second per body. After begin_under_gravity.
 void find_sag(World& world);
 
 // "`name`: " and each of TetReport::findings, of all soft bodies.
 std::vector<std::string> tissue_findings(const World& world);
 
-// After a run: pinned bodies that are far from where they began, or have turned over, and those that have fallen out of
-// the scene because nothing holds them. Tools are left out.
+// After a run: pinned bodies that are far from their start, or have turned over, and unsupported ones that have fallen
+// out of the scene. Tools are left out.
 std::vector<std::string> explain_sag(const World& world);
 
 }  // namespace pliant

@@ -29,7 +29,7 @@ void CondensedContacts::resize(int most_contacts, int most_modes) {
   stiff.assign(static_cast<std::size_t>(most_contacts), 0);
 }
 
-// methods.md 2.4, the tissue's matrix being diagonal: A_tt = 1 + tick damping + tick^2 frequency2, A_th = border,
+// methods.md 2.4, with the tissue's matrix being diagonal: A_tt = 1 + tick damping + tick^2 frequency2, A_th = border,
 // A_hh = tissue_mass + tick tissue_damping + tick^2 tissue_stiffness.
 void CondensedContacts::prepare_tick(double seconds) {
   tick = seconds;

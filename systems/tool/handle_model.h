@@ -1,15 +1,15 @@
-// What the soft clock and the touch clock tell each other about a tool (methods.md 2.6-2.9). Both travel by
-// TripleBuffer (tool_touch_state.h); everything has a fixed capacity, so that filling and copying allocate nothing.
+// Data exchanged between the soft clock and the touch clock about a tool (methods.md 2.6-2.9), both ways by
+// TripleBuffer (tool_touch_state.h). Everything has a fixed capacity, so that filling and copying allocate nothing.
 //
 // A twist or wrench is six numbers: linear first, then angular, world axes, about the handle's centre (handle.h).
 // d: displacement of the handle since the model's pose; w: its twist; w0: the model's; w': its rate.
 //
-// Two descriptions of the wrench that tissue and contacts put on the handle:
-// - LinearModel, as P2 has it: F = force - K d - B (w - w0) - M w'. One step's matrix C = M + T B + T^2 K is split by
-//   the shape that the step gives to everything that moves with the handle, so that M, B and K are what that shape has
-//   of each, and none of them can give out energy.
+// Two descriptions of the wrench of tissue and contacts on the handle:
+// - LinearModel, as in P2: F = force - K d - B (w - w0) - M w'. One step's matrix C = M + T B + T^2 K is split by the
+//   shape in which the step moves all that follows the handle. M, B and K are projections on that shape, so each of
+//   them is passive.
 // - CondensedContacts, beyond P2: tissue and objects as a few vibration modes, the rest of their flexibility without
-//   inertia, and the contacts between them; the touch tick solves Signorini and Coulomb again with them.
+//   inertia, and the contacts between them. The touch tick solves Signorini and Coulomb again with them.
 #pragma once
 
 #include <array>
@@ -30,13 +30,13 @@ struct LinearModel {
   Vector6 force = Vector6::Zero();      // [N], [N m] at d = 0, w = w0, w' = 0
   Matrix6 stiffness = Matrix6::Zero();  // K [N/m ...] symmetric, eigenvalues >= 0; so are the other two
   Matrix6 damping = Matrix6::Zero();    // B [N s/m ...]
-  Matrix6 mass = Matrix6::Zero();       // M [kg ...] of tissue and of what sticks to it
+  Matrix6 mass = Matrix6::Zero();       // M [kg ...] of tissue and of the bodies that stick to it
 };
 
-// Tissue moves as Phi w + modes q'; Phi is what one soft step gives it per unit of w. Modes are of one body each (the
-// tissue with the handle held, or an object), of mass 1: q'' + damping q' + frequency2 q = load + from_modes^T f + what
-// the handle does. q = 0 and d = 0 at the model's time. Rows of a contact: normal, first tangent, second tangent; all
-// arrays have room for more than `count` and `modes`, the leading parts count.
+// Tissue moves as Phi w + modes q'. Phi is the shape of one soft step per unit of w. Each mode belongs to one body (the
+// tissue with the handle pinned, or an object) and has mass 1: q'' + damping q' + frequency2 q = load + from_modes^T f
+// + coupling to the handle. q = 0 and d = 0 at the model's time. Rows of a contact: normal, first tangent, second
+// tangent. All arrays have capacity beyond `count` and `modes`; only the leading parts are valid.
 struct CondensedContacts {
   int count = 0;  // contacts
   int modes = 0;
@@ -52,76 +52,75 @@ struct CondensedContacts {
   Rows6 modal_mass;   // modes x 6: between mode and handle; zero for modes of objects
   Rows6 modal_damping, modal_stiffness;
 
-  Rows6 from_handle;                         // 3 count x 6: contact velocity per w, modes held
+  Rows6 from_handle;                         // 3 count x 6: contact velocity per w, modes fixed
   Rows from_modes;                           // 3 count x modes: contact velocity per q'
-  std::array<Rows6, 2> from_handle_by_slip;  // [1/m] their changes with slip along either tangent: what slips is
-  std::array<Rows, 2> from_modes_by_slip;    // pushed elsewhere (contact_geometry.h: find_turning)
-  Eigen::MatrixXd flexibility;               // [m/N] 3 count x 3 count: what the modes leave out, without inertia
+  std::array<Rows6, 2> from_handle_by_slip;  // [1/m] their derivatives by slip along either tangent: a sliding
+  std::array<Rows, 2> from_modes_by_slip;    // contact acts at another point (contact_geometry.h: find_turning)
+  Eigen::MatrixXd flexibility;               // [m/N] 3 count x 3 count: residual flexibility, without inertia
   double flexibility_lag = 0.0;              // [s] its damping: stretch + lag stretch' = flexibility f
   Vector force;                              // [N] 3 count, at the model's time
-  Vector gap;                                // [m] count: > 0: still open; < 0: penetration that is being undone
-  Vector push;                               // [m/s] count: <= 0: at this rate
+  Vector gap;                                // [m] count: > 0: still open; < 0: penetration being corrected
+  Vector push;                               // [m/s] count: <= 0: rate of that correction
   std::vector<double> mu_static, mu_sliding;
   std::vector<std::uint8_t> sliding;
-  std::vector<dvec2> lean;          // [1] of the normal against the axes that all this is written in
-  std::vector<dmat2> turning;       // [1/m] of the normal with slip (contact_point.h)
+  std::vector<dvec2> lean;          // [1] tilt of the normal against the model's axes
+  std::vector<dmat2> turning;       // [1/m] change of that tilt with slip (contact_point.h)
   std::vector<std::uint64_t> key;   // the same contact has the same key in the next model (contact_point.h)
-  std::vector<double> farthest;     // [m] of slip: beyond it those changes are not believed
-  std::vector<double> reach;        // [m] of slip: beyond it an open contact meets nothing (contact_point.h)
-  std::vector<dvec2> slip;          // [m] along the tangents, since the axes were laid
-  std::vector<std::uint8_t> stiff;  // nothing gives way there: its force is the tick's to find (stiff_contacts.h)
+  std::vector<double> farthest;     // [m] of slip: validity limit of those derivatives
+  std::vector<double> reach;        // [m] of slip: beyond it an open contact no longer exists (contact_point.h)
+  std::vector<dvec2> slip;          // [m] along the tangents, since the axes were set
+  std::vector<std::uint8_t> stiff;  // contact without compliance: its force is found by the tick (stiff_contacts.h)
 
-  // Of the above, for ticks of `tick` seconds, so that a tick need not make them (methods.md 2.4 with modes for
-  // tissue).
+  // Precomputed for ticks of `tick` seconds (methods.md 2.4 with modes for tissue).
   double tick = 1e-3;
   Vector inverse;                     // modes: 1 / (1 + tick damping + tick^2 frequency2)
   Rows6 border;                       // modes x 6: modal_mass + tick modal_damping + tick^2 modal_stiffness
   Matrix6 reduced = Matrix6::Zero();  // tissue_mass + tick ... - border^T inverse border
   Rows6 reduced_handle;               // 3 count x 6: contact velocity per w, modes following
-  Eigen::MatrixXd delassus;           // [1/kg] 3 count x 3 count, handle held
+  Eigen::MatrixXd delassus;           // [1/kg] 3 count x 3 count, handle fixed
 
-  void resize(int most_contacts, int most_modes);  // room; before the clocks start
-  void prepare_tick(double seconds);               // fills what stands below `tick`
+  void resize(int most_contacts, int most_modes);  // sets the capacity; before the clocks start
+  void prepare_tick(double seconds);               // fills the members after `tick`
 };
 
-// A body that a probe pulls, as the soft step has it (pull.h).
+// A body pulled by a probe, from the soft step (pull.h).
 struct PullModel {
   std::uint32_t number = 0;     // ProbeHold::number; 0: none
   double time = 0.0;            // [s]
-  dvec3 point{0}, velocity{0};  // [m], [m/s] world, of what is held
-  double share = 0.0;           // [1] of the spring: it comes in over some steps
+  dvec3 point{0}, velocity{0};  // [m], [m/s] world, of the pulled patch
+  double share = 0.0;           // [1] of the spring: ramped up over some steps
 };
 
 // Soft clock -> touch clock, per tool.
 struct HandleModel {
-  std::uint64_t step = 0;                 // 0: nothing has been published yet
-  double time = 0.0;                      // [s] that the motion and the forces belong to
+  std::uint64_t step = 0;                 // 0: nothing published yet
+  double time = 0.0;                      // [s] time of the motion and the forces
   double soft_step = 0.0;                 // [s] T
-  std::uint32_t set_backs = 0;            // how often the soft clock has set the tool back into the hand
+  std::uint32_t set_backs = 0;            // number of times that the soft clock has set the tool back to the device
   RigidMotion handle;                     // of its centre
   dvec3 centre{0};                        // [m] of the handle, in the tool's object frame
   Matrix6 handle_mass = Matrix6::Zero();  // of the handle alone
-  Vector6 handle_load = Vector6::Zero();  // [N], [N m] its weight, and what carries the tool
-  Vector6 force = Vector6::Zero();  // [N], [N m] that tissue and contacts put on the handle, as the soft step saw it
+  Vector6 handle_load = Vector6::Zero();  // [N], [N m] its weight, and the force that supports the tool
+  Vector6 force = Vector6::Zero();        // [N], [N m] of tissue and contacts on the handle, from the soft step
   LinearModel linear;
   CondensedContacts contacts;
   PullModel pull;      // of a probe
-  bool aside = false;  // of a probe: it met no body in that step (ProbeHold)
+  bool aside = false;  // of a probe: without contacts with bodies in that step (ProbeHold)
 };
 
 // Touch clock -> soft clock, per tool.
 struct ToolInput {
   DeviceStatus status = DeviceStatus::kLost;
-  double time = 0.0;    // [s] that the motion belongs to
-  double tick = 1e-3;   // [s] length of a touch tick
-  RigidMotion device;   // of the device's own frame
-  bool placed = false;  // `handle` means something: the soft clock's handle goes there, so that there is but one path
-  RigidMotion handle;   // the 1 kHz handle's centre
-  std::uint32_t set_backs = 0;  // how often the touch clock has asked for the tool to be set back into the hand
+  double time = 0.0;            // [s] time of the motion
+  double tick = 1e-3;           // [s] length of a touch tick
+  RigidMotion device;           // of the device's frame
+  bool placed = false;          // `handle` is valid: the soft clock's handle follows it, so that there is only one path
+  RigidMotion handle;           // the 1 kHz handle's centre
+  std::uint32_t set_backs = 0;  // number of requests by the touch clock to set the tool back to the device
   std::uint32_t seen = 0;       // HandleModel::set_backs of the model in use
   ProbeHold hold;               // of a probe
-  double max_force = 0.0;       // [N] of its device: a pull is no harder
-  // [N s], [N m s] Sum over all ticks so far of what tissue and contacts did to the handle.
+  double max_force = 0.0;       // [N] of its device: upper bound of a pull
+  // [N s], [N m s] Impulse of tissue and contacts on the handle, summed over all ticks so far.
   Vector6 impulse = Vector6::Zero();
 };
 

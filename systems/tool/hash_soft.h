@@ -1,4 +1,4 @@
-// "Same input, same bits" for everything soft and rigid, and for its tools.
+// "Same input, same bits" for all soft and rigid bodies and for tools.
 #pragma once
 
 #include "components/world.h"

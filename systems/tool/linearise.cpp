@@ -13,20 +13,20 @@
 namespace pliant {
 namespace {
 
-// The tool's body in the soft step, or its count of bodies.
+// Index of the tool's body in the soft step; the number of bodies if it has none.
 std::uint32_t body_of(const SoftState& soft, Entity tool) {
   std::uint32_t index = 0;
   while (index < soft.bodies.size() && !(soft.bodies[index]->entity == tool)) ++index;
   return index;
 }
 
-// Null where there is no such body, or nobody holds it by a handle.
+// Null if there is no such body, or it has no handle.
 ToolBody* tool_body(const SoftState& soft, std::uint32_t index) {
   auto* const body = index < soft.bodies.size() ? soft.bodies[index]->as_tool() : nullptr;
   return body && body->has_handle() ? body : nullptr;
 }
 
-// A tick of the model's on a path that has been gone: it moves on with it.
+// One tick of the model along a known path: the model moves with the handle.
 void follow(HandleModel& model, CondensedState& state, const Vector6& velocity, const SweepLimits& limits) {
   const double tick = model.contacts.tick;
   TickHandle handle;
@@ -39,7 +39,7 @@ void follow(HandleModel& model, CondensedState& state, const Vector6& velocity, 
   model.handle.pose.rotation = glm::normalize(rotation_of(tick * angular(velocity)) * model.handle.pose.rotation);
 }
 
-// The model's displacements become zero again, where it is now.
+// Rebases the model to its current state: displacements are zero again.
 void rebase(HandleModel& model, const CondensedState& state, const Vector6& w0) {
   CondensedContacts& c = model.contacts;
   const Eigen::Index rows = 3 * c.count, modes = c.modes;
@@ -56,8 +56,8 @@ void rebase(HandleModel& model, const CondensedState& state, const Vector6& w0) 
   model.force -= drop_stiff(model.soft_step, kPenetrationShare, Vector6::Zero(), c);
 }
 
-// The handle's ticks since the model's time. Those that come in meanwhile wait: emptying the path as fast as it fills
-// would never end.
+// The handle's ticks since the model's time. At most one ring's length: emptying the path as fast as it fills might
+// never end.
 void take_path(ToolTouchState& tool, double since) {
   tool.gone.clear();
   HandleStep step;
@@ -65,8 +65,8 @@ void take_path(ToolTouchState& tool, double since) {
     if (step.time > since) tool.gone.push_back(step);
 }
 
-// Follows what the handle has done since the model's time, in at most kMostFollowed ticks of the model: where the touch
-// clock is fast, several of its ticks are one.
+// Follows the handle's path since the model's time in at most kMostFollowed ticks of the model; at high touch rates,
+// several ticks are merged into one.
 void bring_up_to_date(ToolTouchState& tool, HandleModel& model, CondensedState& state) {
   const double tick = model.contacts.tick;
   take_path(tool, model.time + 0.5 * tick);
@@ -87,8 +87,8 @@ void bring_up_to_date(ToolTouchState& tool, HandleModel& model, CondensedState& 
   if (together > 1) model.contacts.prepare_tick(tick);
 }
 
-// What tissue and contacts did to the handle, mean over the ticks since the last input. Without a new input, what it
-// was.
+// Wrench of tissue and contacts on the handle, mean over the ticks since the last input. Without a new input, it is
+// unchanged.
 void hear_wrench(ToolTouchState& tool, const ToolInput& input) {
   const double elapsed = input.time - tool.heard_at;
   if (!(elapsed > 0.0)) return;
@@ -97,13 +97,13 @@ void hear_wrench(ToolTouchState& tool, const ToolInput& input) {
   tool.heard = input.impulse;
 }
 
-// Whether it moves as no hand's tool does.
+// Whether the handle moves faster than any hand.
 bool got_away(const ToolBody& body) {
   const Vector6& w = body.handle().motion().velocity;
   return length(linear(w)) > kRunaway || length(angular(w)) > kRunawayTurn;
 }
 
-// Into the hand again: where the touch clock asks for it, or where the step before has let it get away.
+// Sets the tool back to the device: if the touch clock requests it, or if the handle got away in the last step.
 bool set_back(SoftState& soft, ToolTouchState& tool, const ToolInput& input, ToolBody& body) {
   const bool away = got_away(body);
   if (!away && input.set_backs == tool.set_back) return false;
@@ -117,7 +117,7 @@ bool set_back(SoftState& soft, ToolTouchState& tool, const ToolInput& input, Too
   return true;
 }
 
-// Towards where the touch clock has its handle, the share of what is left.
+// Interpolates towards the touch clock's handle by `share`.
 RigidMotion on_the_way(const RigidMotion& from, const RigidMotion& to, double share) {
   if (share == 1.0) return to;
   RigidMotion out = to;
@@ -131,10 +131,10 @@ void bring(ToolTouchState& tool, const ToolInput& input, double share, ToolBody&
   if (input.status == DeviceStatus::kReady)
     body.bring_handle(end, tool.expected);
   else
-    body.lead_handle(end);  // nobody holds it: it stays where it is
+    body.lead_handle(end);  // no device: the handle stays at its pose
 }
 
-// What the touch clock says of a handle that has since been set back means nothing any more.
+// The touch clock's pose is void if the handle has been set back since.
 bool says_where(const ToolTouchState& tool, const ToolInput& input) {
   return input.placed && input.seen == tool.pending.set_backs;
 }
@@ -162,7 +162,7 @@ void take_inputs(World& world, double T) {
     if (!body) continue;
     if (soft.part == 0) tool->input.acquire();
     const ToolInput& input = tool->input.read();
-    const double left = T * (soft.parts - soft.part);  // [s] of the step
+    const double left = T * (soft.parts - soft.part);  // [s] of the whole step
     Pose before = input.device.pose;
     before.position -= left * linear(input.device.velocity);
     before.rotation = glm::normalize(rotation_of(-left * angular(input.device.velocity)) * before.rotation);
@@ -191,7 +191,7 @@ void linearise(World& world, double T) {
     const ToolBody* const body = tool_body(soft, index);
     if (!body || !body->solvable()) continue;
     reduce_tool(step, index, 1.0 / world.simulation.touch_rate, tool->pending);
-    tool->pending.soft_step = soft.step;  // until the next one
+    tool->pending.soft_step = soft.step;  // time until the next one
     ++tool->pending.step;
   }
 }

@@ -15,7 +15,7 @@ std::string tool_name(const World& world, Entity entity) {
   return name ? name->value : fmt::format("entity {}", entity.index);
 }
 
-// A device that never moves, for a tool that nobody drives: it is held where it stands.
+// A fixed device for a tool without one: it keeps the tool at its initial pose.
 Entity resting_device(World& world, Entity tool) {
   if (!world.registry.has<HapticDevice>(tool)) {
     const Pose* pose = world.registry.find<Pose>(tool);
@@ -29,20 +29,20 @@ Entity resting_device(World& world, Entity tool) {
   return tool;
 }
 
-// [kg] and its centre [m], object frame.
+// [kg] and centre of mass [m], object frame.
 struct Weight {
   double mass = 0.0;
   dvec3 centre{0};
 };
 
-// Nodes have their elements' mass, as in Tissue.
+// Nodal masses from elements, as in Tissue.
 Weight weight_of(const SoftBody& body, const TetMesh& mesh) {
   Weight out;
   for (const Tet& tet : mesh.tets) {
     const dvec3 a = mesh.nodes[tet[0]];
     const double volume = dot(cross(mesh.nodes[tet[1]] - a, mesh.nodes[tet[2]] - a), mesh.nodes[tet[3]] - a) / 6.0;
     for (const std::uint32_t node : tet) {
-      if (node >= mesh.pinned_begin()) continue;  // the world's to hold
+      if (node >= mesh.pinned_begin()) continue;  // pinned: carried by the world
       out.mass += body.density * volume / 4.0;
       out.centre += body.density * volume / 4.0 * mesh.nodes[node];
     }
@@ -60,7 +60,7 @@ Weight weight_of(const World& world, Entity entity) {
   return body.tets.valid() ? weight_of(body, world.tet_meshes[body.tets]) : Weight{};
 }
 
-// What the hand feels of a tool that nothing carries.
+// Weight that the hand feels, for a tool without weight compensation.
 void find_weight(const World& world, ToolTouchState& tool) {
   if (world.registry.get<Handle6>(tool.entity).carried) return;
   const Weight weight = weight_of(world, tool.entity);
@@ -69,7 +69,7 @@ void find_weight(const World& world, ToolTouchState& tool) {
   tool.weight = weight.mass * world.simulation.gravity;
 }
 
-// Two things on one device would each be told that the whole of its force is theirs.
+// Two probes or tools on one device would each be reported its whole force.
 Status check_free(const World& world, Entity tool, Entity device) {
   const auto moves = [&](Entity other) {
     return Error{"tool `" + tool_name(world, tool) + "`",
@@ -83,7 +83,7 @@ Status check_free(const World& world, Entity tool, Entity device) {
   return Done{};
 }
 
-// Its working memory; until the device has been sensed, it is held where it stands.
+// Working memory of a tool; until the device is sensed, the tool stays at its pose.
 std::unique_ptr<ToolTouchState> make_tool(Entity entity, Entity device, const Pose* pose) {
   auto tool = std::make_unique<ToolTouchState>();
   tool->entity = entity;

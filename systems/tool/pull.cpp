@@ -56,7 +56,7 @@ TriangleFoot foot_on_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
   return best;
 }
 
-// The place of the surface, as it is now, that is nearest to `p`.
+// The point of the current surface nearest to `p`.
 SurfacePoint nearest_point(const Body& body, dvec3 p) {
   SurfacePoint best;
   double least = std::numeric_limits<double>::max();
@@ -72,7 +72,7 @@ SurfacePoint nearest_point(const Body& body, dvec3 p) {
   return best;
 }
 
-// Of a rigid body the point; of a soft one what lies around it and faces the same way.
+// Rigid body: the point. Soft body: the surface around it that faces the same way.
 void take_hold(const Body& body, dvec3 at, Pull& pull) {
   pull.parts.clear();
   if (body.collision_mesh->triangles.empty()) return;
@@ -93,7 +93,7 @@ void take_hold(const Body& body, dvec3 at, Pull& pull) {
   for (Pull::Part& part : pull.parts) part.weight /= sum;
 }
 
-// The body of this pull; null where there is nothing to pull.
+// The body of this pull; null without one.
 Body* pulled_body(SoftState& soft, const ProbeHold& hold, Pull& pull) {
   if (hold.body == kNoEntity) {
     pull = {};
@@ -114,7 +114,7 @@ Body* pulled_body(SoftState& soft, const ProbeHold& hold, Pull& pull) {
 }
 
 struct Patch {
-  dvec3 position{0}, velocity{0};                        // [m], [m/s] world, as if nothing pulled
+  dvec3 position{0}, velocity{0};                        // [m], [m/s] world, without the pull
   Eigen::Matrix3d compliance = Eigen::Matrix3d::Zero();  // [1/kg] W
   Rows moved;                                            // A^-1 J^T
 };

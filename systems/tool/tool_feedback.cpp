@@ -13,9 +13,9 @@
 namespace pliant {
 namespace {
 
-// Device pose and, from two of them, velocity: over the time between them, which is longer than a tick where the clock
-// had to skip some. Over one tick alone, the coupling's damper would answer a late tick with a blow. False: nothing is
-// known, and nothing may be felt. `missed` [s]: of ticks between the two poses.
+// Device pose and, by differences, velocity. The time between two poses is longer than a tick if the clock skipped
+// some. Over one tick alone, the coupling's damper would respond to a late tick with a blow. False: the state is
+// unknown, and the force is zero. `missed` [s]: length of the ticks between the two poses.
 bool sense(ToolTouchState& tool, const HapticDevice& device, Tick tick, double& missed) {
   missed = 0.0;
   if (device.status != DeviceStatus::kReady || !plausible_position(device.position) ||
@@ -31,7 +31,7 @@ bool sense(ToolTouchState& tool, const HapticDevice& device, Tick tick, double& 
   if (tool.sensing) {
     const dvec3 turn = vector_of(tool.sensed.pose.rotation * glm::conjugate(before.pose.rotation));
     const dvec3 went = tool.sensed.pose.position - before.pose.position;
-    // What jumps has no velocity that could damp anything.
+    // A jump has no velocity for damping.
     if (length(went) < kFastestHand * device.workspace * dt && length(turn) < kFastestTurn * dt)
       tool.sensed.velocity = join(went / dt, turn / dt);
     else
@@ -41,19 +41,19 @@ bool sense(ToolTouchState& tool, const HapticDevice& device, Tick tick, double& 
   return tool.sensing = true;
 }
 
-// Where the handle stands seen from the model.
+// Displacement of the handle from the model's pose.
 Vector6 displacement(const RigidMotion& from, const RigidMotion& to) {
   return join(to.pose.position - from.pose.position, vector_of(to.pose.rotation * glm::conjugate(from.pose.rotation)));
 }
 
-// From the next tick on. Whatever the wrench was, it goes on from there, and what the new description differs by fades.
+// From the next tick on. The wrench continues from its last value; the difference to the new description fades.
 void use(ToolTouchState& tool, ToolForce force) {
   tool.used = force;
   tool.joins = true;
   tool.settling = 0;
 }
 
-// Of a short soft step, half. None where only the contacts know what the handle pushes against (stiff_contacts.h).
+// Half of a short soft step. None if the contacts alone describe the resistance (stiff_contacts.h).
 int settle_ticks(const HandleModel& model) {
   const CondensedContacts& contacts = model.contacts;
   if (has_stiff(contacts)) return 0;
@@ -67,7 +67,7 @@ void adopt(ToolTouchState& tool, const HandleModel& model) {
   if (tool.away) return;
   if (!tool.placed) {
     tool.handle = model.handle;
-    if (tool.returns && tool.sensing) tool.handle = tool.sensed.at(model.centre);  // no spring is stretched meanwhile
+    if (tool.returns && tool.sensing) tool.handle = tool.sensed.at(model.centre);  // no initial stretch of the spring
     tool.returns = false;
     tool.wrench = model.force;
     tool.placed = true;
@@ -79,7 +79,7 @@ void adopt(ToolTouchState& tool, const HandleModel& model) {
   if (tool.used == ToolForce::kContacts) tool.settling = settle_ticks(model);
 }
 
-// The model fades to nothing once it is too old to be believed; until then 1.
+// 1, fading to zero once the model is too old.
 double trust(const HandleModel& model, double time) {
   const double late = time - model.time - kStaleSteps * model.soft_step;
   return late <= 0.0 ? 1.0 : std::exp(-late / (kFadeShare * model.soft_step));
@@ -89,7 +89,7 @@ LinearModel scaled(const LinearModel& model, double factor) {
   return {model.force * factor, model.stiffness * factor, model.damping * factor, model.mass * factor};
 }
 
-// What the model says without its contacts solved again, over a tick.
+// The model's wrench over a tick, without solving its contacts again.
 Vector6 plain_tick(const ToolTouchState& tool, const HandleModel& model, double believed, double dt,
                    TickHandle& handle) {
   if (tool.used != ToolForce::kHeld)
@@ -109,11 +109,12 @@ Vector6 contact_tick(ToolTouchState& tool, const HandleModel& model, TickHandle&
 
 // One implicit step of the handle between device and model.
 //
-// A new description of the wrench adds the difference that leaves it as it was if the handle goes on as it did. Found
-// while the handle went by the new description alone, it would hold the tissue's resistance to a jerk that the very
-// next tick does not know. A new model's contacts, besides, stop within a tick or two what still moves into one another
-// at the step's end. So they first go along unseen, the linear model saying only what a change of the handle's motion
-// meets: where contacts slide, it does not know which way the force goes.
+// Bumpless transfer: a new description of the wrench gets an offset that keeps the wrench continuous if the handle
+// continues its motion. If the offset were found while the handle follows the new description alone, it would contain
+// the tissue's resistance to a jerk that is gone in the next tick. Besides, a new model's contacts stop within a tick
+// or two all bodies that still approach each other at the step's end. So the contacts are first solved without effect,
+// and the linear model gives only the response to changes of the handle's motion. It lacks the direction of the force
+// where contacts slide.
 void step(ToolTouchState& tool, const HandleModel& model, const Handle6& settings, Tick tick) {
   const RigidMotion target = tool.sensed.at(model.centre);
   const CouplingForce coupling = coupling_force(settings, tool.handle, target);
@@ -122,8 +123,8 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
   handle.velocity = tool.handle.velocity;
   handle.inertia = model.handle_mass;
   handle.inertia.diagonal() += bond.matrix;
-  // What carries the tool is as old as the tissue's weight in the model: without the one, the other would lift the
-  // hand.
+  // The force that supports the tool is as old as the tissue's weight in the model: without one, the other would lift
+  // the hand.
   const double believed = trust(model, tick.time);
   if (believed < 1.0 && tool.used != ToolForce::kLinear) use(tool, ToolForce::kLinear);
   const Vector6 felt = believed * tool.wrench;
@@ -155,7 +156,7 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
     tool.fade_left = std::max(1.0, tool.fade_left - 1.0);
   }
 
-  if (tool.wrench.allFinite()) tool.impulse += tick.dt * tool.wrench;  // a sum would never lose what is no number
+  if (tool.wrench.allFinite()) tool.impulse += tick.dt * tool.wrench;  // a sum would keep NaN forever
   tool.gained = handle.velocity - tool.handle.velocity;
   tool.handle.velocity = handle.velocity;
   tool.handle.pose.position += tick.dt * linear(handle.velocity);
@@ -165,8 +166,8 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
   if (tool.late >= kLateTicks && tool.used == ToolForce::kContacts) use(tool, ToolForce::kLinear);
 }
 
-// What the coupling does to the device, at the device's own origin. Before the step: device and handle of one moment. A
-// handle one tick ahead would push a moving hand on, by k v dt.
+// The coupling's wrench on the device, at the device's origin. Before the step, so that device and handle are of the
+// same time: a handle one tick ahead would push a moving hand on, by k v dt.
 void pull_device(ToolTouchState& tool, const HandleModel& model, const Handle6& settings) {
   const RigidMotion target = tool.sensed.at(model.centre);
   const Vector6 wrench = -coupling_force(settings, tool.handle, target).wrench;
@@ -180,14 +181,14 @@ bool motion_is_finite(const RigidMotion& motion) {
   return std::isfinite(dot(x, x)) && std::isfinite(glm::dot(q, q)) && motion.velocity.allFinite();
 }
 
-// Farther from its device, or faster, than any hand's tool.
+// Farther from its device, or faster, than any tool in a hand.
 bool got_away(const ToolTouchState& tool, const HandleModel& model) {
   const Vector6 speed = tool.handle.velocity - tool.sensed.velocity;
   return length(tool.sensed.at(model.centre).pose.position - tool.handle.pose.position) > kMostStretch ||
          length(linear(speed)) > kRunaway || length(angular(speed)) > kRunawayTurn;
 }
 
-// A model that is no number must not stay in the handle: nothing is felt until the next one.
+// A non-finite model must not enter the handle: the force is zero until the next one.
 void forget(ToolTouchState& tool) {
   tool.placed = false;
   tool.handle = tool.sensed;
@@ -197,8 +198,8 @@ void forget(ToolTouchState& tool) {
   tool.device_wrench.setZero();
 }
 
-// A probe that hovers or pulls meets no body: it is where its device is. When it has done with that, it is set back
-// there once more, and waits for the first model in which it meets bodies again.
+// A probe that hovers or pulls has no contacts with bodies: it is at its device. Afterwards it is set back there once
+// more, and waits for the first model in which it has contacts again.
 bool stands_aside(const World& world, ToolTouchState& tool) {
   if (!tool.is_probe) return false;
   const ProbeHold& hold = world.registry.get<Probe>(tool.entity).hold;
@@ -211,7 +212,7 @@ bool stands_aside(const World& world, ToolTouchState& tool) {
   return tool.aside;
 }
 
-// The spring of a pull (pull.h), on the device: what is held goes on as the soft step left it.
+// The spring of a pull (pull.h), on the device: the pulled patch is extrapolated from the soft step.
 void feel_pull(const World& world, ToolTouchState& tool, const HandleModel& model, const Handle6& settings, Tick tick) {
   const PullModel& pull = model.pull;
   const ProbeHold& hold = world.registry.get<Probe>(tool.entity).hold;
@@ -242,8 +243,8 @@ void tell_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
   if (tool.placed) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
 }
 
-// The device between two poses `elapsed` [s] apart, `since` [s] after the first: evenly accelerated, which a hand is
-// over a short while; over a longer one, at its mean velocity.
+// The device between two poses `elapsed` [s] apart, `since` [s] after the first. Over a short time: constant
+// acceleration, a good model of a hand. Over a longer one: its mean velocity.
 RigidMotion on_the_way(const RigidMotion& before, const RigidMotion& now, double elapsed, double since) {
   const Vector6 mean = now.velocity;
   const Vector6 gains = elapsed < kEvenWay ? Vector6(2.0 / elapsed * (mean - before.velocity)) : Vector6::Zero();
@@ -256,10 +257,9 @@ RigidMotion on_the_way(const RigidMotion& before, const RigidMotion& now, double
   return out;
 }
 
-// The handle goes through the time of ticks that could not begin, with the device on its way. A handle that went for
-// one tick only would be left behind, and its coupling would pull at the hand in free air. A few ticks are made up as
-// they would have been, many in a few long steps, for which the contacts' matrices have not been made: by the linear
-// model.
+// Catches the handle up with missed ticks, along the device's path. A handle that moved for one tick only would stay
+// behind, and its coupling would pull the hand in free air. A few ticks are caught up exactly. Many are caught up in a
+// few long steps by the linear model, since the contacts' matrices are not prepared for them.
 void catch_up(ToolTouchState& tool, const HandleModel& model, const Handle6& settings, const RigidMotion& before,
               double missed, Tick tick) {
   const auto ticks = static_cast<int>(std::lround(missed / tick.dt));
@@ -278,7 +278,7 @@ void catch_up(ToolTouchState& tool, const HandleModel& model, const Handle6& set
     done += count;
     for (int k = 0; k < count; ++k) tool.path.push({part.time + (k + 1) * tick.dt, tool.handle.velocity});
   }
-  tool.sensed = now;  // at its mean velocity: what is extrapolated from one late tick to the next swings for ever
+  tool.sensed = now;  // at its mean velocity: extrapolation from one late tick to the next would oscillate
 }
 
 void feel(World& world, ToolTouchState& tool, Tick tick) {
@@ -289,7 +289,7 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
   const bool sensing = sense(tool, world.registry.get<HapticDevice>(tool.device), tick, missed);
   if (tool.model.acquire()) adopt(tool, tool.model.read());
   const HandleModel& model = tool.model.read();
-  if (tool.is_probe && sensing && tool.set_backs == 0) tool.set_backs = 1;  // its shell comes to its device
+  if (tool.is_probe && sensing && tool.set_backs == 0) tool.set_backs = 1;  // moves its shell to its device
   if (stands_aside(world, tool)) {
     if (sensing) feel_pull(world, tool, model, settings, tick);
   } else if (tool.placed && sensing) {
@@ -305,7 +305,7 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
       forget(tool);
       tool.away = true;
     }
-  } else {  // the handle stays where it is until there is a device to go to
+  } else {  // without a device the handle stays at its pose
     tool.handle.velocity.setZero();
     tool.gained.setZero();
     tool.sensed.velocity.setZero();

@@ -5,8 +5,8 @@
 namespace pliant {
 namespace {
 
-// [N] sum of the contacts' normal forces: the soft step's, or the last tick's where only a tick can tell. Moving the
-// handle as a whole moves a contact by its normal row's first three.
+// [N] sum of the contacts' normal forces: the soft step's, or the last tick's for stiff contacts. A translation of the
+// handle moves a contact by the first three entries of its normal row.
 dvec3 pushed_by(const CondensedContacts& contacts, const CondensedState& state) {
   dvec3 sum(0);
   for (int i = 0; i < contacts.count; ++i) {
@@ -17,7 +17,7 @@ dvec3 pushed_by(const CondensedContacts& contacts, const CondensedState& state) 
   return sum;
 }
 
-// Contact, normal and depth of a tool; false where nothing pushes it as hard as `least` [N].
+// Contact, normal and depth of a tool; false if no force of at least `least` [N] pushes it.
 bool read_contact(const ToolTouchState& tool, double least, ProbeReading& out) {
   const HandleModel& model = tool.model.read();
   const dvec3 push = pushed_by(model.contacts, tool.contacts);
@@ -28,7 +28,7 @@ bool read_contact(const ToolTouchState& tool, double least, ProbeReading& out) {
   return true;
 }
 
-// The parts of a force that is known along a normal that is.
+// Normal and tangential parts of the force.
 void split_force(ProbeReading& out) {
   const double along = dot(out.force, out.normal);
   out.normal_force = std::abs(along);
@@ -51,7 +51,7 @@ ProbeReading tool_reading(const World& world, Entity entity) {
 
 namespace {
 
-// A probe that pulls a body touches it, whichever way the force goes.
+// A probe that pulls a body counts as touching it, whatever the direction of the force.
 bool read_pull(const World& world, const ToolTouchState& tool, ProbeReading& out) {
   const ProbeHold& hold = world.registry.get<Probe>(tool.entity).hold;
   const double force = length(out.force);

@@ -1,16 +1,16 @@
-// What there is to know about a tool after a tick, in the words of a probe (systems/touch/probe_reading.h).
+// State of a tool after a tick, in the format of a probe (systems/touch/probe_reading.h).
 #pragma once
 
 #include "systems/touch/probe_reading.h"
 
 namespace pliant {
 
-// position: of the device. depth: how far the hand has led the device past the handle [m], in contact. normal: the
+// position: of the device. depth: distance from the handle to the device's target pose [m], in contact. normal: the
 // mean direction in which contacts push the tool, by the newest model.
 ProbeReading tool_reading(const World& world, Entity tool);
 
-// Of a probe among soft and rigid bodies, if anything there presses it harder than what `out` already tells of:
-// contact, normal and depth.
+// For a probe among soft and rigid bodies: sets contact, normal and depth if a body presses it harder than the contact
+// already in `out`.
 void add_body_reading(const World& world, Entity probe, ProbeReading& out);
 
 }  // namespace pliant

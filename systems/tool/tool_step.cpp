@@ -9,11 +9,11 @@
 namespace pliant {
 namespace {
 
-// [m] The way that a handle goes in one soft step; a faster one goes it in up to kMostParts shorter steps. A finger's
-// width must not be passed in one.
+// [m] Largest motion of a handle in one soft step; faster motions are split into up to kMostParts shorter steps. A step
+// must not pass through a finger's width.
 constexpr double kMostWay = 0.01;
 constexpr int kMostParts = 8;
-constexpr int kMoreParts = 4;  // that a step may have for the sake of crossings
+constexpr int kMoreParts = 4;  // additional parts of a step to avoid crossings
 
 }  // namespace
 

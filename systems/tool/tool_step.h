@@ -1,5 +1,5 @@
-// The systems of the soft schedule (systems/schedule.cpp) that are about tools, and how that schedule is run: a handle
-// that goes fast takes a soft step in shorter parts.
+// The tool systems of the soft schedule (systems/schedule.cpp), and the way that schedule is run: fast motions of a
+// handle split a soft step into shorter parts.
 #pragma once
 
 #include "components/world.h"
@@ -8,11 +8,11 @@
 
 namespace pliant {
 
-// One soft step by the soft schedule: as a rule one run of it. Models are published at its end.
+// One soft step by the soft schedule: usually one run of it. Models are published at its end.
 void run_soft_step(Schedule<World>& schedule, World& world, Tick tick);
 
-void read_tool_input(World& world, Tick tick);  // where the hands are
-void linearise_tools(World& world, Tick tick);  // what the touch tick will take for the tool's tissue
+void read_tool_input(World& world, Tick tick);  // target poses of the handles
+void linearise_tools(World& world, Tick tick);  // the tissue model for the touch tick
 void publish_tools(World& world, Tick tick);    // HandleModel -> touch clock
 
 }  // namespace pliant

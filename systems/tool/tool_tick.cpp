@@ -8,12 +8,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kAnywhere = 1e9;    // [m] reach of what has touched: it slides on
-constexpr double kGone = 1.0;        // [m] gap of what will not meet any more
-constexpr double kMostTurned = 0.5;  // [1] tangent: no normal is believed to turn farther between two models
+constexpr double kAnywhere = 1e9;    // [m] reach of a contact that has touched: it continues to slide
+constexpr double kGone = 1.0;        // [m] gap of a contact that cannot close any more
+constexpr double kMostTurned = 0.5;  // [1] tangent: largest tilt of a normal between two models
 
-// A contact's axes after a slip, in those that the model was written in: the normal has turned with the surfaces'
-// curvature.
+// A contact's axes after a slip, in the model's axes: the normal has rotated with the surfaces' curvature.
 dmat3 turned_axes(dvec2 lean, const dmat2& turning, dvec2 slip) {
   lean += turning * slip;
   const double size = length(lean);
@@ -21,14 +20,14 @@ dmat3 turned_axes(dvec2 lean, const dmat2& turning, dvec2 slip) {
   return leaning_axes(lean);
 }
 
-// w = A^-1 b, or as the handle is told. A: what one tick resists a change of w with.
+// w = A^-1 b, or prescribed. A: effective inertia of the handle over one tick.
 Vector6 free_twist(const Eigen::LLT<Matrix6>& factor, const TickHandle& handle, const Vector6& tissue_right) {
   return handle.moved ? handle.next : Vector6(factor.solve(handle.right + tissue_right));
 }
 
-// [1] How far a contact's normal leans since bodies have given way differently where slip would lead: what slip changes
-// of its normal velocity, for the ways that modes and handle have gone. Without it a hand could gain work by sliding
-// one way while it presses and the other way while it does not.
+// [1] Tilt of a contact's normal by deformation: the derivative of its normal displacement by slip, for the
+// displacements of modes and handle. Without it a hand could gain work by sliding one way while it presses and back
+// while it does not.
 dvec2 bent(const CondensedContacts& model, const CondensedState& state, int i) {
   dvec2 lean(0.0);
   for (int k = 0; k < 2; ++k) {
@@ -39,8 +38,9 @@ dvec2 bent(const CondensedContacts& model, const CondensedState& state, int i) {
   return lean;
 }
 
-// Adds to the impulses on modes and handle what the contacts' last ones do since they slipped on, and finds what that
-// slip changes of the contacts' velocities. A tick behind: so the contacts' compliance stays what it was made.
+// First-order change of the contacts' Jacobians with slip. Adds its part of the last impulses to modes and handle, and
+// computes its part of the contacts' velocities. It is one tick late, so that the contacts' compliance stays
+// precomputed.
 void slide(const CondensedContacts& model, CondensedState& state, const Vector6& w, Vector& on_modes,
            Vector6& on_handle) {
   for (int i = 0; i < model.count; ++i) {
@@ -63,7 +63,7 @@ void slide(const CondensedContacts& model, CondensedState& state, const Vector6&
   }
 }
 
-// Contact velocities without new impulses, plus what is left of each gap.
+// Contact velocities without new impulses, plus the rate that closes the remaining gap.
 void fill_bias(const CondensedContacts& model, const CondensedState& state, const Vector6& w, Vector& bias) {
   const Eigen::Index rows = 3 * model.count;
   const double tick = model.tick;
@@ -78,7 +78,7 @@ void fill_bias(const CondensedContacts& model, const CondensedState& state, cons
   }
 }
 
-// W = held + R S^-1 R^T, R = reduced_handle: how the handle itself gives way.
+// W = delassus + R S^-1 R^T, R = reduced_handle: the second term is the handle's compliance.
 void fill_delassus(const CondensedContacts& model, const Eigen::LLT<Matrix6>& factor, const TickHandle& handle,
                    CondensedState& state) {
   const Eigen::Index rows = 3 * model.count;
@@ -93,13 +93,13 @@ void fill_delassus(const CondensedContacts& model, const Eigen::LLT<Matrix6>& fa
   }
 }
 
-// x += T v of everything that moved.
+// x += T v of all that moves.
 void advance(const CondensedContacts& model, CondensedState& state, const TickHandle& handle, const Vector& lambda) {
   const Eigen::Index rows = 3 * model.count, modes = model.modes;
   const double tick = model.tick;
   state.q.head(modes) += tick * state.rate.head(modes);
   state.d += tick * handle.velocity;
-  auto moved = state.free_rate.head(rows);  // of the contacts: first the springs', then modes and handle too
+  auto moved = state.free_rate.head(rows);  // of the contacts: first of the springs, then with modes and handle
   moved.setZero();
   add_columns(moved.data(), model.flexibility.data(), model.flexibility.outerStride(), static_cast<int>(rows),
               lambda.data(), static_cast<int>(rows));
@@ -112,7 +112,7 @@ void advance(const CondensedContacts& model, CondensedState& state, const TickHa
     const dvec3 u = (dvec3(moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]) + state.shift[k]) * state.problem.own[k];
     state.slip[k] += tick * dvec2(u.y, u.z);
     const double before = state.gap[i], after = before + tick * u.x;
-    state.gap[i] = before >= 0.0 ? std::max(after, 0.0) : after;  // what rounding left closed is closed
+    state.gap[i] = before >= 0.0 ? std::max(after, 0.0) : after;  // a gap closed up to rounding is closed
     if (lambda[3 * i] > 0.0) state.reach[k] = kAnywhere;
     if (state.gap[i] > 0.0 && length(state.slip[k]) > state.reach[k]) state.gap[i] = kGone;
   }
@@ -215,7 +215,7 @@ Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, co
   state.report = solve(state.problem, limits);
   const Vector& lambda = state.problem.impulse;
 
-  // What the impulses do to handle and modes.
+  // Effect of the impulses on handle and modes.
   handle.velocity = free_w;
   if (!handle.moved)
     handle.velocity +=

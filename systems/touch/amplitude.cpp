@@ -10,10 +10,10 @@ namespace pliant {
 namespace {
 
 constexpr int kMaxSweeps = 100;
-constexpr double kTolerance = 1e-7;  // [1] of the largest depth: far below what a float field can show
+constexpr double kTolerance = 1e-7;  // [1] of the largest depth: far below the resolution of a float field
 constexpr std::size_t kMost = 64;    // contacts: the working memory is on the stack
 
-// Which entries of each row of A are not zero: dents far apart do not meet.
+// The non-zero entries of each row of A: distant dents do not overlap.
 struct AmplitudeRows {
   std::array<std::uint8_t, kMost * kMost> column;
   std::array<std::size_t, kMost + 1> first;
@@ -29,7 +29,7 @@ struct AmplitudeRows {
   }
 };
 
-// One row of a solve: how far the field at contact i falls short of its depth. [m]
+// Residual of one row: depth minus field at contact i. [m]
 double shortfall(std::span<const double> A, const AmplitudeRows& rows, std::span<const double> d,
                  std::span<const double> alpha, std::size_t i) {
   double r = d[i];
@@ -48,8 +48,8 @@ double worst_violation(std::span<const double> A, const AmplitudeRows& rows, std
   return worst;
 }
 
-// Sweeps converge slowly where probes almost coincide: solve for the pressing ones directly (Gauss with partial
-// pivoting) and keep the answer if it is the better one.
+// Sweeps converge slowly where probes almost coincide. Solves for the pressing contacts directly (Gauss with partial
+// pivoting) and keeps the better of both results.
 void polish(std::span<const double> A, const AmplitudeRows& rows, std::span<const double> d, std::span<double> alpha) {
   const std::size_t n = d.size();
   std::array<std::size_t, kMost> pressing;
@@ -66,7 +66,7 @@ void polish(std::span<const double> A, const AmplitudeRows& rows, std::span<cons
     std::size_t pivot = k;
     for (std::size_t i = k + 1; i < m; ++i)
       if (std::abs(M[i * m + k]) > std::abs(M[pivot * m + k])) pivot = i;
-    if (std::abs(M[pivot * m + k]) < 1e-9) return;  // coincident probes: any split of the amplitude will do
+    if (std::abs(M[pivot * m + k]) < 1e-9) return;  // coincident probes: any split of the amplitude is valid
     for (std::size_t j = 0; j < m; ++j) std::swap(M[k * m + j], M[pivot * m + j]);
     std::swap(x[k], x[pivot]);
     for (std::size_t i = k + 1; i < m; ++i) {
@@ -104,7 +104,7 @@ double solve_amplitudes(std::span<const double> A, std::span<const double> d, st
     converged = change <= kTolerance * size;
   }
   if (!converged) polish(A, rows, d, alpha);
-  // An indefinite A (rims that add up) could let amplitudes run away: never more than ten times the deepest probe.
+  // An indefinite A (rims that add up) could make amplitudes diverge: they are limited to ten times the deepest probe.
   for (double& a : alpha) a = std::min(a, 10 * size);
   return worst_violation(A, rows, d, alpha);
 }

@@ -1,4 +1,4 @@
-// The triangles around a vertex, over its edges.
+// Iterates the triangles around a vertex, over their shared edges.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,9 @@ inline int corner_of(const uvec3& t, std::uint32_t v) {
   return t.x == v ? 0 : t.y == v ? 1 : 2;
 }
 
-// Calls visit(triangle) for the triangles around a vertex, starting at one of them: round by the left edges, and where
-// that ends (a border, or an edge that `crosses(triangle, edge)` forbids) back by the right ones.
+// Calls visit(triangle) for the triangles around a vertex, starting at `first` and going round over the left edges.
+// Where that ends (a border, or an edge that `crosses(triangle, edge)` forbids), continues from `first` over the right
+// edges.
 template <class Crosses, class Visit>
 void around_vertex(const Mesh& mesh, std::uint32_t vertex, std::uint32_t first, Crosses crosses, Visit visit) {
   constexpr int kMost = 256;

@@ -5,7 +5,7 @@
 namespace pliant {
 namespace {
 
-// A leaf's box in the tree is this much of its diagonal larger on every side. More: fewer moves, more boxes visited.
+// Margin of a leaf's box on every side, as a share of its diagonal. More: fewer reinsertions, more boxes visited.
 constexpr float kRoom = 0.1f;
 
 Box roomy(const Box& box) {
@@ -45,7 +45,7 @@ void BoxTree::build(std::span<const Box> boxes) {
   root_ = build_over(ids, next);
 }
 
-// Halves the boxes by their centres along the axis on which those are spread most.
+// Splits the boxes into halves by their centres along the axis of largest spread.
 std::uint32_t BoxTree::build_over(std::span<std::uint32_t> ids, std::uint32_t& next) {
   if (ids.size() == 1) return ids[0];
   Box centers;
@@ -83,8 +83,8 @@ void BoxTree::replace(std::uint32_t parent, std::uint32_t child, std::uint32_t b
     nodes_[parent].child[nodes_[parent].child[1] == child] = by;
 }
 
-// Where one child is higher by two or more, it takes the place of its parent and leaves it the lower of its own
-// children; again until the heights are balanced below and here. Returns what stands here then.
+// AVL rotation: a child that is higher by two or more takes the place of its parent, which gets the child's lower
+// child. Repeated until the heights are balanced here and below. Returns the node that is here afterwards.
 std::uint32_t BoxTree::balance(std::uint32_t inner) {
   for (;;) {
     refit(inner);
@@ -99,7 +99,7 @@ std::uint32_t BoxTree::balance(std::uint32_t inner) {
     nodes_[inner].parent = up;
     nodes_[inner].child[side] = given;
     nodes_[given].parent = inner;
-    balance(inner);  // a leaf that joined a high tree is handed down
+    balance(inner);  // a leaf that joined a high tree is passed down
     inner = up;
   }
 }
@@ -108,7 +108,7 @@ void BoxTree::climb(std::uint32_t inner) {
   while (inner != kNone) inner = nodes_[balance(inner)].parent;
 }
 
-// Takes a leaf and its parent out; returns the parent, which stands free then.
+// Removes a leaf and its parent; returns the parent, which is then unused.
 std::uint32_t BoxTree::take_out(std::uint32_t leaf) {
   const std::uint32_t parent = nodes_[leaf].parent;
   const std::uint32_t sibling = nodes_[parent].child[nodes_[parent].child[0] == leaf];
@@ -118,7 +118,8 @@ std::uint32_t BoxTree::take_out(std::uint32_t leaf) {
   return parent;
 }
 
-// Goes down to where the leaf adds the least area, to what is above too, and joins it there with `spare` as parent.
+// Descends to the node where the leaf adds the least area, ancestors included, and joins it there with `spare` as
+// parent.
 void BoxTree::put_in(std::uint32_t leaf, std::uint32_t spare) {
   const Box& box = nodes_[leaf].box;
   std::uint32_t at = root_;
@@ -144,7 +145,7 @@ void BoxTree::move(std::uint32_t id, const Box& box) {
   boxes_[id] = box;
   Node& leaf = nodes_[id];
   const Box wanted = roomy(box);
-  // A box that shrinks a lot is put in anew as well: the room it had would be visited for nothing.
+  // A box that shrinks a lot is also reinserted: its margin would cause needless visits.
   if (holds(leaf.box, box) && half_area(leaf.box) <= 4 * half_area(wanted)) return;
   if (id == root_) {
     leaf.box = wanted;

@@ -1,9 +1,9 @@
-// Which of many boxes meet a box: a balanced binary tree of boxes that may move (a probe among thousands of objects).
-// The scheme is that of Box2D's dynamic tree (E. Catto): a leaf's place in the tree is kept by a box somewhat larger
-// than its own, so that small moves cost nothing; larger ones take the leaf out and put it in where it adds the least
-// area, O(log N). A sweep along one axis was not taken: objects side by side on a table all meet on two axes.
+// Finds the boxes that overlap a given box: a balanced binary tree of boxes that may move (a probe among thousands of
+// objects). The scheme is that of Box2D's dynamic tree (E. Catto). A leaf has a margin, so small moves cost nothing.
+// Larger moves remove the leaf and reinsert it where it adds the least area, O(log N). Rejected: a sweep along one
+// axis, since objects side by side on a table all overlap on two axes.
 //
-// Nothing but build() allocates. The same calls in the same order give the same tree and the same order of visits.
+// Only build() allocates. The same calls in the same order give the same tree and the same order of visits.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ class BoxTree {
   BoxTree() = default;
   explicit BoxTree(std::span<const Box> boxes) { build(boxes); }
 
-  // Begins anew with these boxes; box i is called i from then on. An empty box meets nothing. O(N log N).
+  // Rebuilds the tree; box i has id i from then on. An empty box overlaps nothing. O(N log N).
   void build(std::span<const Box> boxes);
   void move(std::uint32_t id, const Box& box);
 
@@ -28,7 +28,7 @@ class BoxTree {
   const Box& box(std::uint32_t id) const { return boxes_[id]; }
   std::uint32_t height() const { return root_ == kNone ? 0 : nodes_[root_].height; }
 
-  // Calls visit(id) once for every box that meets `box`; boxes that only touch do.
+  // Calls visit(id) once for every box that overlaps or touches `box`.
   template <class Visit>
   void visit(const Box& box, Visit visit) const {
     if (root_ == kNone) return;
@@ -52,7 +52,7 @@ class BoxTree {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   static constexpr std::uint32_t kStack = 64;  // the tree is balanced: height <= 1.44 log2 N
 
-  // Nodes [0, N) are the leaves, of the ids; the N - 1 others stand behind them.
+  // Nodes [0, N) are the leaves, indexed by id; the N - 1 inner nodes follow.
   struct Node {
     Box box;
     std::uint32_t parent = kNone;

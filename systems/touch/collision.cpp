@@ -1,8 +1,8 @@
-// Where each probe is on each surface. A contact is found by sweeping the tick's segment (so nothing is tunnelled
-// through) and from then on followed downhill from its last foot, which keeps it on the side it came from however thin
-// the part is. A sphere has a contact at every local minimum of the distance within its radius: both walls of a groove.
-// Everything happens in the object's frame, from where the tip was on the object a tick ago to where it is now, so that
-// it does not matter which of the two has moved.
+// Finds and tracks the contacts of each probe on each surface. A contact is found by sweeping the tick's segment, so
+// that nothing tunnels. From then on its foot is tracked downhill from the last foot, which keeps the probe on its side
+// of however thin a part. A sphere has a contact at every local minimum of the distance within its radius: both walls
+// of a groove. All in the object's frame, from the tip's place on the object a tick ago to its place now: the result
+// depends only on the relative motion.
 #include "systems/touch/collision.h"
 
 #include <algorithm>
@@ -20,16 +20,16 @@
 namespace pliant {
 namespace {
 
-// Walls are looked for within this share of a sphere's radius beyond it, and again once it has moved half as far: so a
-// contact is known before it presses, and begins at no depth.
+// Walls are searched within this share of a sphere's radius beyond it, and again once it has moved half as far. A
+// contact is therefore known before it presses, and begins at zero depth.
 constexpr double kAhead = 0.1;
-// Two feet of a tip are one where they are nearer than this. [1] of the mean edge
+// Two feet of a tip closer than this are the same. [1] of the mean edge
 constexpr double kSameFoot = 1e-6;
 constexpr std::size_t kMostFootSeeds = 32;
-// A tip that came to rest within rounding of the surface must not slip through: sweeps begin this much earlier.
+// A tip that stopped within rounding of the surface must not pass through: sweeps begin this much earlier.
 constexpr double kEarly = 1e-6;  // [1] of the object's diagonal
 
-// One tip of a probe, as its contacts name it.
+// One tip of a probe, as identified by its contacts.
 struct ProbeTip {
   Entity probe;
   std::uint8_t index = 0;
@@ -66,12 +66,12 @@ void put(SourceState& source, Contact& contact, const FootBlend& place, dvec3 x)
   if (contact.height >= 0) {
     contact.state = ContactState::kFree;
   } else if (contact.state == ContactState::kFree) {
-    contact.state = ContactState::kInside;  // friction_feedback says whether it presses
+    contact.state = ContactState::kInside;  // friction_feedback decides whether it presses
   }
 }
 
-// Height and rate of the surface under a foot, without what contacts hold down: what is still recovering. Where the
-// tissue holds it down itself (the arm of the standard linear solid), the law of the contact knows of it already.
+// Height and rate of the recovering surface under a foot, without the contacts' targets. The depth sustained by the arm
+// (standard linear solid) is excluded: the contact's law includes it already.
 HeightState recovering(const Search& s, const Foot& foot) {
   const uvec3 t = s.mesh.triangles[foot.triangle];
   HeightState mean;
@@ -84,7 +84,7 @@ HeightState recovering(const Search& s, const Foot& foot) {
   return mean;
 }
 
-// A contact that begins. What it did not have to be pushed through is not pushed back: its force starts from zero.
+// Begins a contact. Its initial depth was not pushed, so its force starts from zero.
 void begin(const Search& s, const ProbeTip& tip, const Foot& foot, dvec3 from, dvec3 x) {
   SourceState* source = s.free_source();
   if (!source) {
@@ -114,7 +114,7 @@ void begin(const Search& s, const ProbeTip& tip, const Foot& foot, dvec3 from, d
   }
 }
 
-// Past the rim of an open surface; `but`: over one of these edges it would not be (3 * triangle + edge, ascending).
+// Whether x is past the rim of an open surface. Edges in `but` are not rims (3 * triangle + edge, ascending).
 bool beyond_border(const Mesh& mesh, const Foot& foot, dvec3 x, std::span<const std::uint32_t> but = {}) {
   if (!foot.at_border) return false;
   bool beyond = false;
@@ -139,7 +139,7 @@ bool beyond_border(const Mesh& mesh, const Foot& foot, dvec3 x, std::span<const 
   return beyond;
 }
 
-// The foot goes along with x, in steps over which the surface hardly bends.
+// Tracks the foot along the way of x, in steps over which the surface hardly curves.
 Foot follow_foot(const Search& s, Foot foot, dvec3 from, dvec3 to) {
   const double step = std::max({std::abs(foot.height), static_cast<double>(s.mesh.mean_edge), 1e-12});
   const int steps = std::clamp(static_cast<int>(std::ceil(length(to - from) / step)), 1, 8);
@@ -148,8 +148,9 @@ Foot follow_foot(const Search& s, Foot foot, dvec3 from, dvec3 to) {
   return foot;
 }
 
-// A tip that was pressed through a wall is beyond it, and still held by the side that it went in at. That wall, which
-// has the foot there behind it, is no surface to it: else it would be caught on its way back.
+// Whether p is on a wall through which this tip was pressed. Such a tip is beyond the wall but still in contact with
+// its entry side. A wall is ignored if the contact's foot is behind it; otherwise it would catch the tip on its way
+// back.
 bool pressed_through(const Search& s, const ProbeTip& tip, dvec3 p, dvec3 outward) {
   const double flush = s.early() * length(outward);
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
@@ -174,13 +175,12 @@ bool is_known(const Search& s, const ProbeTip& tip, const Foot& foot) {
   return false;
 }
 
-// A foot that has come to a seam goes on upon the other surface, with all that belongs to the contact; or it waits
-// between both.
+// A foot at a seam moves to the other surface, with the contact's whole state, or waits between both.
 enum class AtSeam { kStays, kBetween, kCarried };
 AtSeam carry_over(const Search& s, const Seam& seam, SourceState& source, Contact& contact, dvec3 world) {
   TouchState& touch = *s.world.touch;
   ObjectState& object = touch.objects[seam.object];
-  if (object.world_box.empty()) return AtSeam::kStays;  // it is taken out
+  if (object.world_box.empty()) return AtSeam::kStays;  // the object is removed
   const ProbeTip tip{contact.probe, contact.tip, source.tip};
   const Deformable& deformable = s.world.registry.get<Deformable>(object.entity);
   const Search there{s.world, object, s.world.meshes[deformable.mesh], s.world.fields[deformable.field], s.tick};
@@ -227,7 +227,7 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
   if (const Seam* seam = seam_at(s.object, foot))
     at_seam = carry_over(s, *seam, source, contact, s.world.registry.get<Pose>(s.object.entity).to_world(x));
   if (at_seam == AtSeam::kCarried) return;
-  // Past the rim of an open surface, or so far away that no place on it means anything any more.
+  // Past the rim of an open surface, or too far away for a meaningful foot.
   const std::vector<std::uint32_t>& seams = s.object.closed;
   const bool beyond =
       at_seam == AtSeam::kBetween ? beyond_border(s.mesh, foot, x, seams) : beyond_border(s.mesh, foot, x);
@@ -236,17 +236,17 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
       foot.height > radius * (1 + 2 * kAhead))
     return drop_contact(source, contact);
   put(source, contact, contact_place(s.object, s.mesh, foot, x), x);
-  // A depth changes no faster than the tip moves, unless the minimum that was followed has gone and the foot went
-  // downhill to another one. What it then is deeper than before was not pushed.
+  // A depth changes no faster than the tip moves, unless the tracked minimum vanished and the foot moved downhill to
+  // another one. The additional depth was not pushed.
   const double deeper = last - source.place.height - moved;
   if (deeper > 1e-9 * static_cast<double>(s.mesh.box.diagonal())) {
     contact.unpushed += deeper;
   }
-  // What has come out so far is no longer held against it.
+  // The unpushed depth is at most the depth that is left.
   contact.unpushed = std::clamp(contact.unpushed, 0.0, std::max(0.0, -contact.height));
 }
 
-// Feet of the walls within `within` of x: triangles that no neighbour is nearer than.
+// Feet of the walls within `within` of x: triangles that are nearer than all their neighbours.
 void find_walls(const Search& s, dvec3 x, double within, std::array<Foot, kMostFootSeeds>& feet, std::size_t& count) {
   const Mesh& mesh = s.mesh;
   const double limit = within + static_cast<double>(mesh.tree.bulge);
@@ -280,7 +280,7 @@ void find_walls(const Search& s, dvec3 x, double within, std::array<Foot, kMostF
       });
 }
 
-// Whether the tip is already behind this surface or one that it goes on: then the walls between them are no surface.
+// Whether the tip is already behind this surface or an adjoining one; then the walls between them are ignored.
 bool inside_neighbour(const Search& s, const ProbeTip& tip) {
   if (s.object.seams.empty()) return false;
   const auto behind = [&](const ObjectState& object) {
@@ -295,14 +295,15 @@ bool inside_neighbour(const Search& s, const ProbeTip& tip) {
                                          [&](std::uint32_t slot) { return behind(s.world.touch->objects[slot]); });
 }
 
-// Of the walls on a way, the first that is entered from outside and is a surface to the tip; `along` [m] past a wall.
+// Of the walls on a way, the first that is entered from outside and is not ignored for this tip. `along` [m] steps past
+// a wall.
 struct EntryPlace {
   std::uint32_t triangle = Foot::kNone;
   dvec3 barycentric{1, 0, 0};
   dvec3 x{0};  // [m]
 };
 EntryPlace entry_place(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 to, dvec3 along) {
-  constexpr int kMostWalls = 8;  // that lie on the way of one tick
+  constexpr int kMostWalls = 8;  // on the way of one tick
   for (int wall = 0; wall < kMostWalls && dot(to - from, along) > 0; ++wall) {
     const pliant::Entry entry = first_entry(s.mesh, from, to);
     if (!entry.valid()) break;
@@ -315,8 +316,8 @@ EntryPlace entry_place(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 t
   return {};
 }
 
-// The curved surface stands a little before or behind its triangles. The foot at `to` of a point that was outside of it
-// and already behind a triangle; not valid: it was not.
+// The curved surface is slightly in front of or behind its triangles. Returns the foot at `to` of a point that was
+// outside the curved surface but behind a triangle; invalid if it was not.
 Foot entry_behind_triangle(const Search& s, dvec3 from, dvec3 to) {
   const FlatPoint near = closest_flat(s.mesh, from, 1.5 * static_cast<double>(s.mesh.tree.bulge));
   if (!near.valid()) return {};
@@ -328,7 +329,7 @@ Foot entry_behind_triangle(const Search& s, dvec3 from, dvec3 to) {
   return outside.height < -s.early() ? Foot{} : follow_foot(s, outside, from, to);
 }
 
-// A point has gone through the surface.
+// Begins a contact where a point passed through the surface.
 void find_entry(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 to) {
   const dvec3 d = to - from;
   if (!(dot(d, d) > 0) || inside_neighbour(s, tip)) return;
@@ -342,7 +343,7 @@ void find_entry(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 to) {
     const FlatPoint near = closest_flat(s.mesh, to, 1.5 * bulge);
     if (near.valid() && s.downhill(near.triangle, near.barycentric, from).height >= 0)
       foot = s.downhill(near.triangle, near.barycentric, to);
-    // A short way from behind a triangle ends near it, and was found.
+    // A short way from behind a triangle ends near it: the search above covers it.
     if (!(foot.height < 0) && length(d) > 0.5 * bulge) foot = entry_behind_triangle(s, from, to);
     if (foot.valid() && pressed_through(s, tip, foot.p, foot.normal)) return;
   }
@@ -350,7 +351,7 @@ void find_entry(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 to) {
   begin(s, tip, foot, from, to);
 }
 
-// The first pose may lie inside a body; only a closed one has an inside.
+// The first pose may be inside a body; only a closed one has an inside.
 void find_inside(const Search& s, const ProbeTip& tip, dvec3 x) {
   if (!s.mesh.closed) return;
   const FlatPoint near =
@@ -360,7 +361,7 @@ void find_inside(const Search& s, const ProbeTip& tip, dvec3 x) {
   if (foot.height < tip.tip.radius && !is_known(s, tip, foot)) begin(s, tip, foot, x, x);
 }
 
-// `searched`: where this tip last looked for walls of the object.
+// `searched`: where this tip last searched for walls of the object.
 void find(const Search& s, const ProbeTip& tip, dvec3& searched, bool fresh, dvec3 from, dvec3 to) {
   const double radius = tip.tip.radius, within = radius * (1 + kAhead);
   const double band = within + static_cast<double>(s.mesh.tree.bulge) + 2 * s.early();
@@ -375,7 +376,7 @@ void find(const Search& s, const ProbeTip& tip, dvec3& searched, bool fresh, dve
 
   if (length(to - searched) < 0.5 * kAhead * radius) return;
   searched = to;
-  // A sphere touches before its centre crosses: look around the segment's end, and for a fast one along it.
+  // A sphere touches before its centre crosses: search around the segment's end, and along the segment of a fast one.
   const int steps = std::clamp(static_cast<int>(std::ceil(2 * length(to - from) / radius)), 1, 16);
   for (int i = 1; i <= steps; ++i) {
     const dvec3 x = from + (to - from) * (double(i) / steps);
@@ -390,7 +391,7 @@ void find(const Search& s, const ProbeTip& tip, dvec3& searched, bool fresh, dve
   }
 }
 
-// Of contacts of one tip that have come to the same foot, the older one stays.
+// If contacts of one tip have reached the same foot, the older one stays.
 void merge(const Search& s) {
   const double same = kSameFoot * static_cast<double>(s.mesh.mean_edge);
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
@@ -435,7 +436,7 @@ void collision(World& world, Tick tick) {
     std::uint32_t followed = 0;
     for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
       SourceState& source = object.sources[i];
-      if (!source.tracked || source.born == tick.index + 1) continue;  // carried over a seam in this very tick
+      if (!source.tracked || source.born == tick.index + 1) continue;  // carried over a seam in this tick
       Contact& contact = registry.get<Contact>(source.contact);
       const Probe& probe = registry.get<Probe>(contact.probe);
       follow(search, source, contact, pose.to_local(tip_position(probe, source.tip)));
@@ -455,7 +456,7 @@ void collision(World& world, Tick tick) {
       swept.add(vec3(glm::max(from, to) + dvec3(band)));
       touch.object_boxes.visit(swept, [&](std::uint32_t slot) {
         ObjectState& object = touch.objects[slot];
-        if (object.world_box.empty()) return;  // it is taken out
+        if (object.world_box.empty()) return;  // the object is removed
         const Deformable& deformable = registry.get<Deformable>(object.entity);
         const Search search{world, object, world.meshes[deformable.mesh], world.fields[deformable.field], tick};
         find(search, {state.entity, static_cast<std::uint8_t>(t), tip}, object.searched[state.first_tip + t],

@@ -9,10 +9,10 @@ namespace pliant {
 
 void collision(World& world, Tick tick);
 
-// Nobody's any more.
+// Ends the contact and frees its source.
 void drop_contact(SourceState& source, Contact& contact);
 
-// Where a tip's centre is now, and where it was a tick ago. [m] world
+// Centre of a tip now, and a tick ago. [m] world
 dvec3 tip_position(const Probe& probe, const Tip& tip);
 dvec3 tip_position_before(const Probe& probe, const Tip& tip);
 

@@ -25,12 +25,13 @@ double wendland_slope(double r, double a) {
   return -20 * w * w * w / (a * a);
 }
 
-// On the diagonal of contacts that overlap: equal ones share the load evenly, at a millionth of the force.
+// Regularisation of the diagonal for overlapping contacts: equal ones share the load evenly, at a millionth of the
+// force.
 constexpr double kEven = 1e-6;
 constexpr int kMostPivots = 60;
 
-// The linear complementarity problem A l >= e, l >= 0 by block principal pivoting (Judice & Pires 1994): exact, and one
-// factorisation where the set that presses is the last tick's. Falls back to single pivots, which always end.
+// The linear complementarity problem A l >= e, l >= 0 by block principal pivoting (Judice & Pires 1994). Exact; needs
+// one factorisation if the active set is the last tick's. Falls back to single pivots, which always terminate.
 class Loads {
  public:
   Loads(std::span<LoadedContact> contacts, const ShareKernel& kernel) : contacts_(contacts), n_(contacts.size()) {
@@ -66,12 +67,12 @@ class Loads {
         fewest = count;
         patience = 8;
       } else if (--patience < 0) {
-        wrong = std::bit_floor(wrong);  // Murty: the last wrong one alone
+        wrong = std::bit_floor(wrong);  // Murty: flip only the last wrong one
       }
       pressing_ ^= wrong;
       if (pressing_ == 0) pressing_ = std::bit_floor(wrong);
     }
-    for (std::size_t i = 0; i < n_; ++i) contacts_[i].load = l_[i] < 0.0 ? 0.0 : l_[i];  // no number stays none
+    for (std::size_t i = 0; i < n_; ++i) contacts_[i].load = l_[i] < 0.0 ? 0.0 : l_[i];  // NaN stays NaN
   }
 
   double overlap(std::size_t i, std::size_t j) const { return A_[i][j]; }
@@ -86,8 +87,7 @@ class Loads {
     return r;
   }
 
-  // A l = e over those that press, by Cholesky within the envelope: contacts far apart have nothing to do with each
-  // other.
+  // A l = e over the pressing contacts, by Cholesky within the envelope: distant contacts are not coupled.
   void factor_and_solve() {
     std::array<std::size_t, kMaxLoaded> at;
     std::size_t m = 0;
@@ -102,7 +102,7 @@ class Loads {
       for (std::size_t j = first[i]; j <= i; ++j) {
         double sum = A_[at[i]][at[j]] + (i == j ? even_[at[i]] : 0.0);
         for (std::size_t k = std::max(first[i], first[j]); k < j; ++k) sum -= L_[i][k] * L_[j][k];
-        // Normals that differ much can make A indefinite by a little: such a contact has nothing of its own.
+        // Normals that differ much can make A slightly indefinite: the pivot of such a contact is clamped.
         L_[i][j] = i == j ? std::sqrt(std::max(sum, kEven)) : sum / L_[j][j];
       }
     }
@@ -142,7 +142,8 @@ double ShareKernel::slope(double r2) const {
 
 namespace {
 
-// The mixture that differs least, at its worst, from the positive part of a shape: its value over u = (r / R)^2 < 1.
+// The mixture with the smallest maximum error against the positive part of a shape, given as value over u = (r / R)^2 <
+// 1.
 template <class Value>
 ShareKernel fitted_kernel(const Value& value) {
   constexpr int kPlaces = 64;
@@ -165,8 +166,8 @@ ShareKernel fitted_kernel(const Value& value) {
 
 }  // namespace
 
-// Fitted to the largest difference; what is left of it, as a share of the dent's depth, is in the comment. A punch has
-// a flat bottom, which no positive definite function has.
+// Minimax fits; the comments give the remaining error as a share of the dent's depth. A punch has a flat bottom, which
+// no positive definite function has.
 ShareKernel share_kernel(Shape shape, double reach, double volume, double contact) {
   const auto kernel = [reach](double weight, double inner, double outer) {
     return ShareKernel{weight, inner * reach, outer * reach};

@@ -1,12 +1,12 @@
-// The elastic force on every probe as minus the gradient of one stored energy (methods.md 1.10). For contacts i of one
-// object, each with its own stored energy W_i as if it were alone:
-//   e_i = sqrt(2 W_i),   U = max over loads l >= 0 of  e.l - 1/2 l.A l,   A_ii = 1,  A_ij = phi(|p_i - p_j| / R) max(0,
-//   n_i.n_j)
-// A lone contact has U = W. Coincident ones share one W. Far ones do not know of each other. By the envelope theorem
+// The elastic force on every probe as minus the gradient of one stored energy (methods.md 1.10). W_i is the stored
+// energy of contact i of an object as if it were alone:
+//   e_i = sqrt(2 W_i),   U = max over loads l >= 0 of  e.l - 1/2 l.A l,   A_ii = 1,
+//   A_ij = phi(|p_i - p_j| / R) max(0, n_i.n_j)
+// A lone contact has U = W. Coincident contacts share one W. Distant contacts are not coupled. By the envelope theorem
 //   -dU/dx_i = -(l_i / e_i) dW_i/dx_i + l_i sum_j l_j dA_ij/dx_i
 // the last term is the slope of the neighbours' dents (P1 3.5, "actual normal").
 //
-// phi must be positive definite in space, which the drawn shapes with a rim are not: it is a mixture of two Wendland
+// phi must be positive definite in space, which the drawn shapes with a rim are not. It is a mixture of two Wendland
 // functions per shape, fitted to the shape's positive part (share_kernel).
 #pragma once
 
@@ -32,16 +32,16 @@ ShareKernel share_kernel(Shape shape, double reach, double volume, double contac
 struct LoadedContact {
   double energy = 0.0;    // [J] W > 0, alone
   dvec3 pull{0};          // [N] -dW/dx
-  dvec3 p{0}, normal{0};  // [m], [1] where it is
+  dvec3 p{0}, normal{0};  // [m], [1] of the contact
   dmat3 moves{0.0};       // [1] dp/dx
   dmat3 turns{0.0};       // [1/m] dn/dx
-  double load = 0.0;      // [sqrt J] l: in, a guess (the last tick's); out
-  double share = 0.0;     // [1] out: l / e, of its own force; 1 alone, 0 in another's dent
+  double load = 0.0;      // [sqrt J] l: in, initial guess (the last tick's); out
+  double share = 0.0;     // [1] out: l / e, of its lone force; 1 alone, 0 in another's dent
   dvec3 force{0};         // [N] out: -dU/dx
 };
 
-// Finds the loads and the forces. Returns U [J], no number where a load was none and became 0. At most kMaxLoaded
-// contacts.
+// Solves for the loads and the forces. Returns U [J]; NaN if a load was not finite and was replaced by 0. At most
+// kMaxLoaded contacts.
 inline constexpr std::size_t kMaxLoaded = 64;
 double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel);
 

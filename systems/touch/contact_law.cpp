@@ -28,7 +28,7 @@ double ContactLaw::slope(double depth) const {
 double ContactLaw::potential(double depth) const {
   if (hertz == 0.0) return stiffness * law.potential(-depth);
   if (!law.curved()) return 0.4 * hertz * depth * depth * std::sqrt(std::max(0.0, depth));
-  // Gauss-Legendre in sqrt(depth), which takes away the root at zero: d = s^2, dd = 2 s ds.
+  // Gauss-Legendre in sqrt(depth), which removes the square root at zero: d = s^2, dd = 2 s ds.
   constexpr double kAt[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
   constexpr double kWeight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
   const double half = 0.5 * std::sqrt(std::max(0.0, depth));
@@ -45,9 +45,9 @@ StoredEnergy ContactLaw::stored(double depth) const {
   StoredEnergy out;
   if (!(depth > 0)) return out;
   const double offset = force(free_depth);
-  double from = free_depth;  // where the force is zero
+  double from = free_depth;  // depth of zero force
   if (arm > 0) {
-    // force(d) + arm (d - q) rises with d, from at most zero at 0 (q, y >= 0) to what it is at max(q, y).
+    // force(d) + arm (d - q) increases with d: at most zero at 0 (q, y >= 0), at least zero at max(q, y).
     double low = 0.0, high = std::max(relaxed_depth, free_depth);
     for (int i = 0; i < 60 && high - low > 1e-15 * high; ++i) {
       from = law.kind == SpringLaw::kStandardLinearSolid && hertz == 0.0

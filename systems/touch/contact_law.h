@@ -1,11 +1,11 @@
-// What one contact stores, as if it were alone (methods.md 1.8, 1.10): the law of the depth d behind the rest surface,
+// Stored energy and force of one contact, as if it were alone (methods.md 1.8, 1.10). The law of the depth d behind the
+// rest surface is
 //   F(d) = law(d) - law(y) + k1 (d - q),   never negative,   W = its integral from where it is zero,
-// y the depth of the free surface (0 at rest; what a surface that is still recovering would be at had nobody come; or
-// what nobody pushed, Contact::unpushed), q
-// the tissue's viscous extension at the foot (standard linear solid).
+// y: depth of the free surface. It is 0 at rest. For a recovering surface it is the depth without the contact; it also
+// covers unpushed depth (Contact::unpushed). q: the tissue's viscous extension at the foot (standard linear solid).
 //
-// With Young's modulus and a sphere, law(d) is Hertz's, 4/3 E* sqrt(r) z(d)^1.5, z the law's own stiffening of the
-// depth; a point presses as a flat punch of the least radius, which is `stiffness`.
+// With Young's modulus and a sphere, law(d) is Hertz's, 4/3 E* sqrt(r) z(d)^1.5, z the law's stiffening of the depth. A
+// point presses as a flat punch of the smallest radius, whose stiffness is `stiffness`.
 #pragma once
 
 #include "components/deformable.h"
@@ -13,7 +13,7 @@
 
 namespace pliant {
 
-// law(depth) [N]; odd where the restoring law is. `stiffness` [N/m] is the local one (painted factor included).
+// law(depth) [N]; odd if the restoring law is. `stiffness` [N/m] is the local one (painted factor included).
 double law_force(const RestoringLaw& law, double stiffness, double depth);
 
 // A painted factor (Mesh::stiffness_factor, friction_factor) at a place on the surface. [1]
@@ -34,7 +34,7 @@ struct ContactLaw {
   double free_depth = 0.0;   // [m]   y >= 0
 
   double force(double depth) const;      // [N] law(d)
-  double slope(double depth) const;      // [N/m] of force(), the arm's among it
+  double slope(double depth) const;      // [N/m] of force(), arm included
   double potential(double depth) const;  // [J] its integral from 0
   StoredEnergy stored(double depth) const;
 };

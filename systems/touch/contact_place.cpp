@@ -11,13 +11,13 @@ namespace {
 // Sides of a convex crease whose normals make a larger angle than this cosine's (145 degrees) are two faces of a thin
 // part: pressing one does not open the other.
 constexpr double kThin = -0.82;
-// How far from a point, in its depths, a crease may lie whose other side still matters: for a wedge of 35 degrees, the
-// sharpest that is no thin part, tan a = sin 35 / (1.5 + cos 35) and 1 / sin a = 4.2.
+// Distance of a crease from a point, in its depths, up to which its other side matters. For a wedge of 35 degrees, the
+// sharpest that is not a thin part: tan a = sin 35 / (1.5 + cos 35) and 1 / sin a = 4.2.
 constexpr double kCreaseReach = 4.2;
-// Two feet are one where they are nearer than this. [1] of the mean edge
+// Two feet closer than this are the same. [1] of the mean edge
 constexpr double kSameContact = 1e-6;
 
-// Convex creases of the mesh within `within` of x, as 3 * triangle + edge; every one from both its sides.
+// Convex creases of the mesh within `within` of x, as 3 * triangle + edge; each from both sides.
 template <class Visit>
 void visit_creases(const ObjectState& object, dvec3 x, double within, Visit visit) {
   Box around;
@@ -27,7 +27,7 @@ void visit_creases(const ObjectState& object, dvec3 x, double within, Visit visi
       around, [&](std::uint32_t i) { visit(object.creases[i] / 3, static_cast<int>(object.creases[i] % 3)); });
 }
 
-// A crease that may matter, and how far its edge is.
+// A crease that may matter, and the distance of its edge.
 struct NearCrease {
   std::uint32_t triangle;
   int edge;
@@ -36,11 +36,11 @@ struct NearCrease {
   dvec3 normal;       // of the triangle
   double offset;      // [m] of its plane: normal . p
 };
-// So many are looked at in a tick, one for every flat side; where a surface is rough, the nearest ones.
+// Number of creases considered in a tick, one per flat side; on a rough surface the nearest ones.
 constexpr std::size_t kMostCreases = 8;
 
-// The nearest creases within `within` of x whose sides x may be below by less than `farthest`. Returns how many were
-// met on the way.
+// The nearest creases within `within` of x that have x behind their side by less than `farthest`. Returns the number of
+// creases visited.
 std::size_t nearest_creases(const ObjectState& object, const Mesh& mesh, dvec3 x, double within, double farthest,
                             std::array<NearCrease, kMostCreases>& found, std::size_t& count) {
   const double bulge = static_cast<double>(mesh.tree.bulge), flat = 1e-5 * static_cast<double>(mesh.mean_edge);
@@ -71,16 +71,17 @@ std::size_t nearest_creases(const ObjectState& object, const Mesh& mesh, dvec3 x
   return met;
 }
 
-// A place to descend from on this side of a crease.
+// Start of a descent on this side of a crease.
 struct Start {
   std::uint32_t triangle;
   dvec3 barycentric;
-  std::uint32_t vertex = kBorder;  // that it is, if no crease comes to it: then it says which side this is
+  std::uint32_t vertex = kBorder;  // the start, if it is not on a crease: then it identifies this side
 };
 constexpr int kMostVertices = 512;  // on the way
 
-// From vertex to vertex, each nearer to x than the last, without crossing an edge that the foot may not cross: a patch
-// takes a hundred times as long. Where that does not lead away from the crease, its own nearest point is the start.
+// Walks from vertex to vertex, each nearer to x than the last, without crossing an edge that the foot may not cross.
+// This is a hundred times faster than walking over patches. If it does not leave the crease, the crease's nearest point
+// is the start.
 Start start_on_side(const ObjectState& object, const Mesh& mesh, const NearCrease& crease, dvec3 x) {
   const auto crosses = [&](std::uint32_t t, int edge) {
     return !mesh.is_crease(t, edge) &&
@@ -127,7 +128,7 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
   double farthest = kBlendRatio * -own.height;
   std::array<NearCrease, kMostCreases> creases;
   std::size_t near = 0;
-  // Around the point first; farther out, where sharp wedges may have theirs, unless the surface is rough.
+  // Around the point first. Then farther out, for sharp wedges, unless the surface is rough.
   if (nearest_creases(object, mesh, x, farthest, farthest, creases, near) <= 4 * kMostCreases) {
     near = 0;
     nearest_creases(object, mesh, x, kCreaseReach * -own.height, farthest, creases, near);
@@ -138,7 +139,7 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
   std::size_t starts = 0;
   for (std::size_t i = 0; i < near; ++i) {
     const NearCrease& crease = creases[i];
-    // A flat side whose foot is known.
+    // A flat side whose foot is already known.
     const auto same_side = [&](const Foot& f) {
       return f.place == FootPlace::kInside && dot(f.normal, crease.normal) > 1 - 1e-9 &&
              std::abs(dot(f.p, crease.normal) - crease.offset) < same;
@@ -157,7 +158,7 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
     if (std::any_of(feet.begin(), feet.begin() + count, is_same)) continue;
     if (count < kMostFeet) {
       feet[count++] = foot;
-    } else {  // the farthest of the others gives way
+    } else {  // replaces the farthest of the others
       const auto deepest = std::min_element(feet.begin() + 1, feet.end(),
                                             [](const Foot& f, const Foot& g) { return f.height < g.height; });
       if (foot.height > deepest->height) *deepest = foot;

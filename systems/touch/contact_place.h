@@ -1,4 +1,4 @@
-// Where a contact is and how deep, from its own foot and the creases around it (foot_blend.h).
+// Place and depth of a contact, from its foot and the creases around it (foot_blend.h).
 #pragma once
 
 #include "systems/touch/touch_state.h"

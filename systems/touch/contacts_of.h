@@ -1,4 +1,4 @@
-// The contacts of one probe, on every object that is awake.
+// The contacts of one probe, on every awake object.
 #pragma once
 
 #include "systems/touch/touch_state.h"

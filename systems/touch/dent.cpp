@@ -48,9 +48,9 @@ void fold(SourceState& source, ObjectState& object, World& world, Tick tick) {
   HeightField& field = world.fields[deformable.field];
   source.active = false;
   if (source.now.amplitude == 0.0f && source.before.amplitude == 0.0f) return;
-  // A tip that stops does not throw the surface on: left behind, it starts with no speed inwards.
+  // A tip that stops does not throw the surface on: its release has no inward speed.
   if (source.now.amplitude > source.before.amplitude) source.before = source.now;
-  if (deformable.response == Response::kLag) return;  // there the residual is the whole state already
+  if (deformable.response == Response::kLag) return;  // then the residual is already the whole state
   if (object.on_gpu) return remember_release(object, {source.now, source.before, tick.time}, world.dropped);
   const float inv_dt = static_cast<float>(1 / tick.dt);
   object.teller.fold(source.told, source.before, source.now);
@@ -61,7 +61,7 @@ void fold(SourceState& source, ObjectState& object, World& world, Tick tick) {
       const vec4 before = source_at(source, source.before, mesh, v);
       field.residual[v] += now;
       field.rate[v] += (now - before) * inv_dt;
-      // As if the arm had not relaxed at all; what it has, dynamics hands over (field_kernels.h, step_relaxed).
+      // As if the arm had not relaxed at all; dynamics hands over the relaxed part (field_kernels.h, step_relaxed).
       if (!field.arm.empty()) field.arm[v] += arm_stiffness(object.motion, mesh, v) * now;
     }
     wake(field, zone, kZoneResidual);

@@ -1,5 +1,5 @@
-// P1 eq. (1) on every awake zone, exact for a force held over the step, and the stream (nx, ny, nz, h) that is drawn.
-// A zone that no contact reaches and whose residual has come to rest goes to sleep, with a stream of exact zeros.
+// P1 eq. (1) on every awake zone, exact for a force that is constant over the step, and the drawn stream (nx, ny, nz,
+// h). A zone that no contact reaches and whose residual has come to rest goes to sleep, with a stream of exact zeros.
 #include "systems/touch/dynamics.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-// What is pressed still remembers.
+// A pressed zone keeps its relaxation.
 void set_to_rest(HeightField& field, std::uint32_t zone, bool reached) {
   const auto clear = [&](std::vector<vec4>& values) {
     if (!values.empty()) std::fill_n(values.begin() + zone * kZoneSize, kZoneSize, vec4(0));
@@ -39,7 +39,7 @@ void gather_targets(const ObjectState& object, const Mesh& mesh, std::uint32_t z
   if (fresh) targets = {};
 }
 
-// An object leaves the list once nothing touches it and nothing of it moves.
+// An object leaves the list once nothing touches it and nothing in it moves.
 void put_to_sleep(TouchState& touch, World& world) {
   for (std::size_t i = 0; i < touch.awake.size();) {
     ObjectState& object = touch.objects[touch.awake[i]];
@@ -69,7 +69,7 @@ void dynamics(World& world, Tick tick) {
     ObjectState& object = world.touch->objects[slot];
     const Deformable& deformable = world.registry.get<Deformable>(object.entity);
     HeightField& field = world.fields[deformable.field];
-    if (object.on_gpu) {  // the GPU draws it; what has to move here is the list
+    if (object.on_gpu) {  // drawn by the GPU; only the list of terms advances here
       list_terms(object, deformable, tick);
       std::uint32_t reached = 0;
       for (const SourceState& source : object.sources)
@@ -99,7 +99,7 @@ void dynamics(World& world, Tick tick) {
       if (!lag && !field.relaxed.empty() && step_relaxed(object.motion, mesh, field, zone, targets, reached))
         field.zone_state[zone] |= kZoneResidual;
 
-      // The residual moves; once at rest it is exactly zero.
+      // The residual moves; once at rest it is set to exactly zero.
       bool moving = lag || (field.zone_state[zone] & kZoneResidual), rests = false;
       if (moving) {
         const ZoneRest rest = lag ? step_lagging(object.motion, object.painted, field, zone, targets)

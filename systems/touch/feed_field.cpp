@@ -7,8 +7,8 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kEvents = 1 << 14;   // some thousand ticks of one probe: 1 MiB
-constexpr std::size_t kOffsets = 1 << 12;  // zones, of all ticks of a picture: 6 MiB
+constexpr std::size_t kEvents = 1 << 14;   // about a thousand ticks of one probe: 1 MiB
+constexpr std::size_t kOffsets = 1 << 12;  // zones, over all ticks of a frame: 6 MiB
 
 bool same(const FieldSource& a, const FieldSource& b) {
   return a.center == b.center && a.normal == b.normal && a.amplitude == b.amplitude && a.inv_reach2 == b.inv_reach2 &&
@@ -54,7 +54,7 @@ void FieldTeller::zone(std::uint32_t zone, std::uint64_t mask, bool rests, bool 
 
 void FieldTeller::offsets(std::uint32_t source, std::uint32_t zone, const std::vector<vec3>& offset, bool fold) {
   if (!telling_ || lost_) return;
-  lost_ = !feed_->events.has_room();  // a block goes with its event or not at all
+  lost_ = !feed_->events.has_room();  // a block is sent with its event or not at all
   if (lost_) return;
   FieldOffsets block;
   std::copy_n(offset.begin() + static_cast<std::ptrdiff_t>(zone * kZoneSize), kZoneSize, block.offset.begin());

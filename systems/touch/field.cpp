@@ -6,8 +6,7 @@
 namespace pliant {
 namespace {
 
-// What has become of a release after `age` seconds: its height is now.x of `now` plus before of `before`, and the same
-// for the rate.
+// State of a release after `age` seconds: its height is now.x of `now` plus before of `before`; likewise the rate.
 struct Factors {
   double now = 0, before = 0;            // [1]
   double rate_now = 0, rate_before = 0;  // [1/s]
@@ -72,7 +71,7 @@ double residual_after(const ObjectState& object, const Mesh& mesh, const HeightF
 }
 
 void remember_release(ObjectState& object, const Release& release, std::uint32_t& dropped) {
-  if (object.releases.size() == kMaxReleases) {  // the oldest has the least left of it
+  if (object.releases.size() == kMaxReleases) {  // the oldest has the smallest remainder
     object.releases.erase(object.releases.begin());
     dropped |= kDroppedReleases;
   }

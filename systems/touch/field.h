@@ -1,10 +1,10 @@
-// The seam between the field on the processor and the field on the GPU. Forces never depend on which is in use: both
-// answer the same questions about the surface at a vertex, and both draw the same (nx, ny, nz, h).
+// The interface between the field on the CPU and the field on the GPU. Forces never depend on which is in use: both
+// give the same surface at a vertex, and both draw the same (nx, ny, nz, h).
 //
-// On the processor (field_kernels.h) zones hold a residual that is advanced tick by tick. On the GPU nothing is held:
-// what a contact left behind is remembered as a Release, and because the linear laws have a closed form its share of
-// the surface at any later time is two sources with factors. So the whole field is a short list of FieldSource, which
-// is all that travels, and the GPU evaluates it over the whole mesh (P1 section 5; methods.md 1.7).
+// On the CPU (field_kernels.h) zones store a residual that is advanced tick by tick. On the GPU nothing is stored. A
+// contact leaves a Release; since the linear laws have a closed form, its contribution at any later time is two sources
+// with factors. The whole field is therefore a short list of FieldSource. Only this list is sent, and the GPU evaluates
+// it over the whole mesh (P1 section 5; methods.md 1.7).
 #pragma once
 
 #include "systems/touch/touch_state.h"
@@ -14,7 +14,7 @@ namespace pliant {
 // The surface at a vertex after the last tick: height above rest [m] and rate of its residual [m/s].
 HeightState surface_at(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex);
 
-// Height and rate of the residual at a vertex before this tick: what is still recovering there.
+// Height and rate of the residual at a vertex before this tick, that is of the recovering part.
 HeightState residual_before(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex,
                             Tick tick);
 
@@ -22,10 +22,10 @@ HeightState residual_before(const ObjectState& object, const Mesh& mesh, const H
 double residual_after(const ObjectState& object, const Mesh& mesh, const HeightField& field, std::uint32_t vertex,
                       Tick tick);
 
-// GPU only: remembers what a contact leaves behind.
+// GPU only: stores the release of a contact.
 void remember_release(ObjectState& object, const Release& release, std::uint32_t& dropped);
 
-// GPU only: forgets what has come to rest and writes the list of sources for the end of this tick.
+// GPU only: drops releases that have come to rest and writes the list of sources for the end of this tick.
 void list_terms(ObjectState& object, const Deformable& deformable, Tick tick);
 
 }  // namespace pliant

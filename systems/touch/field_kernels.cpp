@@ -11,8 +11,8 @@
 namespace pliant {
 namespace {
 
-// A radial shape is a function of u alone; target and gradient follow for every one of them the same way.
-// kFresh: what stood in `out` does not count.
+// A radial shape depends on u alone; target and gradient follow in the same way for all of them. kFresh: overwrites
+// `out`.
 template <bool kFresh, class Profile>
 inline __attribute__((always_inline)) void add_radial(const Mesh& mesh, std::uint32_t begin, const FieldSource& s,
                                                       ZoneTargets& out, Profile profile) {
@@ -105,7 +105,7 @@ void add_registered(const ShapeFunction& shape, const Mesh& mesh, std::uint32_t 
 
 constexpr std::uint32_t kLanes = 8;
 
-// Sums of a whole zone are kept in lanes, so that the order of additions is the same on every machine.
+// Sums of a whole zone are accumulated in lanes, so that the order of additions is the same on every machine.
 inline __attribute__((always_inline)) double sum_lanes(const float (&lanes)[kLanes]) {
   double total = 0;
   for (const float lane : lanes) total += static_cast<double>(lane);
@@ -175,7 +175,7 @@ PLIANT_KERNEL void step_solid(float* __restrict state, float* __restrict rate, f
   }
 }
 
-// The same where every vertex has coefficients of its own.
+// The same for coefficients per vertex.
 PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, const vec4* __restrict step) {
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
     const float hh = step[i].x, hv = step[i].y, vh = step[i].z, vv = step[i].w;
@@ -315,7 +315,8 @@ bool step_relaxed(const Motion& motion, const Mesh& mesh, HeightField& field, st
     if (now == vec4(0) && z == vec4(0)) continue;
     const vec4 before = field.stream[v] - field.residual[v];
     z = now - (E * (before - z) + ramp * (now - before));
-    // The free surface would stand where k h + k1 (h - z) = 0: no deeper than the target, or it is left behind there.
+    // Equilibrium of the free surface: k h + k1 (h - z) = 0. If it is deeper than the target, the excess is released
+    // there.
     const float r1 = arm_stiffness(motion, mesh, v);
     const float held = r1 > 0 && now.w < 0 ? now.w * (1 + 1 / r1) : 0.0f;
     if (!(z.w < held) || !(z.w < 0)) {
@@ -339,7 +340,7 @@ ZoneRest step_lagging(const Motion& motion, const PaintedMotion& painted, Height
     step_nonlinear(motion, painted, zone, state, rate, &targets);
     return rest_of(mass, state, rate);
   }
-  // The law is linear, so the state measured from the target moves freely.
+  // The law is linear, so the state relative to the target moves freely.
   const float* const t[4] = {targets.nx.data(), targets.ny.data(), targets.nz.data(), targets.h.data()};
   for (std::uint32_t i = 0; i < kZoneSize; ++i)
     for (int c = 0; c < 4; ++c) state[i][c] -= t[c][i];

@@ -1,4 +1,4 @@
-// The inner loops over one zone: plain loops over kZoneSize vertices that the compiler turns into SIMD.
+// The inner loops over one zone: plain loops over kZoneSize vertices that the compiler vectorises.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct alignas(32) ZoneTargets {
   std::array<float, kZoneSize> nx, ny, nz, h;
 };
 
-// Adds the source's target on the zone's vertices; `fresh`: to nothing, whatever stood there.
+// Adds the source's target on the zone's vertices; `fresh`: overwrites instead.
 void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets);
 
 // Sums over a zone that fix the coefficient c of the volume-preserving shape (force_field.cpp): with w = (1-u)^3 and A
@@ -26,16 +26,16 @@ struct VolumeSums {
 };
 void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums);
 
-// Advances the residual of a zone by its free motion and says how large it still is: max |h| [m] and max |n| [1], each
-// with its rate over the natural frequency. Chooses the step by the law.
+// Advances the residual of a zone by its free motion and returns its size: max |h| [m] and max |n| [1], each with its
+// rate over the natural frequency. Chooses the step by the law.
 struct ZoneRest {
   float height = 0, normal = 0;
 };
 ZoneRest step_residual(const Motion& motion, const PaintedMotion& painted, HeightField& field, std::uint32_t zone);
 
-// The viscous extension under the targets follows them (q' = (h - q) / tau, exact for targets that change evenly over
-// the tick). Where a target has gone, or is less deep than the arm holds the surface down, the residual takes the rest
-// over: a trail that recovers by itself. True if it took anything. Standard linear solid with Response::kFollow.
+// The viscous extension follows the targets (q' = (h - q) / tau, exact for targets that change linearly over the tick).
+// Where a target has ended, or is shallower than the depth that the arm sustains, the residual takes over the excess: a
+// trail that recovers. True if it took anything. Standard linear solid with Response::kFollow.
 bool step_relaxed(const Motion& motion, const Mesh& mesh, HeightField& field, std::uint32_t zone,
                   const ZoneTargets& targets, bool reached);
 

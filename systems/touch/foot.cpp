@@ -12,21 +12,21 @@ namespace {
 constexpr int kMostSteps = 40;       // of Newton on one patch
 constexpr int kMostPatches = 512;    // on the way downhill
 constexpr double kOnEdge = 1e-12;    // [1] a barycentric below this is zero
-constexpr double kBetter = 1e-13;    // [1] a distance squared must fall by this share for the foot to move on
-constexpr double kFree = 1e-7;       // [1] x - p leans less than this from the normal: nothing holds the foot back
-constexpr double kOnSurface = 1e-9;  // [1] of the triangle's edge: nearer than this, x lies on the surface
+constexpr double kBetter = 1e-13;    // [1] relative decrease of the distance squared required for the foot to move on
+constexpr double kFree = 1e-7;       // [1] x - p deviates less than this from the normal: no constraint at the foot
+constexpr double kOnSurface = 1e-9;  // [1] of the triangle's edge: closer than this, x is on the surface
 
 struct Place {
   double u = 0.0, v = 0.0;
   double w() const { return 1 - u - v; }
 };
 
-// Which barycentrics are zero: bit i of corner i.
+// Bit i is set if barycentric i is zero.
 unsigned zeros(Place at) {
   return (at.w() <= kOnEdge ? 1u : 0u) | (at.u <= kOnEdge ? 2u : 0u) | (at.v <= kOnEdge ? 4u : 0u);
 }
 
-// How far a step (du, dv) may go before it leaves the triangle, at most 1.
+// Largest fraction of a step (du, dv) that stays in the triangle, at most 1.
 double room(Place at, double du, double dv) {
   double t = 1.0;
   const double dw = -du - dv;
@@ -36,15 +36,15 @@ double room(Place at, double du, double dv) {
   return t;
 }
 
-// Whether a part t of a step (du, dv) leads nowhere: t is none, and what is left of it is shorter than what counts as
-// being on an edge. By t alone a foot a hair beside a corner would stay there.
+// Whether a fraction t of a step (du, dv) is negligible: t is about zero, and the remaining step is shorter than the
+// tolerance of being on an edge. With t alone, a foot just beside a corner would be stuck.
 bool nowhere(double du, double dv, double t) {
   return t < 1e-9 && t * std::max({std::abs(du), std::abs(dv), std::abs(du + dv)}) <= kOnEdge;
 }
 
 Place moved(Place at, double du, double dv, double t) {
   Place to{at.u + t * du, at.v + t * dv};
-  // On an edge exactly, so that the next step knows it.
+  // Snapped to the edge, so that the next step detects it.
   if (to.u < kOnEdge) to.u = 0.0;
   if (to.v < kOnEdge) to.v = 0.0;
   if (to.w() < kOnEdge) {
@@ -81,7 +81,7 @@ double half_square(dvec3 r) {
   return 0.5 * dot(r, r);
 }
 
-// Minimum of the distance over one patch, downhill from a place on it.
+// Minimum of the distance over one patch, by descent from a place on it.
 Place minimise(const CurvedPatch& patch, Place at, dvec3 x) {
   CurvedPatch::Point here = patch.at(at.u, at.v);
   double f = half_square(here.p - x);
@@ -98,7 +98,7 @@ Place minimise(const CurvedPatch& patch, Place at, dvec3 x) {
       dv = -(H.uu * gv - H.uv * gu) / det;
     }
     double t = room(at, du, dv);
-    if (nowhere(du, dv, t)) {  // the step leads out: along an edge instead, the one that leads down most
+    if (nowhere(du, dv, t)) {  // the step leaves the triangle: follow the edge of steepest descent instead
       double best = 0.0;
       const unsigned on = zeros(at);
       for (int i = 0; i < 3; ++i) {
@@ -116,7 +116,7 @@ Place minimise(const CurvedPatch& patch, Place at, dvec3 x) {
         dv = s * ev;
         t = open;
       }
-      if (best == 0.0) break;  // nothing leads down
+      if (best == 0.0) break;  // no edge descends
     }
     const double size = length(du * here.pu + dv * here.pv);
     Place next;
@@ -129,7 +129,7 @@ Place minimise(const CurvedPatch& patch, Place at, dvec3 x) {
       if (g <= f) break;
     }
     if (g > f) break;
-    // A whole step of Newton's method leaves an error of the size of its square.
+    // A full Newton step leaves an error of the order of its square.
     const double small = full && t == 1.0 ? 1e-7 : 1e-12;
     const bool still = t * size < small * (length(here.pu) + length(here.pv));
     at = next;
@@ -158,7 +158,7 @@ Place at_corner(int corner) {
   return {corner == 1 ? 1.0 : 0.0, corner == 2 ? 1.0 : 0.0};
 }
 
-// The same point of a shared edge, in the triangle on its other side. `share`: of the edge's second corner.
+// The same point of a shared edge, in the triangle on its other side. `share`: weight of the edge's second corner.
 Place across_edge(const Mesh& mesh, std::uint32_t from, int edge, std::uint32_t to, double share) {
   const uvec3 t = mesh.triangles[to];
   const int i = corner_of(t, mesh.triangles[from][edge]), j = corner_of(t, mesh.triangles[from][(edge + 1) % 3]);
@@ -172,7 +172,7 @@ dvec3 patch_normal(const CurvedPatch::Point& at) {
   return size > 0 ? n / size : dvec3(0);
 }
 
-// Everything about a foot that is known to be one. `sides`: sum of the normals of the patches that meet there.
+// Completes a foot at the found place. `sides`: sum of the normals of the patches that meet there.
 Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, dvec3 sides) {
   const auto [u, v] = local.at;
   const CurvedPatch::Point at = local.patch.at(u, v);
@@ -183,7 +183,7 @@ Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, dvec3 sides)
   const unsigned on = zeros(local.at);
   const dvec3 r = x - at.p;
   const double far = length(r), scale = length(at.pu) + length(at.pv);
-  // On an edge or corner that does not hold the foot back, the patch goes on beyond.
+  // If the edge or corner is not an active constraint, the foot is treated as inside the patch.
   const dvec3 steepest(dot(r, at.pu) / length(at.pu), dot(r, at.pv) / length(at.pv), 0.0);
   if (on == 0 || length(steepest) <= kFree * far) {
     foot.normal = patch_normal(at);

@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-// Weights of the smooth minimum of ln s, and its value over D.
+// Weights of the smooth minimum of ln s, and its value.
 struct Weights {
   std::array<double, kMostFeet> w{};
   double value = 0.0;  // [1] ln s
@@ -14,7 +14,7 @@ struct Weights {
 Weights smooth_minimum(const std::array<double, kMostFeet>& log_depth, std::uint32_t count, double D) {
   std::array<double, kMostFeet> sorted = log_depth;
   std::sort(sorted.begin(), sorted.begin() + count);
-  // The support grows while the next depth lies below the level c that makes the weights sum to one.
+  // The support grows while the next depth is below the level c at which the weights sum to one.
   double sum = 0.0, c = 0.0;
   for (std::uint32_t n = 0; n < count; ++n) {
     if (n > 0 && sorted[n] >= c) break;

@@ -1,11 +1,11 @@
-// Where a contact is, and how deep. Outside the surface, and away from convex creases, that is one foot. Behind a
-// convex crease a point is below both sides: its depth is then a smooth minimum of its depths below each of them, so
-// that the force turns from one side's normal to the other's instead of jumping, and fades where the point comes out on
-// the other side. With s_i the depths, smallest m:
+// Place and depth of a contact. Outside the surface, and away from convex creases, it is a single foot. A point behind
+// a convex crease is below both sides. Its depth is then a smooth minimum of its depths below each side. The force
+// therefore turns continuously from one side's normal to the other's, and fades where the point leaves through the
+// other side. With depths s_i, smallest m:
 //   ln s = min over weights of  sum w_i ln s_i + (D/2) (sum w_i^2 - 1),   w_i >= 0,  sum w_i = 1
 //   => w_i = max(0, (c - ln s_i) / D),   ds = s sum w_i ds_i / s_i
-// (sparsemax; Martins & Astudillo 2016). It has the scale of the depths alone, sides deeper than e^D m do not matter at
-// all, and it is continuously differentiable: the energy W(s) is conservative.
+// (sparsemax; Martins & Astudillo 2016). It depends only on ratios of depths, and sides deeper than e^D m have no
+// effect. It is continuously differentiable: the energy W(s) is conservative.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@
 namespace pliant {
 
 inline constexpr std::uint32_t kMostFeet = 4;  // of one contact: a corner of a box has three
-// D = ln 1.5: on a flat face the law is exact as soon as the edge is 1.5 depths away.
+// D = ln 1.5: on a flat face the law is exact from 1.5 depths off the edge.
 inline constexpr double kBlendRatio = 1.5;
 
 struct FootBlend {
-  std::uint32_t count = 0;  // 0: no place; foot[0] is the one with the largest weight
+  std::uint32_t count = 0;  // 0: no place; foot[0] has the largest weight
   std::array<Foot, kMostFeet> foot;
   std::array<double, kMostFeet> weight{};
   std::array<dvec3, kMostFeet> weight_slope{};  // [1/m] d weight / dx
@@ -35,7 +35,7 @@ struct FootBlend {
   const Foot& main() const { return foot[0]; }
 };
 
-// What is painted per vertex, at the blended place: value and gradient by x. Empty: 1 and none.
+// A value painted per vertex, at the blended place: value and gradient by x. Nothing painted: value 1, gradient 0.
 struct Painted {
   double value = 1.0;  // [1] or the unit of what is interpolated
   dvec3 gradient{0};   // per metre
@@ -63,7 +63,7 @@ inline Painted painted(const FootBlend& blend, const Mesh& mesh, const std::vect
   return interpolate(blend, mesh, [&](std::uint32_t v) { return double(factor[v]); });
 }
 
-// Blends the feet in `feet` (the first is the contact's own; all behind the surface, or only one).
+// Blends `feet`. The first is the contact's foot. All are behind the surface, or there is only one.
 FootBlend blend_feet(const std::array<Foot, kMostFeet>& feet, std::uint32_t count);
 
 }  // namespace pliant

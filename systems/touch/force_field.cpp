@@ -1,6 +1,6 @@
-// Contacts -> the field around them: which zones each contact reaches, the coefficient that makes its shape keep its
-// volume on this very mesh, and the amplitudes that bring every probe's surface to its own depth. What a contact leaves
-// behind when it ends is folded into the residual. (P1 section 3; methods.md 1.3 and 1.8.)
+// Contacts -> the field around them. Computes the zones that each contact reaches and the coefficient that makes its
+// shape volume-preserving on this mesh. Also the amplitudes that bring the surface to every probe's depth. The dent of
+// a contact that ends is folded into the residual. (P1 section 3; methods.md 1.3 and 1.8.)
 #include "systems/touch/force_field.h"
 
 #include <algorithm>
@@ -18,13 +18,13 @@
 namespace pliant {
 namespace {
 
-// [1] of the reach: the contact radius of half-space shapes where the author says none.
+// [1] of the reach: default contact radius of half-space shapes.
 constexpr double kContactShare = 0.2;
-// How much of the reach a bulge may count for under a probe.
+// [1] of the reach: limit of a bulge's height under a probe.
 constexpr double kMostBulge = 0.25;
 
 // Net volume of h = -alpha f, f = w (1 - c u), over the curved mesh to second order: sum A (h + H h^2). Solved for the
-// c that leaves 1 - chi of what w alone would displace.
+// c that leaves 1 - chi of the volume displaced by w alone.
 float volume_coefficient(const VolumeSums& s, double alpha, double chi) {
   if (!(s.S1 > 0)) return static_cast<float>(5 * chi);
   const double aH = s.spread > 0 ? alpha * s.bend / s.spread : 0.0;
@@ -33,14 +33,14 @@ float volume_coefficient(const VolumeSums& s, double alpha, double chi) {
   for (int i = 0; i < 3; ++i) {
     const double g = s.S0 - c * s.S1 - aH * (s.Q0 - 2 * c * s.Q1 + c * c * s.Q2) - wanted;
     const double dg = -s.S1 + aH * (2 * s.Q1 - 2 * c * s.Q2);
-    if (!(dg < 0)) break;  // bent more than the expansion can tell: keep what there is
+    if (!(dg < 0)) break;  // curvature beyond the expansion's range: keep the current value
     c -= g / dg;
   }
   return static_cast<float>(std::clamp(c, 0.0, 10.0));
 }
 
-// A probe can press the surface down but not pull it up: when it lifts faster than the surface would rise by itself,
-// the surface is left behind, while the force goes on by the law of the depth until the probe is out.
+// A probe can press the surface down but not pull it up. If it lifts faster than the surface would rise freely, the
+// surface is left behind. The force continues by the law of the depth until the probe is out.
 bool leaves_behind(const Contact& contact, const Mesh& mesh, const Motion& motion) {
   const double h = contact.previous_height,
                v = std::max(0.0, contact.previous_height - contact.older_height) / motion.dt;
@@ -80,9 +80,9 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
         A[i * n + j] -= weight * source_at(*active[j].source, unit, mesh, corner[b]).w;
       }
     }
-    A[i * n + i] = std::max(A[i * n + i], 0.1);  // a reach that hardly meets a vertex must not blow the amplitude up
-    // A bulge that earlier presses raised adds to what must be pressed down, but not without bound: else rims on a
-    // slowly recovering surface would drive each other up.
+    A[i * n + i] = std::max(A[i * n + i], 0.1);  // a reach with hardly a vertex must not make the amplitude diverge
+    // A bulge raised by earlier presses adds to the depth to be pressed down, up to a limit: otherwise rims on a slowly
+    // recovering surface would amplify each other.
     const double reach = 1 / std::sqrt(double(active[i].source->now.inv_reach2));
     d[i] = std::min(residual, kMostBulge * reach) - contact.height;
     alpha[i] = active[i].source->before.amplitude;
@@ -127,7 +127,7 @@ void force_field(World& world, Tick tick) {
 
     object.teller.give_up_if_lost(object, field);
 
-    // Last tick's marks go; contacts that ended leave their dent to the residual.
+    // Clears the last tick's marks; contacts that ended fold their dent into the residual.
     std::array<Active, kMaxContactsPerObject> active;
     std::size_t count = 0;
     for (SourceState& source : object.sources) {
@@ -150,14 +150,14 @@ void force_field(World& world, Tick tick) {
     }
     if (count == 0) continue;
 
-    // Where each field lies, and which zones it reaches.
+    // Centre of each field and the zones that it reaches.
     for (std::size_t i = 0; i < count; ++i) {
       SourceState& source = *active[i].source;
       const Contact& contact = *active[i].contact;
       source.before = source.now;
       const double radius = contact.probe == kNoEntity ? 0.0 : world.registry.get<Probe>(contact.probe).radius;
       aim(source.now, contact, deformable, mesh, radius);
-      if (!source.active) {  // before the first tick of the touch there was the same field, of no depth
+      if (!source.active) {  // before the first tick of the touch: the same field with zero amplitude
         source.before = source.now;
         source.before.amplitude = 0.0f;
         source.now.amplitude = 0.0f;

@@ -13,7 +13,7 @@ dvec3 step_bristle(Bristle& bristle, dvec3 v, double K, double B, double static_
   }
   bristle.sliding = true;
   const dvec3 f = trial * (sliding_limit / size);
-  // The deflection that makes the bristle carry exactly f at the end of the step.
+  // The deflection for which the bristle's force is exactly f at the end of the step.
   bristle.deflection = (B * e + T * f) / (B + K * T);
   return f;
 }

@@ -1,13 +1,13 @@
-// Bristle friction, implicit and in closed form (methods.md 1.6), with static and sliding limits so that it can stick
-// and slip. f is what the surface takes up; -f acts on the probe.
+// Bristle friction, implicit and in closed form (methods.md 1.6), with static and sliding limits for stick-slip. f acts
+// on the surface, -f on the probe.
 #pragma once
 
 #include "components/math.h"
 
 namespace pliant {
 
-// Tunables: the bristle is as stiff along the surface as the surface is across it, and damped over about two ticks of
-// 1 kHz, so that it neither rings nor feels sticky.
+// Tunables. The bristle has the normal stiffness of the surface. It is damped over about two ticks of 1 kHz, so that it
+// neither rings nor feels sticky.
 inline constexpr double kBristleStiffness = 1.0;     // [1] times the local normal stiffness
 inline constexpr double kBristleDampingTime = 2e-3;  // [s] B = K * this
 

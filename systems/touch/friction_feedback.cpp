@@ -1,6 +1,6 @@
-// The force on every probe: minus the gradient of one stored energy an object (contact_energy.h), a rate term, and
-// bristle friction across the normal. Dissipation only takes out: the rate term and friction never exceed what presses.
-// What leaves for the hand is write_devices' business.
+// The force on every probe: minus the gradient of one stored energy per object (contact_energy.h), a rate term, and
+// bristle friction across the normal. Both dissipative terms only remove energy: neither exceeds the pressing force.
+// write_devices computes the force sent to the hand.
 #include "systems/touch/friction_feedback.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace pliant {
 namespace {
 
-// A contact less deep than this stores nothing: its share would divide by it. [1] of the reach
+// A shallower contact stores no energy: its share would divide by it. [1] of the reach
 constexpr double kLeastDepth = 1e-9;
 
 // One contact of this tick, from collision to force.
@@ -28,7 +28,7 @@ struct Pressing {
   double slope = 0.0;  // [N/m] of the stored energy's force
 };
 
-// y: the free surface goes back to rest by itself.
+// y: free recovery of the surface towards rest.
 void advance_free_surface(Contact& contact, const FootBlend& place, const Mesh& mesh, const Motion& motion) {
   if (contact.free_height == 0.0 && contact.free_velocity == 0.0) return;
   const HeightState y =
@@ -38,8 +38,9 @@ void advance_free_surface(Contact& contact, const FootBlend& place, const Mesh& 
   contact.free_velocity = contact.free_height < 0 ? y.velocity : 0.0;
 }
 
-// q, the depth to which the tissue has crept at a place, and its slope. The slope is that of the dent, which the field
-// keeps with every height (its normal correction is -dh/dx): that of the interpolated heights is as jagged as the mesh.
+// q, the creep depth of the tissue at a place, and its slope. The slope is that of the dent, which the field stores
+// with every height (its normal correction is -dh/dx). The slope of the interpolated heights would be as jagged as the
+// mesh.
 Painted relaxed_depth(const FootBlend& place, const Mesh& mesh, const Motion& motion, const HeightField& field) {
   Painted sum{0.0, dvec3(0)};
   for (std::uint32_t f = 0; f < place.count; ++f) {
@@ -49,7 +50,7 @@ Painted relaxed_depth(const FootBlend& place, const Mesh& mesh, const Motion& mo
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t v = mesh.triangles[foot.triangle][i];
       const float r1 = arm_stiffness(motion, mesh, v);
-      // Under the targets, and what the residual has taken over of it: q = k1 / k (h - z).
+      // Under the targets, plus the part taken over by the residual: q = k1 / k (h - z).
       const vec4 z = field.relaxed[v] + (r1 > 0 ? field.residual[v] - field.arm[v] / r1 : vec4(0));
       depth -= foot.barycentric[i] * static_cast<double>(z.w);
       slope += foot.barycentric[i] * dvec3(z);
@@ -74,7 +75,7 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
     relaxation = painted(place, mesh, mesh.relaxation_factor);
     law.arm *= relaxation.value;
     relaxed = relaxed_depth(place, mesh, object.motion, field);
-    if (relaxed.value < 0) relaxed = {0.0, dvec3(0)};  // nothing pulls
+    if (relaxed.value < 0) relaxed = {0.0, dvec3(0)};  // no tensile force
     law.relaxed_depth = relaxed.value;
   }
   pressing.stored = law.stored(depth);
@@ -82,7 +83,7 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
   const double least = kLeastDepth * deformable.reach;
   if (!(pressing.stored.energy > 0.5 * law.stiffness * least * least)) return false;
   out.energy = pressing.stored.energy;
-  // All of W is proportional to the painted stiffness, and its part by q goes with q's slope.
+  // W is proportional to the painted stiffness; its dependence on q adds q's slope.
   out.pull = pressing.stored.force * place.gradient -
              (pressing.stored.energy / std::max(pressing.stiffness.value, 1e-12)) * pressing.stiffness.gradient -
              pressing.stored.by_relaxed * relaxed.gradient;
@@ -117,7 +118,7 @@ void feel(World& world, const Deformable& deformable, const Mesh& mesh, const Ob
   Probe& probe = registry.get<Probe>(contact.probe);
   const Tip& tip = pressing.source->tip;
   const dvec3 at = tip_position(probe, tip);
-  // Friction in the tangent plane of this tick; the deflection is carried over from the last one's.
+  // Friction in the tangent plane of this tick; the last tick's deflection is projected onto it.
   const dvec3 moving =
       (at - tip_position_before(probe, tip)) / tick.elapsed() - surface_velocity(registry, contact.object, at);
   const dvec3 velocity = glm::conjugate(pose.rotation) * moving;
@@ -175,7 +176,7 @@ void friction_feedback(World& world, Tick tick) {
     }
     object.stored = count > 0 ? share_load({loaded.data(), count}, object.kernel) : 0.0;
     if (count == 0) continue;
-    if (!std::isfinite(object.stored)) {  // a registered law's or shape's
+    if (!std::isfinite(object.stored)) {  // from a registered law or shape
       world.dropped |= kDroppedNonFinite;
       object.stored = 0.0;
     }

@@ -10,7 +10,7 @@ namespace pliant {
 
 StepCoefficients exact_step(double m, double b, double k, double T) {
   if (m == 0.0) {
-    if (b == 0.0) return {0, 0, 0, 0};  // the spring alone: at equilibrium at once
+    if (b == 0.0) return {0, 0, 0, 0};  // only a spring: at equilibrium at once
     const double E = std::exp(-k * T / b);
     return {E, 0, -k / b * E, 0};
   }
@@ -79,8 +79,8 @@ std::array<std::array<double, 3>, 3> solid_step(double m, double b, double k, do
 
 double natural_frequency(double zeta, double settling_time) {
   if (zeta == 0.0) return 5.83 / settling_time;
-  // The slowest part of the response from rest, |x| = 0.02: closed envelope for light damping, else the last crossing,
-  // found on the exact response in units of 1/w0.
+  // The slowest part of the response from rest, |x| = 0.02. Light damping: closed-form envelope. Else the last crossing
+  // of the exact response, in units of 1/w0.
   if (zeta < 0.1) return -std::log(0.02) / zeta / settling_time;
   const double slowest = zeta > 1.0 ? 1.0 / (zeta + std::sqrt(zeta * zeta - 1.0)) : zeta;
   const auto above = [&](double t) { return std::abs(exact_step(1.0, 2 * zeta, 1.0, t).hh) > 0.02; };
@@ -114,8 +114,8 @@ double damping_of(const Deformable& d) {
 
 namespace {
 
-// The discrete gradient of a law that is known by its values: the difference of its potential, or, where that would
-// cancel, the mean of its force over the way (Gauss-Legendre, four points).
+// The discrete gradient of a law given by its values: the difference of its potential. Where that would cancel, the
+// mean of its force over the interval (Gauss-Legendre, four points).
 double mean_force(const RestoringLaw& law, double h0, double h1) {
   const double d = h1 - h0;
   if (std::abs(d) > 1e-3 * (std::abs(h0) + std::abs(h1))) return (law.potential(h1) - law.potential(h0)) / d;
@@ -219,7 +219,7 @@ HeightState step_restoring(const RestoringLaw& law, HeightState state, double m,
   const auto [h0, v0] = state;
   const double slope = law.slope(h0);
   const bool stiff = k * slope * T * T > 2.25 * m;
-  // Residual of the step as a function of d = h1 - h0, and its derivative; Newton with bisection as a net, because an
+  // Residual of the step as a function of d = h1 - h0, and its derivative. Newton with bisection as a fallback: an
   // exponential spring can throw a plain Newton step far away.
   const auto residual = [&, h0 = h0, v0 = v0](double d, double& derivative) {
     const double h1 = h0 + d;
@@ -234,7 +234,7 @@ HeightState step_restoring(const RestoringLaw& law, HeightState state, double m,
     derivative = 2 * m / (T * T) + b / T + k * dG;
     return m * (2 * d / T - 2 * v0) / T + b * d / T + k * G - f;
   };
-  // The spring only ever shortens the step that mass and damping alone would make: that brackets d between 0 and it.
+  // The spring can only shorten the step that mass and damping alone would make: d is between 0 and that step.
   double derivative = 0.0, d = 0.0;
   double r = residual(d, derivative);
   const double farthest = -r / ((stiff ? 1 : 2) * m / (T * T) + b / T);
@@ -245,7 +245,7 @@ HeightState step_restoring(const RestoringLaw& law, HeightState state, double m,
     if (std::abs(next - d) <= 1e-15 * (std::abs(h0) + std::abs(next))) break;
     d = next;
     r = residual(d, derivative);
-    (r > 0 ? high : low) = d;  // the residual rises with d
+    (r > 0 ? high : low) = d;  // the residual increases with d
   }
   return stiff ? HeightState{h0 + d, d / T} : HeightState{h0 + d, 2 * d / T - v0};
 }

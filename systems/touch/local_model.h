@@ -28,7 +28,7 @@ struct HeightState {
   double velocity = 0.0;  // [m/s]
 };
 
-// One exact step under a force held over it. Handles every degenerate case, k = 0 among them.
+// One exact step under a constant force. Handles every degenerate case, including k = 0.
 HeightState step_oscillator(HeightState state, double mass, double damping, double stiffness, double force, double dt);
 
 // The standard linear solid with mass, m h'' = -b h' - k h - q + f, q' = k1 h' - q/tau: exponential of its 3x3 matrix.
@@ -36,43 +36,43 @@ HeightState step_oscillator(HeightState state, double mass, double damping, doub
 std::array<std::array<double, 3>, 3> solid_step(double mass, double damping, double stiffness, double arm_stiffness,
                                                 double arm_time, double dt);
 
-// Natural frequency [rad/s] of a free surface that has settled to 2 % after `settling_time` at this damping ratio
-// (5.83 / settling_time at 1; an undamped one never settles and gets the frequency of the critically damped).
+// Natural frequency [rad/s] of a free surface that settles to 2 % within `settling_time` at this damping ratio (5.83 /
+// settling_time at 1). An undamped surface never settles; it gets the frequency of the critically damped one.
 double natural_frequency(double damping_ratio, double settling_time);
 
-// A slow surface creeps, it does not coast: its mass is never more than this frequency allows [rad/s] (10 Hz); the rest
-// of a long settling time comes from damping, by this ratio.
+// A slow surface creeps rather than coasts: its natural frequency is at least this [rad/s] (10 Hz), which bounds its
+// mass. A longer settling time is reached by more damping, with this ratio.
 inline constexpr double kSlowest = 2 * 3.14159265358979 * 10;
 double creep_ratio(double w0, double settling_time);
-// The damping ratio that a surface moves with: its own, or what its settling time needs.
+// The effective damping ratio: the authored one, or the one required by the settling time.
 double damping_of(const Deformable& deformable);
 
-// The restoring law per unit of small-depth stiffness: F(h) = k * restoring(h); odd, except that the exponential law
-// stiffens under compression only (a bulge is linear). [m]
+// The restoring law per unit of small-depth stiffness: F(h) = k * restoring(h). Odd, except that the exponential law
+// stiffens only under compression (a bulge is linear). [m]
 struct RestoringLaw {
   SpringLaw kind = SpringLaw::kLinear;
   double cubic = 0.0;                   // [1/m2] k3 / k
   double stiffening = 0.0;              // [1/m] alpha
-  const SpringFunction* own = nullptr;  // of a registered law: all below is its
+  const SpringFunction* own = nullptr;  // of a registered law: it supplies all functions below
 
-  // Neither linear nor the standard linear solid.
+  // True for laws other than linear and standard linear solid.
   bool curved() const { return own != nullptr || kind == SpringLaw::kCubic || kind == SpringLaw::kExponential; }
   double force(double h) const;      // [m]
   double potential(double h) const;  // [m2] its integral from 0
   double slope(double h) const;      // [1]
-  // (U(h1) - U(h0)) / (h1 - h0), without cancellation: what makes a step passive. And its derivative by h1.
+  // (U(h1) - U(h0)) / (h1 - h0), without cancellation; it makes the step passive.
   double discrete_gradient(double h0, double h1) const;
 };
 RestoringLaw restoring_law(const Deformable& deformable);
-// [1/m] `stiffening`, but not 0: the exponential law's formulas divide by it.
+// [1/m] `stiffening`, made non-zero: the exponential law divides by it.
 double exponential_alpha(double stiffening);
 
 // One passive step of m h'' = -b h' - k F(h) + f by the discrete gradient (energy identity dE = -T b vm^2 + f dh for
-// any T); backward Euler, which does not ring, where the step is long for the spring (w T > 1.5).
+// any T). Backward Euler, which does not ring, for steps that are long for the spring (w T > 1.5).
 HeightState step_restoring(const RestoringLaw& law, HeightState state, double mass, double damping, double stiffness,
                            double force, double dt);
 
-// A Deformable's parameters as a step of T needs them, k = 1.
+// A Deformable's parameters prepared for steps of T, k = 1.
 struct Motion {
   double dt = 1e-3;      // [s]
   double mass = 1.0;     // [s2]  m/k
@@ -87,7 +87,7 @@ struct Motion {
 };
 Motion motion(const Deformable& deformable, double dt);
 
-// Refuses what no step could survive: the sentence names the key, its value and its range.
+// Rejects parameters for which the step fails: the sentence names the key, its value and its range.
 Status check(const Deformable& deformable, const std::string& name);
 
 }  // namespace pliant

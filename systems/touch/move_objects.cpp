@@ -9,17 +9,17 @@
 namespace pliant {
 namespace {
 
-// [rad/s] of the turn that leads from one rotation to another within dt, the shorter way round.
+// [rad/s] of the shortest rotation from one orientation to another within dt.
 dvec3 angular_velocity(const dquat& from, const dquat& to, double dt) {
   dquat turn = to * glm::conjugate(from);
   if (turn.w < 0.0) turn = -turn;
-  const dvec3 axis(turn.x, turn.y, turn.z);  // sin(angle/2) long
+  const dvec3 axis(turn.x, turn.y, turn.z);  // length: sin(angle/2)
   const double sine = length(axis);
   if (sine == 0.0) return dvec3(0);
   return axis * (2.0 * std::atan2(sine, turn.w) / (sine * dt));
 }
 
-// The rest of a touchable node's frame, its scale, is in its mesh and does not change.
+// A touchable node's scale is in its mesh and does not change.
 void place_object(World& world, const MovingNode& node, double dt) {
   Pose& pose = world.registry.get<Pose>(node.entity);
   MovingPose& moving = world.registry.get<MovingPose>(node.entity);
@@ -35,7 +35,7 @@ void place_object(World& world, const MovingNode& node, double dt) {
   pose = now;
   if (node.object < 0) return;
   ObjectState& object = world.touch->objects[static_cast<std::size_t>(node.object)];
-  if (object.world_box.empty()) return;  // it is taken out
+  if (object.world_box.empty()) return;  // the object is removed
   object.world_box = touch_box(world.meshes[world.registry.get<Deformable>(node.entity).mesh], pose);
   world.touch->object_boxes.move(static_cast<std::uint32_t>(node.object), object.world_box);
 }
@@ -115,7 +115,7 @@ std::vector<MovedSnapshot> moved_snapshots(const World& world, const TouchState&
   std::vector<MovedSnapshot> moved;
   for (const MovingNode& node : touch.moving)
     if (node.drawn) moved.push_back({node.entity, mat4(node.world)});
-  for (const ObjectState& object : touch.objects) {  // a program may put it elsewhere
+  for (const ObjectState& object : touch.objects) {  // a program may place it elsewhere
     const auto listed = std::any_of(moved.begin(), moved.end(),
                                     [&](const MovedSnapshot& other) { return other.object == object.entity; });
     if (!listed && world.registry.has<Drawable>(object.entity)) moved.push_back({object.entity, mat4(1)});

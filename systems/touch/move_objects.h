@@ -1,5 +1,5 @@
-// Kinematic objects: what an animation or a script carries is at its place before anything asks where it is. Only nodes
-// under a prescribed motion cost anything.
+// Kinematic objects: animated and scripted nodes are moved before any system reads their pose. Only nodes under a
+// prescribed motion cost time.
 #pragma once
 
 #include <cstdint>
@@ -12,30 +12,30 @@ namespace pliant {
 
 struct TouchState;
 
-// A node that moves, itself or with the node above it. Parents stand before children.
+// A node that moves, by itself or with an ancestor. Parents precede children.
 struct MovingNode {
   Entity entity;
-  std::int32_t parent = -1;         // among the nodes that move; -1: the node above stands still
-  std::int32_t object = -1;         // into TouchState::objects; -1: it cannot be touched
-  Handle<PrescribedMotion> motion;  // invalid: it only goes with its parent
-  LocalTransform rest;              // where it is in its parent's frame, as far as `motion` does not say
-  dmat4 above{1};                   // of the parent that stands still, to world
+  std::int32_t parent = -1;         // index among the moving nodes; -1: the parent does not move
+  std::int32_t object = -1;         // index into TouchState::objects; -1: not touchable
+  Handle<PrescribedMotion> motion;  // invalid: it only moves with its parent
+  LocalTransform rest;              // rest transform in its parent's frame, for what `motion` does not prescribe
+  dmat4 above{1};                   // of a parent that does not move, to world
   dmat4 world{1};                   // node to world
   bool drawn = false;
-  bool placed = false;  // a tick has come by: `time` holds
-  bool jumped = false;  // in the last tick: without a velocity
+  bool placed = false;  // placed by an earlier tick: `time` is valid
+  bool jumped = false;  // jumped in the last tick: no velocity
   double time = 0.0;    // [s] of the last tick
 };
 
-// The nodes that move and have something to carry, where they stand at the start; makes their MovingPose. Called by
-// prepare_touch, when `touch` knows its objects.
+// The moving nodes that carry something, at their initial pose; adds their MovingPose. Called by prepare_touch, when
+// `touch` has its objects.
 std::vector<MovingNode> find_moving(World& world, const TouchState& touch);
 
-// Kinematic -> local transforms at the tick's time -> Pose, MovingPose and world box, or WorldTransform where there is
-// nothing to touch. Velocities are the mean over the tick, so that what rides along with a surface is at rest on it.
+// Kinematic -> local transforms at the tick's time -> Pose, MovingPose and world box; for untouchable nodes ->
+// WorldTransform. Velocities are the mean over the tick, so that a probe riding on a surface is at rest on it.
 void move_objects(World& world, Tick tick);
 
-// Every drawn one of them, for a snapshot; and where they are now.
+// Snapshot entries of all drawn moving nodes; publish_moved updates them.
 std::vector<MovedSnapshot> moved_snapshots(const World& world, const TouchState& touch);
 void publish_moved(const World& world, Snapshot& snapshot);
 

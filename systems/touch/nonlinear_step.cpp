@@ -7,9 +7,9 @@
 #include "runtime/kernel.h"
 #include "systems/touch/field_kernels.h"
 
-// Every loop here runs over the vertices of a zone in double, without branches, so that the compiler makes SIMD of it.
-// Newton's method takes the same steps as step_restoring(); what has not settled after kSteps of them (a bracket that
-// has to be halved often) is left to it, vertex by vertex.
+// Every loop here runs over the vertices of a zone in double, without branches, so that the compiler vectorises it.
+// Newton's method takes the same steps as step_restoring(). Vertices that have not converged after kSteps (a bracket
+// that must be halved often) are left to it, one by one.
 
 namespace pliant {
 namespace {
@@ -19,21 +19,21 @@ namespace {
 using Lanes = double[kZoneSize];
 
 constexpr int kSteps = 8;
-// A step of Newton's method this small, of |h0| + |d|, was the last: what it leaves is of the size of its square.
+// A Newton step this small, relative to |h0| + |d|, is the last: the remaining error is of the order of its square.
 constexpr double kSettledStep = 1e-7;
 
 PLIANT_INLINE double select(bool first, double a, double b) {
   return first ? a : b;
 }
 
-// e^x - 1 to a few units of the last place. x is held within what a double holds; beyond, the bracket decides.
+// e^x - 1 to a few ulp. x is clamped to the range of double; beyond it the bracket decides.
 PLIANT_INLINE double expm1_of(double x) {
   x = select(x < 700.0, x, 700.0);
   x = select(x > -700.0, x, -700.0);
-  constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: its last bit is worth 1
+  constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: its last bit has value 1
   const double shifted = x * 1.4426950408889634 + kRound, n = shifted - kRound;
   const double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
-  // The series in pairs (Estrin): one term after the other would wait for itself twelve times.
+  // The series in pairs (Estrin's scheme): Horner's would be a chain of twelve dependent operations.
   const double r2 = r * r, r4 = r2 * r2;
   const double p0 = 0.5 + r * (1.0 / 6), p1 = 1.0 / 24 + r * (1.0 / 120), p2 = 1.0 / 720 + r * (1.0 / 5040),
                p3 = 1.0 / 40320 + r * (1.0 / 362880), p4 = 1.0 / 3628800 + r * (1.0 / 39916800);
@@ -43,7 +43,8 @@ PLIANT_INLINE double expm1_of(double x) {
   return power * p + (power - 1.0);
 }
 
-// Each law: its force and slope, and with what it needs of h0, force, slope and discrete gradient at h1 = h0 + d.
+// Each law: force and slope at h0, the precomputed value keep(h0), and force, slope and discrete gradient at h1 = h0 +
+// d.
 struct Spring {
   double force, slope;              // at h1
   double gradient, gradient_slope;  // discrete gradient between h0 and h1, and its derivative by h1
@@ -61,7 +62,7 @@ struct Cubic {
   }
 };
 
-// Differences of exponentials are written with e^x - 1 throughout: a surface nearly at rest must not drown in rounding.
+// Differences of exponentials are written with e^x - 1 throughout, to avoid cancellation near rest.
 struct Exponential {
   double alpha, inv;  // [1/m] [m]
   PLIANT_INLINE double force(double h) const { return select(h < 0, -expm1_of(-alpha * h) * inv, h); }
@@ -81,7 +82,7 @@ struct Exponential {
     const double em1 = em0 * (1 + em) + em;  // e^(-alpha h1) - 1
     const double force1 = select(h1 < 0, -em1 * inv, h1), slope1 = select(h1 < 0, 1 + em1, 1.0);
     // Both below zero: -(1/alpha) (e^(-alpha h0) (e^x - 1)/x - 1). Across the kink: (U1 - U0)/d, where one U is
-    // exponential. Both above: linear. So one call serves all.
+    // exponential. Both above: linear. One evaluation of `second` serves all cases.
     const double curved = second(select(h0 < 0, select(h1 < 0, x, -alpha * h0), -alpha * h1),
                                  select(h0 < 0, select(h1 < 0, em, em0), em1));
     const double rise = x * curved;
@@ -96,7 +97,7 @@ struct Exponential {
   }
 };
 
-// A registered law: not SIMD, a vertex at a time.
+// A registered law: one vertex at a time, without SIMD.
 struct Own {
   RestoringLaw law;
   double force(double h) const { return law.force(h); }
@@ -115,7 +116,7 @@ struct alignas(64) Work {
   Lanes mass, damping;            // [s2] m/k, [s] b/k
   Lanes kept, inertia, constant;  // of the residual: inertia d + spring(d) + constant
   Lanes stiff;                    // 1: backward Euler, 0: discrete gradient
-  Lanes d, low, high, step;       // step: of Newton's last round, less what it may be
+  Lanes d, low, high, step;       // step: size of the last Newton step minus the tolerance
 };
 
 template <class Law>
@@ -132,7 +133,7 @@ PLIANT_INLINE void begin(const Law& law, const Motion& motion, Work& w, bool for
     w.kept[i] = law.keep(h0);
     w.inertia[i] = whole + b / T;
     w.constant[i] = -whole * T * w.v0[i] - f;
-    // The spring only ever shortens the step that mass and damping alone would make.
+    // The spring can only shorten the step that mass and damping alone would make.
     const double r = law.force(h0) + w.constant[i], farthest = -r / w.inertia[i];
     w.low[i] = select(farthest < 0, farthest, 0.0);
     w.high[i] = select(farthest > 0, farthest, 0.0);
@@ -148,7 +149,7 @@ PLIANT_INLINE void newton(const Law& law, Work& w) {
     const bool stiff = w.stiff[i] > 0;
     const double r = w.inertia[i] * d + select(stiff, s.force, s.gradient) + w.constant[i];
     const double slope = w.inertia[i] + select(stiff, s.slope, s.gradient_slope);
-    // The residual rises with d.
+    // The residual increases with d.
     const double low = select(r < 0, d, w.low[i]), high = select(r > 0, d, w.high[i]);
     const double newton = d - r / slope;
     const double allowed = kSettledStep * (std::abs(h0) + std::abs(d));
@@ -172,7 +173,7 @@ PLIANT_KERNEL bool all_settled(const Work& w) {
   return settled;
 }
 
-// Writes heights and rates of the step, and the slope at its middle over `f`.
+// Writes heights and rates of the step; overwrites `f` with the slope at its middle.
 template <class Law>
 PLIANT_INLINE void finish(const Law& law, const Motion& motion, Work& w, float* h, float* v) {
   const double T = motion.dt;
@@ -255,7 +256,7 @@ void finish_own(const Own& law, const Motion& motion, Work& w, float* h, float* 
   finish(law, motion, w, h, v);
 }
 
-// What has not settled takes its time.
+// Vertices that have not converged: scalar solver.
 void settle(const Motion& motion, const ZoneTargets* targets, Work& w) {
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
     if (w.step[i] <= 0) continue;

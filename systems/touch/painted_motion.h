@@ -1,6 +1,6 @@
-// How each vertex of a painted surface moves (P1 section 3: heterogeneous stiffness and damping). Mass is the same
-// everywhere, so that what is painted stiffer comes back faster and what is painted softer more slowly.
-// All empty: the whole surface moves as its Motion says. Sized at preparation, padded to whole zones.
+// Motion of each vertex of a painted surface (P1 section 3: heterogeneous stiffness and damping). Mass is uniform:
+// stiffer vertices recover faster, softer ones more slowly.
+// All empty: the whole surface moves by its Motion. Sized at preparation, padded to whole zones.
 #pragma once
 
 #include <array>
@@ -20,20 +20,19 @@ struct PaintedMotion {
   bool empty() const { return linear.empty() && solid.empty() && mass.empty(); }
 };
 
-// What no paint makes softer: a surface without any stiffness would never come back.
+// Lower bound of the painted stiffness factor: a surface without stiffness would never recover.
 inline constexpr double kLeastStiffness = 0.01;  // [1] factor
 
-// The motion where paint multiplies stiffness, damping and the arm's stiffness by these factors, per unit of the
-// stiffness there.
+// The motion with painted factors of stiffness, damping and the arm's stiffness, per unit of the local stiffness.
 Motion paint(const Motion& motion, double stiffness, double damping, double relaxation);
 
-// One step of the free surface there, without the arm of the standard linear solid.
+// One step of the free surface at such a place, without the arm of the standard linear solid.
 HeightState step_free(const Motion& motion, double stiffness, double damping, HeightState state);
 
 // k1/k at a vertex. [1]
 float arm_stiffness(const Motion& motion, const Mesh& mesh, std::uint32_t vertex);
 
-// Nothing where neither stiffness nor damping nor relaxation is painted.
+// Empty if neither stiffness nor damping nor relaxation is painted.
 PaintedMotion paint_motion(const Motion& motion, const Mesh& mesh);
 
 }  // namespace pliant

@@ -35,7 +35,7 @@ void size_field(HeightField& field, const Mesh& mesh, const Deformable& deformab
   field.awake.reserve(mesh.zone_count());
 }
 
-// Every probe needs a device, if only one that never moves it: safety stands between every force and whoever reads it.
+// Every probe gets a device, at least one that never moves it: every force passes the safety layer before it is read.
 void give_devices(Registry& registry) {
   std::vector<Entity> without;
   for (auto [entity, probe] : registry.view<Probe>())
@@ -65,7 +65,9 @@ void list_creases(const Mesh& mesh, ObjectState& object) {
     for (int edge = 0; edge < 3; ++edge) {
       const std::uint32_t key = 3 * t + static_cast<std::uint32_t>(edge);
       if (!mesh.is_crease(t, edge) || mesh.across[t][edge] == kBorder || !is_convex(mesh, t, edge)) continue;
-      if (std::binary_search(object.closed.begin(), object.closed.end(), key)) continue;  // another surface goes on
+      if (std::binary_search(object.closed.begin(), object.closed.end(), key))
+        continue;  // another surface continues
+                   // here
       Box box;
       box.add(mesh.position(mesh.triangles[t][edge]));
       box.add(mesh.position(mesh.triangles[t][(edge + 1) % 3]));
@@ -77,15 +79,15 @@ void list_creases(const Mesh& mesh, ObjectState& object) {
 }
 
 constexpr std::size_t kMostTips = 16;     // of a capsule
-constexpr std::size_t kLeastEchoes = 16;  // places that an object beside seams keeps for dents of its neighbours
+constexpr std::size_t kLeastEchoes = 16;  // sources that an object beside seams reserves for dents of its neighbours
 
 std::size_t most_contacts(const ObjectState& object) {
   return kMaxContactsPerObject - (object.seam_zones.empty() ? 0 : kLeastEchoes);
 }
-// Places where a tip of a probe may touch one object at once: the walls of a corner, and one more.
+// Largest number of simultaneous contacts of a tip with one object: the walls of a corner, and one more.
 constexpr std::size_t kContactsOfASphere = 4, kContactsOfAPoint = 2;
 
-// A capsule is a row of spheres half a radius apart, or as many as there may be.
+// A capsule is a row of spheres half a radius apart, up to kMostTips.
 std::vector<Tip> tips_of(const Probe& probe) {
   std::vector<Tip> tips;
   for (const vec3& place : probe.points) tips.push_back({dvec3(place), probe.radius});
@@ -118,7 +120,7 @@ Entity make_contact(Registry& registry, Entity object, std::size_t slot) {
   return entity;
 }
 
-// As many as its neighbours' contacts may need, and at least what most_contacts() leaves.
+// Enough for its neighbours' contacts; at least the number reserved by most_contacts().
 void make_echoes(const World& world, ObjectState& object) {
   object.first_echo = static_cast<std::uint32_t>(object.sources.size());
   const Deformable& deformable = world.registry.get<Deformable>(object.entity);
@@ -135,7 +137,7 @@ bool something_presses(Registry& registry) {
   return soft.begin() != soft.end();
 }
 
-// Contacts that tissue may drive, as many as probes have left room for.
+// Contacts that tissue may drive, as many as the probes leave room for.
 void make_presses(World& world, TouchState& touch) {
   for (ObjectState& object : touch.objects) {
     const Deformable& deformable = world.registry.get<Deformable>(object.entity);
@@ -210,7 +212,7 @@ Status prepare_touch(World& world) {
     object.dirty.reserve(mesh.zone_count());
     if (world.field_place == FieldPlace::kGpu && !object.on_gpu && gpu_knows(deformable))
       object.teller = FieldTeller(mesh.zone_count(), kMaxContactsPerObject, deformable.distance == Distance::kSurface);
-    for (std::uint32_t zone = 0; zone < field.zone_state.size(); ++zone) {  // what is not at rest must be shown again
+    for (std::uint32_t zone = 0; zone < field.zone_state.size(); ++zone) {  // zones not at rest must be published again
       field.zone_state[zone] &= kZoneListed | kZoneResidual;
       if (field.zone_state[zone]) {
         field.zone_state[zone] |= kZoneDirty;
@@ -243,7 +245,7 @@ Status prepare_touch(World& world) {
       object.sources.push_back(
           make_source(make_contact(registry, object.entity, slot), world.meshes[deformable.mesh], deformable));
     object.probe_sources = static_cast<std::uint32_t>(object.sources.size());
-    if (!world.fields[deformable.field].awake.empty()) {  // what was recovering goes on
+    if (!world.fields[deformable.field].awake.empty()) {  // an earlier recovery continues
       object.listed = true;
       touch->awake.push_back(static_cast<std::uint32_t>(slot));
     }

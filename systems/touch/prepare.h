@@ -1,5 +1,5 @@
-// Between load and the first tick: sizes every buffer that the touch tick will need, makes one Contact per (probe,
-// object) pair, and refuses parameters that no step could survive.
+// Between load and the first tick: sizes every buffer of the touch tick, makes one Contact per (probe, object) pair,
+// and rejects parameters for which the step fails.
 #pragma once
 
 #include "components/world.h"
@@ -11,10 +11,10 @@ namespace pliant {
 // Keeps the heights of fields that already have the right size.
 Status prepare_touch(World& world);
 
-// The box of an object's rest surface in world, with room for its curved patches.
+// The world box of an object's rest surface, including its curved patches.
 Box touch_box(const Mesh& mesh, const Pose& pose);
 
-// Bytes of touch state of one mesh and its field (for reports): everything a tick may read or write.
+// Bytes of touch state of one mesh and its field (for reports): everything that a tick may read or write.
 std::size_t touch_bytes(const Mesh& mesh, const HeightField& field);
 
 }  // namespace pliant

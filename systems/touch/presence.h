@@ -1,5 +1,5 @@
-// Surfaces that whoever owns a run takes out, puts back or puts elsewhere between ticks. A surface that is taken out
-// has an empty ObjectState::world_box. Touch clock; nothing here allocates.
+// Removing, restoring and placing surfaces between ticks, by the owner of a run. A removed surface has an empty
+// ObjectState::world_box. Touch clock; nothing here allocates.
 #pragma once
 
 #include "components/transform.h"
@@ -7,11 +7,11 @@
 
 namespace pliant {
 
-// What presses it lets go, and its dents come back. Out of the world, it meets nothing.
+// Contacts with it end, and its dents recover. A removed surface has no contacts.
 void take_out_surface(World& world, Entity surface);
-// Where it is. What is inside of it then is not pushed: it is met when it comes in from outside.
+// Restores it at its pose. Probes that are inside it are not pushed out; contact begins when they enter from outside.
 void put_back_surface(World& world, Entity surface);
-// Elsewhere, at rest; contacts end. Not of what a prescribed motion carries.
+// Places it elsewhere, at rest; contacts end. Not for kinematic surfaces.
 void place_surface(World& world, Entity surface, const Pose& pose);
 
 }  // namespace pliant

@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-// Contacts stay with the point they had; the others are free for points that are new.
+// Contacts keep their point; free contacts take the new points.
 void assign(ObjectState& object, const ObjectPresses& presses, Registry& registry) {
   std::array<bool, kMaxPresses> placed{};
   for (PressState& state : object.presses) {
@@ -19,7 +19,7 @@ void assign(ObjectState& object, const ObjectPresses& presses, Registry& registr
       placed[i] = state.used = true;
       state.point = presses.points[i];
     }
-    if (!state.used) registry.get<Contact>(state.contact).state = ContactState::kFree;  // force_field leaves its dent
+    if (!state.used) registry.get<Contact>(state.contact).state = ContactState::kFree;  // force_field folds its dent
   }
   auto next = object.presses.begin();
   for (std::uint32_t i = 0; i < presses.count; ++i) {
@@ -35,7 +35,7 @@ void assign(ObjectState& object, const ObjectPresses& presses, Registry& registr
   }
 }
 
-// `left`: [s] until the tissue is where the soft step has put it.
+// `left`: [s] until the tissue reaches the soft step's position.
 void follow(const PressState& state, const Mesh& mesh, double left, Contact& contact) {
   const PressPoint& point = state.point;
   const dvec3 x = point.position - left * point.velocity;

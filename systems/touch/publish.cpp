@@ -1,4 +1,4 @@
-// Dirty zones, probe poses and forces -> TripleBuffer, for whoever draws.
+// Dirty zones, probe poses and forces -> TripleBuffer, for the visual clock.
 #include "systems/touch/publish.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ void mark_dirty(ObjectState& object, HeightField& field, std::uint32_t zone) {
   object.dirty.push_back(zone);
 }
 
-// Copies dirty zones, newest first, as many as the snapshot holds. True when none is left.
+// Copies dirty zones, newest first, up to the snapshot's capacity. True when none is left.
 bool copy_zones(ObjectState& object, HeightField& field, ObjectSnapshot& out) {
   out.object = object.entity;
   out.awake_vertices = field.awake_vertices;
@@ -76,7 +76,7 @@ void publish(World& world, Tick tick) {
   for (std::size_t i = 0; i < touch.objects.size(); ++i) {
     ObjectState& object = touch.objects[i];
     HeightField& field = world.fields[world.registry.get<Deformable>(object.entity).field];
-    // What was replaced unseen has to travel again.
+    // Zones that were replaced unseen are sent again.
     if (!last_was_seen)
       for (const std::uint32_t zone : object.waiting) mark_dirty(object, field, zone);
     const ObjectSnapshot& sent = snapshot.objects[i];
@@ -93,7 +93,7 @@ void publish_paced(World& world, Tick tick) {
   const std::uint64_t every =
       std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(1 / (tick.dt * kPublishRate))));
   if (tick.index % every != 0) return;
-  // What nobody takes only grows: every zone touched since would be copied again and again.
+  // Without a reader the dirty zones only grow: every zone touched so far would be copied again and again.
   if (world.touch->unseen > kPatience && world.snapshots->unseen()) return;
   publish(world, tick);
 }

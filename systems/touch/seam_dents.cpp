@@ -38,8 +38,8 @@ FieldSource in_frame(const FieldSource& source, const Pose& from, const Pose& to
   return out;
 }
 
-// The echoes of one source, seen from one of the objects that it dents, in the objects beyond that one's seams; and
-// beyond those: where four nodes meet, the fourth is no neighbour of the first.
+// Creates the echoes of one source, seen from one of the objects that it dents, in the objects beyond its seams.
+// Recursive: where four nodes meet, the fourth is not a neighbour of the first.
 void echo(World& world, SourceLink master, std::uint32_t slot, std::uint32_t number, Tick tick);
 
 void echo_in(World& world, SourceLink master, std::uint32_t slot, std::uint32_t number, std::uint32_t beyond_slot,
@@ -50,13 +50,13 @@ void echo_in(World& world, SourceLink master, std::uint32_t slot, std::uint32_t 
   ObjectState& beyond = touch.objects[beyond_slot];
   if (beyond_slot == master.object || beyond.first_echo == beyond.sources.size()) return;
   SourceState* to = echo_of(beyond, master);
-  if (to && to->echoed == tick.index + 1) return;  // it came another way
+  if (to && to->echoed == tick.index + 1) return;  // reached by another way
   std::array<std::uint32_t, kMostSeeds> seeds;
   std::size_t count = 0;
   for (const SeamZones& seam : object.seam_zones)
     if (seam.object == beyond_slot && (object.zone_sources[seam.zone] >> number & 1) && count < kMostSeeds)
       seeds[count++] = seam.other;
-  if (count == 0) return;  // nothing of it comes to the seam
+  if (count == 0) return;  // the source does not reach the seam
   const Deformable& deformable = world.registry.get<Deformable>(beyond.entity);
   const Mesh& mesh = world.meshes[deformable.mesh];
   HeightField& field = world.fields[deformable.field];

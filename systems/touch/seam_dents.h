@@ -1,6 +1,6 @@
-// Dents go on over seams (seams.h): a source whose zones come to a seam has an echo in the object beyond, the same
-// source in that object's frame. So what is drawn is as whole as what is touched. An echo dents; it has no contact and
-// gives no force. Surfaces with distance `surface` have none: what is marched ends at the edge.
+// Dents continue over seams (seams.h). A source whose zones reach a seam has an echo in the object beyond: the same
+// source in that object's frame. The drawn surface is thus as continuous as the touched one. An echo dents; it has no
+// contact and gives no force. Surfaces with distance `surface` have no echoes: their march ends at the edge.
 #pragma once
 
 #include "components/world.h"
@@ -10,15 +10,15 @@
 
 namespace pliant {
 
-// What echoes (of the last tick, until echo_dents) hold a vertex down by. [m]
+// Height of a vertex due to echoes (of the last tick, until echo_dents). [m]
 double echoed_at(const ObjectState& object, const Mesh& mesh, std::uint32_t vertex);
-// Adds what of a source's volume lies beyond seams.
+// Adds the part of a source's volume that is beyond seams.
 void add_echo_sums(const World& world, SourceLink master, const SourceState& source, VolumeSums& sums);
 
-// After every object's own sources have their amplitudes.
+// Called after every object's sources have their amplitudes.
 void echo_dents(World& world, Tick tick);
 
-// A contact of `from` goes on as `to` in another object: so do its dents, echo and source changing places.
+// A contact of `from` continues as `to` in another object; its dents follow: echo and source are swapped.
 void hand_over_dents(TouchState& touch, std::uint32_t from_slot, SourceState& from, std::uint32_t to_slot,
                      SourceState& to);
 

@@ -8,8 +8,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kOff = 0.3;         // [1] of that: how far its surface may be from there
-constexpr double kAlongSeam = 0.76;  // [1] cosine of 40 degrees: it goes on in the same direction
+constexpr double kOff = 0.3;         // [1] of the search distance: largest distance of the other surface from there
+constexpr double kAlongSeam = 0.76;  // [1] cosine of 40 degrees: largest angle between the two surfaces
 
 struct SeamPlace {
   dvec3 p, normal;  // world
@@ -21,8 +21,8 @@ dvec3 facet_normal(const Mesh& mesh, std::uint32_t t) {
   return normalize(cross(dvec3(mesh.position(c.y)) - a, dvec3(mesh.position(c.z)) - a));
 }
 
-// The triangle of `mesh` that passes within `within` of p and faces as p's surface does, or kBorder. `self`: the
-// triangle that p was taken from, where the mesh is the same.
+// The triangle of `mesh` that passes within `within` of p and faces like p's surface, or kBorder. `self`: the triangle
+// of p, if the mesh is the same.
 std::uint32_t goes_on(const Mesh& mesh, const Pose& pose, const SeamPlace& at, double within, std::uint32_t self) {
   const dvec3 x = pose.to_local(at.p), n = glm::conjugate(pose.rotation) * at.normal;
   std::uint32_t found = kBorder;
@@ -39,7 +39,7 @@ std::uint32_t goes_on(const Mesh& mesh, const Pose& pose, const SeamPlace& at, d
   return found;
 }
 
-// A dent goes on in both directions, wherever a foot may. And how far: over all seams that hang together.
+// A dent continues in both directions, wherever a foot may, over all connected seams.
 void join_zones(TouchState& touch) {
   for (std::uint32_t i = 0; i < touch.objects.size(); ++i)
     for (const SeamZones& seam : std::vector<SeamZones>(touch.objects[i].seam_zones))
@@ -71,7 +71,7 @@ const Seam* seam_at(const ObjectState& object, const Foot& foot) {
                                      [](const Seam& seam, std::uint32_t edge) { return seam.edge < edge; });
     return at != object.seams.end() && at->edge == key ? &*at : nullptr;
   };
-  for (std::uint32_t e = 0; e < 3; ++e)  // of the edges that the foot lies on
+  for (std::uint32_t e = 0; e < 3; ++e)  // of the edges under the foot
     if (foot.barycentric[static_cast<int>((e + 2) % 3)] < 1e-9)
       if (const Seam* seam = find(3 * foot.triangle + e)) return seam;
   return nullptr;
@@ -92,7 +92,7 @@ void find_seams(const World& world, TouchState& touch) {
     ObjectState& object = touch.objects[i];
     const Mesh& mesh = world.meshes[registry.get<Deformable>(object.entity).mesh];
     const Pose& pose = registry.get<Pose>(object.entity);
-    const double crack = kCrack * static_cast<double>(mesh.mean_edge);  // so far beyond an edge it is looked for
+    const double crack = kCrack * static_cast<double>(mesh.mean_edge);  // search distance beyond an edge
     const bool moves = registry.has<MovingPose>(object.entity);
     Box around = object.world_box;
     around.min -= vec3(static_cast<float>(2 * crack));
@@ -125,7 +125,7 @@ void find_seams(const World& world, TouchState& touch) {
         }
       }
     }
-    // Feet stop there from both sides: a wall that another surface covers is none.
+    // Feet stop at these edges from both sides: a wall covered by another surface is ignored.
     for (const Seam& seam : object.seams) {
       object.closed.push_back(seam.edge);
       const std::uint32_t t = seam.edge / 3, next = mesh.across[t][static_cast<int>(seam.edge % 3)];

@@ -15,8 +15,7 @@ using namespace glm;
 #undef SHARED
 }  // namespace shared
 
-// Value and surface gradient of the target at one vertex, as the zone kernels compute them (one vertex at a time).
-// Returns (nx, ny, nz, h).
+// Value and surface gradient of the target at one vertex, as computed by the zone kernels. Returns (nx, ny, nz, h).
 vec4 target_at(const FieldSource& source, vec3 position, vec3 normal);
 
 // Share f of the amplitude at one vertex: target_at(...).w / -amplitude, without dividing.

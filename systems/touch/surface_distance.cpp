@@ -25,7 +25,7 @@ void march_distance(const Mesh& mesh, const Contact& contact, const FieldSource&
   const float reach = 1 / std::sqrt(source.inv_reach2);
   const auto distance = [&](std::uint32_t v) { return length(offset[v]); };
   heap.clear();
-  // Shorter by more than rounding, or two corners would go on improving each other for ever.
+  // Shorter by more than rounding; otherwise two corners could improve each other forever.
   constexpr float kShorter = 1 - 1e-5f;
   const auto reached = [&](std::uint32_t v, std::uint32_t triangle, float r, vec3 o) {
     if (!(r < reach) || !(r < kShorter * distance(v)) || heap.size() == heap.capacity()) return;
@@ -42,7 +42,7 @@ void march_distance(const Mesh& mesh, const Contact& contact, const FieldSource&
     std::pop_heap(heap.begin(), heap.end(), later);
     const MarchItem item = heap.back();
     heap.pop_back();
-    if (kShorter * item.distance > distance(item.vertex)) continue;  // a shorter way was found meanwhile
+    if (kShorter * item.distance > distance(item.vertex)) continue;  // a shorter path was found meanwhile
     around_vertex(mesh, item.vertex, item.triangle, [&](std::uint32_t t) {
       const uvec3 c = mesh.triangles[t];
       for (int i = 0; i < 3; ++i) {
@@ -58,7 +58,7 @@ void march_distance(const Mesh& mesh, const Contact& contact, const FieldSource&
           const float l = length(d);
           arrival = {ru + l, d / std::max(l, 1e-30f)};
         }
-        // The offset is tangent at v: turned into its plane, its length kept.
+        // The offset is tangent at v: rotated into its plane with its length kept.
         const vec3 n = mesh.normal(v);
         vec3 o = arrival.direction - dot(arrival.direction, n) * n;
         o *= arrival.distance / std::max(length(o), 1e-30f);
@@ -69,8 +69,8 @@ void march_distance(const Mesh& mesh, const Contact& contact, const FieldSource&
 }
 
 vec4 target_at_offset(const FieldSource& source, vec3 offset, vec3 normal) {
-  // The distance itself says what belongs to the contact, so the angle between normals does not matter: seen from the
-  // vertex, the contact lies in its own tangent plane.
+  // The distance already excludes other parts of the surface, so the angle between normals is not tested. Seen from the
+  // vertex, the contact is in its tangent plane.
   FieldSource local = source;
   local.center = vec3(0);
   local.normal = normal;

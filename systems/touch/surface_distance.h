@@ -1,11 +1,11 @@
-// Distance along the surface instead of the chord (Distance::kSurface; methods.md 1.3): right where the surface folds
-// within reach, and dearer. Each vertex within reach gets its offset from the contact: a tangent vector whose length is
-// the distance along the surface and whose direction is the way the shortest path arrives. The field is then the same
-// shape of that offset in place of the chord.
+// Distance along the surface instead of the chord (Distance::kSurface; methods.md 1.3): correct where the surface folds
+// within reach, but more expensive. Each vertex within reach gets its offset from the contact: a tangent vector. Its
+// length is the distance along the surface, its direction that in which the shortest path arrives. The field is the
+// same shape, evaluated at that offset instead of the chord.
 //
 // Marching (Kimmel & Sethian 1998) with the source unfolded into each triangle's plane, so that a flat surface is
-// exact: given the distances of two corners, the source's image S in the plane of the triangle is where both circles
-// meet, and the third corner's distance is |v - S| if that line passes between the two.
+// exact. Two corners' distances are radii of circles that intersect at S, the source's image in the triangle's plane.
+// The third corner's distance is |v - S| if that line passes between the two corners.
 #pragma once
 
 #include <vector>
@@ -15,15 +15,15 @@
 
 namespace pliant {
 
-// Offset of a vertex that the march has not reached: the field there is zero.
+// Offset of a vertex that the march has not reached; the field is zero there.
 inline constexpr float kFar = 1e9f;  // [m]
 
 // Fills `offset` for vertices nearer than the source's reach; all entries must be kFar before (clear_offsets).
-// `heap` is working memory; nothing allocates while its capacity holds.
+// `heap` is working memory; nothing allocates within its capacity.
 struct MarchItem {
   float distance;
   std::uint32_t vertex;
-  std::uint32_t triangle;  // one that has the vertex as a corner
+  std::uint32_t triangle;  // one triangle at the vertex
 };
 void march_distance(const Mesh& mesh, const Contact& contact, const FieldSource& source, std::vector<vec3>& offset,
                     std::vector<MarchItem>& heap);

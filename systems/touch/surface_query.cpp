@@ -13,18 +13,18 @@ void keep_nearer(SurfaceFoot& best, const SurfaceFoot& candidate) {
   if (candidate.valid() && (!best.valid() || candidate.distance() < best.distance())) best = candidate;
 }
 
-// Which edge's far side has a negative barycentric most; edges run from corner i to i+1, opposite corner (i+2)%3.
+// The edge opposite the most negative barycentric. Edges run from corner i to i+1, opposite corner (i+2)%3.
 int edge_to_cross(dvec3 b) {
   const int corner = b.x < b.y ? (b.x < b.z ? 0 : 2) : (b.y < b.z ? 1 : 2);
   return (corner + 1) % 3;
 }
 
-// How far inside the triangle barycentrics must be for the walk to stop; edges belong to both sides.
+// Tolerance on barycentrics at which the walk stops; edges belong to both sides.
 constexpr double kWalkInside = -1e-9;
 
 }  // namespace
 
-// A virtual vertex more than this many times as far as the closest point belongs to another part of the surface.
+// A virtual vertex more than this many times as far as the closest point is on another part of the surface.
 constexpr double kSamePart = 2.0;
 
 SurfaceFoot prefer_virtual(const SurfaceFoot& vertex, const SurfaceFoot& closest) {
@@ -33,8 +33,8 @@ SurfaceFoot prefer_virtual(const SurfaceFoot& vertex, const SurfaceFoot& closest
 
 namespace {
 
-// Where normals are smooth a virtual vertex is hardly farther than the closest point. What one pass meets within this
-// many times the closest distance is kept in a list, and a second pass is only made where that was not enough.
+// Where normals are smooth, a virtual vertex is hardly farther than the closest point. Triangles within this many times
+// the closest distance are kept in a list; a second pass is made only if that was not enough.
 constexpr double kBand = 1.02;
 
 struct NearTriangles {
@@ -44,7 +44,7 @@ struct NearTriangles {
   };
   std::array<Near, 96> list;
   std::uint32_t count = 0;
-  bool complete = true;  // nothing within the last limit is missing
+  bool complete = true;  // the list has everything within the last limit
 
   void add(std::uint32_t triangle, float distance2, float limit) {
     if (count == list.size()) {
@@ -60,8 +60,8 @@ struct NearTriangles {
   }
 };
 
-// Looks for a nearer virtual vertex on one triangle. Heights are distances to points of the triangle, so the distance
-// to it is a lower bound of them.
+// Searches one triangle for a nearer virtual vertex. Heights are distances to points of the triangle, so the distance
+// to it is a lower bound.
 void try_virtual(const Mesh& mesh, dvec3 x, std::uint32_t triangle, double farthest, SurfaceFoot& best) {
   const double distance2 = closest_on_triangle(mesh, triangle, x).distance2;
   const double bound = best.valid() ? best.distance() : farthest;
@@ -84,7 +84,7 @@ SurfaceFoot nearest(const Mesh& mesh, dvec3 x, double within) {
       [&](std::uint32_t first, std::uint32_t count) {
         triangle_distances2(mesh, first, count, x, d2);
         TriangleDistances left = d2;
-        for (;;) {  // the nearest in double, until single precision says that none can be nearer
+        for (;;) {  // the nearest in double, until single precision rules out all others
           const auto least = static_cast<std::uint32_t>(std::min_element(left.begin(), left.end()) - left.begin());
           if (!(left[least] <= limit)) break;
           left[least] = std::numeric_limits<float>::infinity();
@@ -152,8 +152,8 @@ Tracked track(const Mesh& mesh, const SurfaceFoot& last, dvec3 x) {
     b = dvec3(1.0 / 3);
   }
 
-  // The walk stalled. Look at every triangle near the last foot; prefer the virtual vertex that continues it best, else
-  // take the closest point.
+  // The walk stalled. Searches the triangles near the last foot; prefers the virtual vertex nearest to that foot, else
+  // takes the closest point.
   const double around = 4 * length(x - (last.foot + last.height * last.normal)) + 2 * mesh.mean_edge;
   SurfaceFoot closest;
   double best_step = around;
@@ -173,7 +173,7 @@ Tracked track(const Mesh& mesh, const SurfaceFoot& last, dvec3 x) {
   if (result.point.valid()) return result;
   result.point = closest.valid() ? closest : last;
   if (at_border && closest.valid()) {
-    // Past the rim when the closest point is on a border edge and x lies beyond it, seen along the surface.
+    // Past the rim if the closest point is on a border edge and x is beyond it, seen along the surface.
     const uvec3 across = mesh.across[closest.triangle];
     const Corner3 c = corners(mesh, closest.triangle);
     for (int edge = 0; edge < 3; ++edge) {
@@ -198,7 +198,7 @@ Entry first_entry(const Mesh& mesh, dvec3 from, dvec3 to) {
         if (!(det > 0)) return;  // parallel, or leaving through the outer side
         const dvec3 s = from - c.p[0], q = cross(s, e1);
         const double u = dot(s, p) / det, v = dot(d, q) / det, fraction = dot(e2, q) / det;
-        // A crossing on an edge belongs to both triangles, so none can be missed between them.
+        // A crossing on an edge belongs to both triangles, so that none is missed between them.
         constexpr double kEdge = 1e-7;
         if (u < -kEdge || v < -kEdge || u + v > 1 + kEdge || fraction < 0 || fraction > 1) return;
         if (fraction < best.fraction) best = {t, fraction, {1 - u - v, u, v}};

@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::uint32_t kTreeLanes = kTreeNodeWidth;
 
-// Corners relative to the query point in units of the mesh, so that products of four lengths stay inside single
-// precision; one array a component.
+// Corners relative to the query point in units of the mesh, so that products of four lengths stay in the range of
+// single precision; structure of arrays.
 struct alignas(32) Corners8 {
   float v[3][3][kTreeLanes];
 };
@@ -25,9 +25,9 @@ void gather(const Mesh& mesh, std::uint32_t first, std::uint32_t count, Corners8
   }
 }
 
-// The least of the distances to the three edges and, where the point stands over the triangle, to the foot inside.
-// Every value is the distance to some point of the triangle, so rounding makes it larger to second order only: slivers,
-// whose normals single precision does not know, stay as exact as the rest.
+// The smallest of the distances to the three edges and, if the point projects into the triangle, to its foot. Every
+// value is the distance to some point of the triangle, so rounding increases it only to second order. Slivers, whose
+// normals are lost in single precision, are therefore as exact as the rest.
 PLIANT_KERNEL void distances2(const Corners8& corners, vec3 x, float scale, float* __restrict out) {
   const float* const ax_ = corners.v[0][0];
   const float* const ay_ = corners.v[0][1];
@@ -60,7 +60,7 @@ PLIANT_KERNEL void distances2(const Corners8& corners, vec3 x, float scale, floa
     best = second < best ? second : best;
     best = third < best ? third : best;
     const float nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-    // Twice the areas of the triangles between the foot and each edge, times |n|: barycentrics but for their sum.
+    // Twice the areas of the triangles between the foot and each edge, times |n|: barycentrics up to normalisation.
     const float fc = (ay * uz - az * uy) * nx + (az * ux - ax * uz) * ny + (ax * uy - ay * ux) * nz;
     const float fa = (by * vz - bz * vy) * nx + (bz * vx - bx * vz) * ny + (bx * vy - by * vx) * nz;
     const float fb = (cy * wz - cz * wy) * nx + (cz * wx - cx * wz) * ny + (cx * wy - cy * wx) * nz;
@@ -117,7 +117,7 @@ FlatPoint closest_flat(const Mesh& mesh, dvec3 x, double within, std::uint32_t h
       [&] { return limit; },
       [&](std::uint32_t first, std::uint32_t count) {
         triangle_distances2(mesh, first, count, x, d2);
-        for (;;) {  // the nearest in double, until single precision says that none can be nearer
+        for (;;) {  // the nearest in double, until single precision rules out all others
           std::uint32_t nearest = 0;
           for (std::uint32_t l = 1; l < kTreeLanes; ++l) nearest = d2[l] < d2[nearest] ? l : nearest;
           if (!(d2[nearest] <= limit)) return;

@@ -1,8 +1,8 @@
 // Queries on the tree of a mesh at rest (components/mesh.h, TriangleTree::nodes): the closest point of its flat
 // triangles, everything near a point, everything along a segment. Object frame; results in double, boxes in single.
 //
-// A node's eight boxes are met at once, in loops that the compiler turns into SIMD. Boxes also hold the curved patches
-// over the triangles, so a visitor that asks for the distance to a patch may prune by them as well.
+// A node's eight boxes are tested at once, in loops that the compiler vectorises. Boxes also contain the triangles'
+// curved patches, so a visitor that needs the distance to a patch may prune by them as well.
 #pragma once
 
 #include <algorithm>
@@ -25,25 +25,25 @@ struct FlatPoint {
   bool valid() const { return triangle != kNone; }
 };
 
-// The closest point of the flat triangles that is not farther than `within` [m]; invalid where there is none. A `hint`,
-// the triangle of a query nearby, is looked at first and spares most of the tree; it never changes the distance found.
+// The closest point of the flat triangles within `within` [m]; invalid if there is none. A `hint`, the triangle of a
+// nearby query, is tested first and prunes most of the tree; it never changes the distance found.
 FlatPoint closest_flat(const Mesh& mesh, dvec3 x, double within, std::uint32_t hint = FlatPoint::kNone);
 
 // The closest point of one flat triangle.
 FlatPoint closest_on_triangle(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
 
 // Squared distances in single precision to the flat triangles [first, first + count), count <= kTreeNodeWidth, eight at
-// once; the places behind them get infinity. They differ from closest_on_triangle's by less than rounding() does. [m2]
+// once; the places after them get infinity. They differ from closest_on_triangle's by less than rounding() does. [m2]
 using TriangleDistances = std::array<float, kTreeNodeWidth>;
 void triangle_distances2(const Mesh& mesh, std::uint32_t first, std::uint32_t count, dvec3 x, TriangleDistances& out);
 
-// What single precision may do to a distance between x and the mesh: nothing is left out that is nearer than this. [m]
+// Bound of the single-precision error of a distance between x and the mesh; pruning allows for it. [m]
 inline double rounding(const Mesh& mesh, const dvec3& x) {
   const dvec3 reach = glm::max(dvec3(glm::max(glm::abs(mesh.box.min), glm::abs(mesh.box.max))), glm::abs(x));
   return 1e-6 * std::max({reach.x, reach.y, reach.z});
 }
 
-// A distance as the float that squared distances of single precision are held against: never too small.
+// Upper bound for comparison with squared distances in single precision; never too small.
 inline float distance2_limit(double distance, double round) {
   const double d = distance + round;
   return static_cast<float>(std::min(1.000001 * d * d, 1e37));  // below the infinity of empty boxes
@@ -51,11 +51,11 @@ inline float distance2_limit(double distance, double round) {
 
 namespace tree {
 
-// Depth at most 27 (content/mesh/tree.cpp), seven siblings wait on each level.
+// Depth at most 27 (content/mesh/tree.cpp), with up to seven siblings stacked per level.
 inline constexpr std::uint32_t kStack = 256;
 
 struct Entry {
-  float key;  // lower bound of what is inside: squared distance, or fraction of a segment
+  float key;  // lower bound of the contents: squared distance, or fraction of a segment
   std::uint32_t first, count;
 };
 
@@ -68,9 +68,9 @@ inline void box_distances2(const TreeNode& node, vec3 x, float (&out)[kTreeNodeW
   }
 }
 
-// Fractions at which a segment enters the boxes, 2 where it does not before `last`.
+// Fractions at which a segment enters the boxes; 2 if it does not before `last`.
 struct Segment {
-  vec3 from, inverse;  // 1 / (to - from); huge where it does not move, so that such an axis decides by itself
+  vec3 from, inverse;  // 1 / (to - from); huge for an axis without motion, which then decides by itself
   float round;
 };
 inline void box_entries(const TreeNode& node, const Segment& s, float last, float (&out)[kTreeNodeWidth]) {
@@ -87,8 +87,8 @@ inline void box_entries(const TreeNode& node, const Segment& s, float last, floa
   }
 }
 
-// Calls visit(first, count) with runs of triangles, the ones of least key first. keys(node, out) computes the keys of a
-// node's places; limit() is asked anew before every box, because visits make it smaller.
+// Calls visit(first, count) with runs of triangles, smallest key first. keys(node, out) computes the keys of a node's
+// places. limit() is evaluated before every box, because visits reduce it.
 template <class Keys, class Limit, class Visit>
 void descend(const Mesh& mesh, Keys keys, Limit limit, Visit visit) {
   const TreeNode* const nodes = mesh.tree.nodes.data();
@@ -113,7 +113,7 @@ void descend(const Mesh& mesh, Keys keys, Limit limit, Visit visit) {
       std::uint32_t place = top++;
       for (; place > bottom && stack[place - 1].key < key[i]; --place) stack[place] = stack[place - 1];
       stack[place] = {key[i], node.first[i], node.count[i]};
-      // What is far down in memory is on its way while what is nearer is visited.
+      // Prefetches farther entries while nearer ones are visited.
       const char* const next = node.count[i] > 0 ? reinterpret_cast<const char*>(&mesh.triangles[node.first[i]])
                                                  : reinterpret_cast<const char*>(&nodes[node.first[i]]);
       __builtin_prefetch(next);
@@ -146,7 +146,7 @@ void visit_near(const Mesh& mesh, dvec3 x, Bound bound, Visit visit) {
   });
 }
 
-// Calls visit(triangle) where the segment meets the box of its run before the fraction bound() [1], earliest first.
+// Calls visit(triangle) where the segment enters the box of its run before the fraction bound() [1], earliest first.
 template <class Bound, class Visit>
 void visit_along(const Mesh& mesh, dvec3 from, dvec3 to, Bound bound, Visit visit) {
   tree::Segment segment{vec3(from), vec3(0), static_cast<float>(std::max(rounding(mesh, from), rounding(mesh, to)))};

@@ -1,5 +1,5 @@
 // One step of a march over a surface: the distance of a triangle's third corner from those of the other two, with the
-// source unfolded into the triangle's plane. Exact where the surface is flat or unrolls (surface_distance.h).
+// source unfolded into the triangle's plane. Exact on flat and developable surfaces (surface_distance.h).
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ struct Arrival {
   vec3 direction;  // unit, in the triangle's plane
 };
 
-// The third corner v of a triangle whose corners a and b have distances ra and rb.
+// Arrival at the third corner v of a triangle whose corners a and b have distances ra and rb.
 inline Arrival arrive(vec3 a, vec3 b, vec3 v, float ra, float rb) {
   const vec3 ab = b - a, av = v - a, bv = v - b;
   const float L = length(ab);

@@ -6,10 +6,10 @@
 namespace pliant {
 namespace {
 
-// Barycentrics may fall short of the triangle by this much: feet on an edge belong to both sides, never to none.
+// Tolerance on barycentrics: a foot on an edge belongs to both sides, never to neither.
 constexpr double kInside = -1e-9;
 
-// Real roots of a cubic, each polished by Newton; returns how many.
+// Real roots of a cubic, each polished by Newton; returns their number.
 int real_roots(const double (&c)[4], double (&roots)[3]) {
   const double size = std::max({std::abs(c[0]), std::abs(c[1]), std::abs(c[2]), std::abs(c[3])});
   if (size == 0.0) return 0;
@@ -73,7 +73,7 @@ SurfaceFoot virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
   const dvec3 r = c.p[0] - x;
   // det[...] = A(t) . (r + t n0), A(t) = (e1 + t m1) x (e2 + t m2) = A0 + t A1 + t^2 A2
   const dvec3 A0 = cross(e1, e2), A1 = cross(e1, m2) + cross(m1, e2), A2 = cross(m1, m2);
-  // t is measured in units of the point's distance, so that the polynomial's terms compare and |t| <= 1 is likely.
+  // t is scaled by the point's distance, so that the polynomial's terms are comparable and |t| <= 1 is likely.
   const double unit = std::max(length(r), 1e-300);
   const double poly[4] = {dot(A0, r), unit * (dot(A1, r) + dot(A0, n0)), unit * unit * (dot(A2, r) + dot(A1, n0)),
                           unit * unit * unit * dot(A2, n0)};
@@ -87,7 +87,7 @@ SurfaceFoot virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x) {
     if (!(size > 0)) continue;
     const double u = dot(cross(q, b), A) / size, v = dot(cross(a, q), A) / size, w = 1 - u - v;
     if (!(u >= kInside && v >= kInside && w >= kInside)) continue;
-    // Beyond a focal distance the normals have crossed on the way: the offset triangle or its edges are turned over.
+    // Beyond a focal distance the normals have crossed: the offset triangle or its edges are inverted.
     if (dot(A, w * c.n[0] + u * c.n[1] + v * c.n[2]) <= 0 || dot(a, e1) <= 0 || dot(b, e2) <= 0) continue;
     const dvec3 n = n0 + u * m1 + v * m2;
     const double height = t * length(n);
@@ -154,12 +154,12 @@ dvec3 closest_barycentric(const dvec3 (&p)[3], dvec3 x) {
 bool may_have_virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x, double distance2) {
   const Corner3 c = corners(mesh, triangle);
   const dvec3 n = cross(c.p[1] - c.p[0], c.p[2] - c.p[0]);
-  // cos of the widest angle between the plane's normal and a corner's: no mixture of the three leans more.
+  // cos of the largest angle between the plane's normal and a corner's; no convex combination of the three exceeds it.
   const double size2 = dot(n, n);
   double least = std::numeric_limits<double>::max();
   for (const dvec3& normal : c.n) least = std::min(least, dot(normal, n) / length(normal));
   if (!(least > 0) || !(size2 > 0)) return true;
-  const double above = dot(x - c.p[0], n);  // |n| times the height over the plane
+  const double above = dot(x - c.p[0], n);  // n| times the height above the plane
   const double room = kInside * kInside * size2 * dot(c.p[1] - c.p[0], c.p[1] - c.p[0]);
   return (above * above + 100 * room) * 1.000001 >= distance2 * least * least;
 }

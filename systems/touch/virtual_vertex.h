@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-// Where x stands over the surface. (A point of a skin that contacts push is systems/soft/body/body.h.)
+// Foot of x on the surface. (The contact point of a body is in systems/soft/body/body.h.)
 struct SurfaceFoot {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   std::uint32_t triangle = kNone;
@@ -35,22 +35,23 @@ Corner3 corners(const Mesh& mesh, std::uint32_t triangle);
 // Foot, unit normal and height at given barycentrics.
 SurfaceFoot surface_point(const Corner3& c, std::uint32_t triangle, dvec3 barycentric, double height);
 
-// The virtual vertex with the smallest |height| on this triangle, or an invalid point where there is none: x projects
-// beside the triangle, or lies beyond the focal distance.
+// The virtual vertex with the smallest |height| on this triangle. Invalid if x projects beside the triangle or is
+// beyond the focal distance.
 SurfaceFoot virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
 
-// Barycentrics of the virtual vertex whose height continues `height`, which may lie outside the triangle (their signs
-// say which edge to cross). False where the normals meet (focal distance) or the iteration does not settle.
+// Barycentrics of the virtual vertex whose height continues `height`. They may be outside the triangle; their signs
+// identify the edge to cross. False at the focal distance, where normals meet, or if the iteration does not converge.
 bool continue_virtual_vertex(const Corner3& c, dvec3 x, dvec3& barycentric, double& height);
 
 // Barycentrics of the closest point of a flat triangle.
 dvec3 closest_barycentric(const dvec3 (&corner)[3], dvec3 x);
 
-// False only where no interpolated normal of the triangle can reach x: x then stands farther beside the triangle's
-// plane (its closest point is sqrt(distance2) away [m]) than the widest of the corner normals leans. Spares the cubic.
+// False only if no interpolated normal of the triangle can reach x. This is so if x is farther beside the triangle's
+// plane than the most inclined corner normal leans; its closest point is sqrt(distance2) away [m]. Saves solving the
+// cubic.
 bool may_have_virtual_vertex(const Mesh& mesh, std::uint32_t triangle, dvec3 x, double distance2);
 
-// The closest point of the triangle, with the interpolated normal there; its height is signed by the side of that
+// The closest point of the triangle, with the interpolated normal there; the sign of its height is the side of that
 // normal.
 SurfaceFoot closest_point(const Mesh& mesh, std::uint32_t triangle, dvec3 x);
 

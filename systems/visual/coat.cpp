@@ -10,7 +10,7 @@ vec2 coat_reflectance(double n_v, double roughness, int samples) {
   const dvec3 v(std::sqrt(std::max(0.0, 1 - n_v * n_v)), 0, n_v);
   double A = 0, B = 0;
   for (int i = 0; i < samples; ++i) {
-    // A lattice over the square, bent into half vectors distributed as D(h) (n.h).
+    // A lattice over the square, mapped to half vectors distributed as D(h) (n.h).
     const double x = (i + 0.5) / samples, turn = 2 * M_PI * std::fmod(0.61803398875 * i, 1.0);
     const double cos_h = std::sqrt((1 - x) / (1 + (a2 - 1) * x)), sin_h = std::sqrt(std::max(0.0, 1 - cos_h * cos_h));
     const dvec3 h(sin_h * std::cos(turn), sin_h * std::sin(turn), cos_h);

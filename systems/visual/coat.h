@@ -1,5 +1,6 @@
-// How much of even surroundings a rough coat reflects: the second factor of the split sum (Karis, Real Shading in
-// Unreal Engine 4, SIGGRAPH 2013), as a table. A fit in closed form was up to 25 % too dark at middle roughness.
+// Reflectance of a rough coat under uniform surroundings: the second factor of the split sum (Karis, Real Shading in
+// Unreal Engine 4, SIGGRAPH 2013), as a table. Rejected: a closed-form fit, which was up to 25 % too dark at medium
+// roughness.
 #pragma once
 
 #include <vector>

@@ -13,10 +13,10 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr std::uint32_t kSmallestFace = 64, kLargestFace = 256;  // [pixels]
-constexpr std::uint32_t kCubeSamples = 256;                      // directions that a filtered pixel gathers
+constexpr std::uint32_t kCubeSamples = 256;                      // directions averaged for a filtered pixel
 constexpr float kLargestHalf = 65000.0f;
 
-// One level of a cube, in floats.
+// One level of a cube map, in floats.
 struct CubeLevel {
   std::uint32_t size = 0;
   std::vector<vec3> pixels;
@@ -24,7 +24,7 @@ struct CubeLevel {
   vec3 at(unsigned face, std::uint32_t x, std::uint32_t y) const { return pixels[(face * size + y) * size + x]; }
 };
 
-// Bilinear, around horizontally.
+// Bilinear, periodic horizontally.
 vec3 panorama_at(const Panorama& p, vec3 d) {
   const float x = (0.5f + std::atan2(d.x, -d.z) / (2 * kPi)) * static_cast<float>(p.width) - 0.5f;
   const float y = std::acos(glm::clamp(d.y, -1.0f, 1.0f)) / kPi * static_cast<float>(p.height) - 0.5f;
@@ -70,7 +70,7 @@ void each_pixel(std::uint32_t size, const Paint& paint) {
   });
 }
 
-// Level 0 from the panorama, four looks a pixel; then each level as the average of the one before.
+// Level 0 from the panorama, four samples per pixel; then each level as the average of the previous one.
 std::vector<CubeLevel> averaged(const Panorama& panorama, std::uint32_t face) {
   std::vector<CubeLevel> levels{{face, std::vector<vec3>(std::size_t{6} * face * face)}};
   each_pixel(face, [&](unsigned f, std::uint32_t x, std::uint32_t y) {
@@ -95,18 +95,18 @@ std::vector<CubeLevel> averaged(const Panorama& panorama, std::uint32_t face) {
 struct Sample {
   vec3 way;         // [1] in a frame whose z is the coat's normal and the mirror direction
   float weight;     // [1]
-  std::size_t lod;  // whose pixels are about as large as the sample's share of the sphere
+  std::size_t lod;  // its pixels are about as large as the sample's share of the sphere
 };
 
-// Directions in which the coat's microfacets mirror an eye right above it (Walter et al. 2007, eq. 35),
-// low-discrepancy; each reads a level as coarse as it is rare, which keeps a small sun from sparkling (Krivanek and
-// Colbert, 2008).
+// Directions in which the coat's microfacets reflect an eye straight above it (Walter et al. 2007, eq. 35),
+// low-discrepancy. Each reads a level as coarse as its density is low, which prevents fireflies from a small sun
+// (Krivanek and Colbert, 2008).
 std::vector<Sample> gathered(float roughness, std::uint32_t face, std::size_t levels) {
   std::vector<Sample> samples;
   const float alpha2 = std::pow(roughness, 4.0f);
   const float pixel = 4 * kPi / (6.0f * static_cast<float>(face) * static_cast<float>(face));  // [sr]
   for (std::uint32_t i = 0; i < kCubeSamples; ++i) {
-    std::uint32_t bits = i;  // van der Corput: the bits of i behind the point, turned round
+    std::uint32_t bits = i;  // van der Corput: the bits of i, reversed behind the binary point
     float u = 0;
     for (float digit = 0.5f; bits; bits >>= 1, digit *= 0.5f) u += static_cast<float>(bits & 1u) * digit;
     const float phi = 2 * kPi * (static_cast<float>(i) + 0.5f) / static_cast<float>(kCubeSamples);

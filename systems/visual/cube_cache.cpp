@@ -1,4 +1,4 @@
-// Filtered surroundings on disk: a header, then the numbers of the cube. The name is the panorama's hash.
+// Filtered surroundings on disk: a header, then the values of the cube. The file name is the panorama's hash.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -16,15 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint32_t kVersion = 2;  // one more whenever filtered_cube gives other numbers
+constexpr std::uint32_t kVersion = 2;  // increase it whenever filtered_cube gives different values
 constexpr std::uint32_t kLargestCachedFace = 4096;
 
 struct Header {
   std::array<char, 8> magic{'P', 'L', 'I', 'A', 'N', 'T', 'C', 'B'};
   std::uint32_t version = kVersion;
   std::uint32_t face = 0;
-  std::uint64_t panorama = 0;  // hash of what was filtered
-  std::uint64_t content = 0;   // hash of the numbers that follow
+  std::uint64_t panorama = 0;  // hash of the filtered panorama
+  std::uint64_t content = 0;   // hash of the values that follow
 };
 static_assert(sizeof(Header) == 32);
 
@@ -42,7 +42,7 @@ std::uint64_t hash_of(const std::vector<std::uint16_t>& numbers) {
   return hash.value();
 }
 
-// Empty: there is no place to keep anything.
+// Empty: there is no cache folder.
 fs::path cache_folder() {
   const char* chosen = std::getenv("XDG_CACHE_HOME");
   if (chosen && *chosen == '/') return fs::path(chosen) / "pliant";
@@ -68,7 +68,7 @@ std::optional<Cube> read_cube(const fs::path& path, std::uint64_t panorama) {
   return cube;
 }
 
-// Beside its place first, then renamed: another process never reads half of it.
+// Written to a temporary file and renamed, so that another process never reads an incomplete file.
 void write_cube(const fs::path& path, const Cube& cube, std::uint64_t panorama) {
   std::error_code failed;
   fs::create_directories(path.parent_path(), failed);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kWidest = 1024;              // [pixels] of the panorama: as sharp as the cube's faces
 constexpr std::uint32_t kWidestForIrradiance = 256;  // [pixels]
-constexpr float kSunClip = 20.0f;  // [1] a sun above this share of the mean would make nine coefficients ring
+constexpr float kSunClip = 20.0f;  // [1] of the mean: a brighter sun would make nine coefficients ring
 constexpr float kPiOfSky = std::numbers::pi_v<float>;
 
 float luminance(vec3 c) {
@@ -39,13 +39,13 @@ float solid_angle(const Panorama& p, std::uint32_t y) {
   return (std::cos(top) - std::cos(top + step)) * 2 * kPiOfSky / static_cast<float>(p.width);
 }
 
-// [1] How much of a soft, round-cornered light of angular size `size` [rad] about `center` is seen in direction d.
+// [1] Visibility of a soft, round-cornered light of angular size `size` [rad] about `center` in direction d.
 float soft_box(vec3 d, vec3 center, float size) {
   return glm::smoothstep(std::cos(1.15f * size), std::cos(0.85f * size), dot(d, normalize(center)));
 }
 
-// A quiet studio: bright overhead, dark floor, a large soft light from the left and a small one behind on the right,
-// whose reflections bend where a surface does.
+// A neutral studio: bright overhead, dark floor, a large soft light from the left and a small one behind on the right.
+// Their reflections make curvature visible.
 Panorama studio() {
   Panorama p{.name = "studio", .width = 256, .height = 128, .rgb = {}};
   const vec3 zenith(0.52f, 0.58f, 0.68f), horizon(0.36f, 0.37f, 0.40f), floor(0.07f, 0.072f, 0.085f);
@@ -60,13 +60,13 @@ Panorama studio() {
   return p;
 }
 
-// Where most of the light comes from: the polynomial's linear part. Never from below, so that shapes read.
+// The direction of most light: the polynomial's linear part. Never from below, so that shapes are legible.
 vec3 dominant_direction(const std::array<vec4, 9>& c, float rotation) {
   const vec3 p(luminance(c[3]), luminance(c[1]), luminance(c[2]));
   const float cosine = std::cos(rotation), sine = std::sin(rotation);
   vec3 d(cosine * p.x + sine * p.z, p.y, -sine * p.x + cosine * p.z);
   const float flat = length(vec2(d.x, d.z));
-  // A sky without a side to it: light from the left, as draughtsmen have it, low enough to show relief.
+  // A sky without a dominant side: light from the left, low enough to show relief.
   if (flat < 0.2f * std::abs(d.y) || length(d) < 1e-6f) return normalize(vec3(-0.8f, 0.62f, 0.25f));
   d.y = glm::clamp(d.y, 0.6f * flat, 1.2f * flat);
   return normalize(d);
@@ -87,7 +87,7 @@ LampConstants lamp_of(const Light& light, const mat4& m) {
   return lamp;
 }
 
-// The level's lights, as many as the GPU takes; one that can cast a shadow first.
+// The level's lights, up to the GPU's limit; one that can cast a shadow first.
 std::vector<LampConstants> level_lamps(const World& world) {
   std::vector<LampConstants> lamps;
   bool casts = false;
@@ -152,12 +152,12 @@ Surroundings Surroundings::make(const World& world) {
   FrameConstants& frame = made.constants_;
   frame.irradiance = irradiance_of(scaled_down(panorama, kWidestForIrradiance));
   frame.surroundings = vec4(std::cos(rotation), std::sin(rotation), intensity, kCubeLevels - 1);
-  // A studio is dimmed and out of focus, so that the scene stands out; a level's own surroundings are shown as they
-  // are.
+  // A studio is dimmed and out of focus, so that the scene is prominent. The level's surroundings are shown unchanged.
   frame.picture.y = own ? 1.0f : 0.6f;
   frame.picture.w = own ? 0.0f : 0.3f;
 
-  // Without a light of the level's own, the surroundings' brightest side lends one: it models, the rest fills.
+  // Without lights in the level, a key light is placed at the surroundings' brightest side; the surroundings provide
+  // the fill light.
   const float ambient = std::max(0.0f, intensity * luminance(frame.irradiance[0]));
   std::vector<LampConstants> lamps = level_lamps(world);
   if (lamps.empty()) {
@@ -168,7 +168,7 @@ Surroundings Surroundings::make(const World& world) {
   std::copy(lamps.begin(), lamps.end(), frame.lamps.begin());
   frame.modes.x = static_cast<std::uint32_t>(lamps.size());
 
-  // Exposed for a white sheet in the middle of the scene that faces the key light.
+  // Exposed for a white sheet in the middle of the scene facing the key light.
   const Box box = drawn_box(world, false);
   const LampConstants& key = frame.lamps[0];
   const vec3 way = vec3(key.place) - (box.empty() ? vec3(0) : box.center());

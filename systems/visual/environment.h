@@ -1,4 +1,4 @@
-// Light from all around, and the lamps that model: from the level's panorama and lights, or from a studio of our own.
+// Environment light and lamps: from the level's panorama and lights, or from a built-in studio.
 #pragma once
 
 #include <array>
@@ -10,18 +10,18 @@
 
 namespace pliant {
 
-// The nine coefficients of shaders/environment.glsl's irradiance polynomial [lx], panorama frame (its middle column
-// lies towards -Z, rows go from +Y to -Y). Radiance above kSunClip times the mean is left to the key light.
+// The nine coefficients of shaders/environment.glsl's irradiance polynomial [lx], panorama frame (its middle column is
+// towards -Z, rows go from +Y to -Y). Radiance above kSunClip times the mean is left to the key light.
 std::array<vec4, 9> irradiance_of(const Panorama& panorama);
 
-// What that polynomial gives for a unit normal in the panorama frame.
+// The value of that polynomial for a unit normal in the panorama frame.
 vec3 irradiance_on(const std::array<vec4, 9>& coefficients, vec3 normal);
 
 class Surroundings {
  public:
-  // Filters and uploads the panorama, or takes it from the cache of an earlier run.
+  // Filters and uploads the panorama, or reads it from the cache of an earlier run.
   static Surroundings make(const World& world);
-  // Writes everything about light and exposure into `frame`.
+  // Writes all of light and exposure into `frame`.
   void light(FrameConstants& frame) const;
   void bind() const {
     cube_.bind(kSurroundingsUnit);
@@ -30,7 +30,7 @@ class Surroundings {
 
  private:
   gpu::Texture cube_, coat_;
-  FrameConstants constants_;  // its part about light
+  FrameConstants constants_;  // the part about light
 };
 
 }  // namespace pliant

@@ -31,7 +31,7 @@ Result<FieldCost> measure_field_cost(const World& world, double frame_rate) {
   const Deformable* deformable = nullptr;
   for (auto [entity, d] : world.registry.view<Deformable>()) {
     const Mesh& m = world.meshes[d.mesh];
-    if (!has_closed_form(d, m)) continue;  // the processor steps it all the same
+    if (!has_closed_form(d, m)) continue;  // the CPU steps it in either case
     if (!mesh || m.vertex_count > mesh->vertex_count) mesh = &m, deformable = &d;
   }
   if (!mesh) return Error{"field", "no deformable's field is cheaper for the GPU"};

@@ -1,5 +1,5 @@
-// What a level's fields would cost per displayed frame on the processor and on the GPU, measured on this machine: what
-// `--field auto` chooses by.
+// Cost of a level's fields per displayed frame on the CPU and on the GPU, measured on this machine. `--field auto`
+// chooses by it.
 #pragma once
 
 #include "components/world.h"
@@ -12,8 +12,8 @@ struct FieldCost {
   double gpu_us = 0.0;        // [us] per frame: the whole mesh once, two sources
 };
 
-// Of the largest deformable whose field the GPU can evaluate alone (has_closed_form). Needs a current OpenGL 4.5
-// context; call before the touch clock runs. The error says why there is nothing to choose.
+// For the largest deformable whose field the GPU can evaluate alone (has_closed_form). Needs a current OpenGL 4.5
+// context; call before the touch clock runs. The error explains why there is no choice.
 Result<FieldCost> measure_field_cost(const World& world, double frame_rate_hz);
 
 }  // namespace pliant

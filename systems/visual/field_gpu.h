@@ -1,5 +1,5 @@
 // The field on the GPU: shaders/field.comp writes an object's stream from the list of sources that the touch clock
-// publishes (systems/touch/field.h). Rest positions and normals travel once; per frame, 48 bytes a source.
+// publishes (systems/touch/field.h). Rest positions and normals are uploaded once; per frame, 48 bytes per source.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace pliant {
 
-// One source as the shader reads it.
+// One source in the shader's layout.
 struct CardSource {
   vec4 place, push, kind;
 };
 CardSource card_source(const FieldSource& source);
 
-// Rest positions and normals as field.comp reads them: (P0, N0.x), and (N0.y, N0.z).
+// Rest positions and normals in field.comp's layout: (P0, N0.x), and (N0.y, N0.z).
 std::pair<gpu::Buffer, gpu::Buffer> rest_on_card(const Mesh& mesh);
 
 // Compiles the shader; shared by all objects.
@@ -40,8 +40,8 @@ class FieldOnGpu {
   FieldOnGpu() = default;
   explicit FieldOnGpu(const Mesh& mesh);
 
-  // Writes the whole stream of whole zones into `stream` (kZoneSize x zones vec4). Returns the bytes that travelled;
-  // when there was and is nothing to draw, nothing happens.
+  // Writes the whole stream of whole zones into `stream` (kZoneSize x zones vec4). Returns the bytes uploaded. Does
+  // nothing if the field was and is at rest.
   std::size_t evaluate(const FieldProgram& program, std::span<const FieldSource> sources, const gpu::Buffer& stream);
   bool at_rest() const { return at_rest_; }  // the stream is all zeros
 

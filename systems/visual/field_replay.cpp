@@ -15,7 +15,7 @@ constexpr std::uint64_t bit_of(std::uint32_t source) {
   return std::uint64_t{1} << source;
 }
 
-// One record of floats a vertex, or a single one for all: what a step of the law needs (shaders/replay.comp).
+// Coefficients of a step of the law, one record of floats per vertex, or one for all (shaders/replay.comp).
 std::vector<float> coefficients_of(const Motion& motion, const PaintedMotion& painted, const Mesh& mesh) {
   std::vector<float> out;
   const std::uint32_t count = painted.empty() ? 1 : mesh.vertex_count;
@@ -87,9 +87,9 @@ void FieldReplay::reset() {
 
 bool FieldReplay::take(FieldFeed& feed, bool told, std::uint64_t tick) {
   if (!told) {
-    if (began_) reset();  // what has not been drawn is in the zones too
+    if (began_) reset();  // undrawn ticks are in the zones too
     began_ = false;
-    // What is told next begins with a reset, for which there has to be room.
+    // A new feed begins with a reset, for which there must be room.
     FieldOffsets unused;
     for (FieldEvent event; !began_ && feed.events.pop(event);) {
       if (event.kind == FieldEvent::kReset) reset();
@@ -118,7 +118,7 @@ void FieldReplay::add(const FieldEvent& event, FieldFeed& feed) {
       fold_before_ = event.source;
       return;
     case FieldEvent::kFoldNow: {
-      // In the order of sources, as the shader looks for them.
+      // In the order of sources, as the shader expects.
       const auto after = 2 * std::popcount(folded_ & ~(bit_of(event.index) | (bit_of(event.index) - 1)));
       folds_.insert(folds_.end() - after, {card_source(event.source), card_source(fold_before_)});
       folded_ |= bit_of(event.index);
@@ -161,7 +161,7 @@ std::uint32_t FieldReplay::gather(std::uint32_t zone, std::uint64_t mask, bool f
     const auto block = std::find_if(blocks_.begin(), blocks_.end(), [=](const Block& b) {
       return b.zone == zone && b.source == source && b.fold == fold;
     });
-    if (block == blocks_.end()) {  // it does not reach this zone
+    if (block == blocks_.end()) {  // the source does not reach this zone
       offsets_.insert(offsets_.end(), kZoneSize, vec4(kFar));
       continue;
     }
@@ -221,9 +221,9 @@ std::size_t FieldReplay::evaluate(const ReplayProgram& program, const gpu::Buffe
     folds_.clear();
     return 0;
   }
-  // Runs of a zone side by side, in the order of time; one work group a zone.
+  // Runs of a zone are adjacent, in order of time; one work group per zone.
   std::stable_sort(runs_.begin(), runs_.end(), [](const Run& a, const Run& b) { return a.zone < b.zone; });
-  std::vector<glm::uvec4> zones;  // first run, runs
+  std::vector<glm::uvec4> zones;  // first run, number of runs
   for (std::uint32_t i = 0; i < runs_.size(); ++i) {
     if (i == 0 || runs_[i].zone != runs_[i - 1].zone) zones.emplace_back(i, 0, 0, 0);
     ++zones.back().y;

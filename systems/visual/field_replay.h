@@ -1,4 +1,4 @@
-// A field without a closed form, stepped on the GPU: shaders/replay.comp takes the steps of the CPU kernels
+// A field without a closed form, stepped on the GPU. The shader replay.comp performs the steps of the CPU kernels
 // (field_kernels.h), tick by tick, from the inputs that the touch clock streams (components/field_feed.h). The ticks of
 // a frame are one dispatch, with one work group for each zone that was awake in any of them. The state stays on the
 // GPU.
@@ -32,19 +32,19 @@ class FieldReplay {
 
   // Takes the inputs up to tick number `tick`. False while the newest field is in the snapshot's zones.
   bool take(FieldFeed& feed, bool told, std::uint64_t tick);
-  // Takes these steps and writes the last stream of each zone. Returns the bytes uploaded.
+  // Performs these steps and writes the last stream of each zone. Returns the bytes uploaded.
   std::size_t evaluate(const ReplayProgram& program, const gpu::Buffer& stream);
   bool at_rest() const { return awake_.empty() && runs_.empty(); }
-  std::size_t bytes() const { return state_.size(); }  // that a shader has to reach
+  std::size_t bytes() const { return state_.size(); }  // that a shader must address
 
  private:
-  // What the shader reads, as its records of uvec4. One tick:
+  // The shader's input, as its records of uvec4. One tick:
   struct Row {
-    std::uint64_t used = 0, folded = 0;  // sources that are known; sources that end
+    std::uint64_t used = 0, folded = 0;  // known sources; ended sources
     std::uint32_t first_source = 0, first_fold = 0, pad[2] = {};
   };
-  // Ticks [first, first + count) in which nothing changed about a zone. `before`: the sources of the tick before, which
-  // folds are of. Offsets: places of blocks, one a source of `mask`, one a folded source of `before`.
+  // Ticks [first, first + count) in which a zone's inputs did not change. `before`: the sources of the previous tick,
+  // which folds refer to. Offsets: indices of blocks, one per source of `mask`, one per folded source of `before`.
   struct Run {
     std::uint32_t first = 0, count = 0, zone = 0, flags = 0;
     std::uint64_t mask = 0, before = 0;
@@ -52,8 +52,8 @@ class FieldReplay {
   };
   static constexpr std::uint32_t kNone = ~0u;
   struct Zone {
-    std::uint64_t mask = 0, next = 0;  // of the last tick, and from this one on
-    std::uint32_t run = kNone;         // the one that goes on
+    std::uint64_t mask = 0, next = 0;  // in the last tick, and from this one on
+    std::uint32_t run = kNone;         // the current one
     std::uint32_t flags = 0;           // of this tick
     bool awake = false;
   };
@@ -76,11 +76,11 @@ class FieldReplay {
   gpu::Buffer rest_, rest_yz_, state_, coefficients_;
   gpu::GrowingBuffer sources_there_, steps_there_, offsets_there_;
 
-  std::vector<FieldSource> source_;  // as last told
+  std::vector<FieldSource> source_;  // as last received
   std::uint64_t used_ = 0;
   std::vector<Zone> zone_;
   std::vector<std::uint32_t> awake_;  // zones
-  std::uint64_t folded_ = 0;          // of the tick that is being read
+  std::uint64_t folded_ = 0;          // of the tick being read
   FieldSource fold_before_;
   std::vector<Block> blocks_;
   // Of all ticks since the last dispatch.

@@ -1,4 +1,4 @@
-// What is the same for everything in one picture: the GPU's side is shaders/frame.glsl, member by member (std140).
+// Constants of one picture. The GPU's side is shaders/frame.glsl, member by member (std140).
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ enum ModeBit : std::uint32_t {
   kBumpMode = 4,
   kShadowMode = 8,
   kZoneMode = 16,
-  kBehindMode = 32,  // what stands behind glass was drawn for it
-  kLinearMode = 64   // no tone mapping: the picture is to be seen through glass
+  kBehindMode = 32,  // the objects behind glass have been drawn for it
+  kLinearMode = 64   // no tone mapping: the picture will be seen through glass
 };
 
 struct FrameConstants {

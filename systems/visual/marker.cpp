@@ -9,13 +9,13 @@
 namespace pliant {
 namespace {
 
-// Sizes, as shares of the scene's diagonal unless said otherwise.
-constexpr float kSmallestBall = 0.012f;  // radius; smaller probes would not be seen
+// Sizes, as shares of the scene's diagonal unless stated otherwise.
+constexpr float kSmallestBall = 0.012f;  // radius; smaller probes would be invisible
 constexpr float kRodLength = 0.16f;
 constexpr float kRodRadius = 0.42f;       // of the ball's radius
-constexpr float kLean = 0.7f;             // [rad] of the rod from the way out
-constexpr float kSteadyLean = 0.1f;       // [1] below, the rod leans less, lest it swings round
-constexpr float kCovered = 0.93f;         // [1] cosine: an arrow this near to the stylus is hidden by it
+constexpr float kLean = 0.7f;             // [rad] of the rod from the outward direction
+constexpr float kSteadyLean = 0.1f;       // [1] below, the rod leans less, to avoid fast rotation
+constexpr float kCovered = 0.93f;         // [1] cosine: an arrow closer to the stylus is hidden by it
 constexpr float kArrowPerNewton = 0.10f;  // [1/N]
 constexpr float kLongestArrow = 0.30f;
 constexpr float kArrowRadius = 0.0055f;
@@ -24,10 +24,10 @@ constexpr float kSmallestForce = 0.01f;  // [N] below: no arrow
 constexpr float kFrameLength = 0.09f, kFrameRadius = 0.004f;
 constexpr float kNormalLength = 0.045f, kNormalRadius = 0.004f, kThinArrow = 0.4f;
 constexpr float kWantedBall = 0.008f, kShortestCoupling = 1e-4f;
-constexpr std::size_t kMostInstances = 9 + 2 * kMostShownContacts;  // of a probe: ball, stylus, arrow of two, frame of
-                                                                    // three, shaft and its end, arrows of two
-constexpr std::size_t kMostOfContact = 3;                           // normal, arrow of two
-constexpr std::size_t kMostOfHandle = 7;  // frame of three, coupling, the device's end, arrow of two
+constexpr std::size_t kMostInstances = 9 + 2 * kMostShownContacts;  // per probe: ball, stylus, arrow (2), frame (3),
+                                                                    // shaft and its end, arrows (2 each)
+constexpr std::size_t kMostOfContact = 3;                           // normal, arrow (2)
+constexpr std::size_t kMostOfHandle = 7;                            // frame (3), coupling, the device's end, arrow (2)
 const vec3 kFrameColors[3] = {{0.85f, 0.06f, 0.04f}, {0.08f, 0.75f, 0.06f}, {0.05f, 0.15f, 0.90f}};
 const vec3 kArrowColor{0.95f, 0.70f, 0.03f};
 const vec3 kRodColor{0.55f, 0.57f, 0.60f};
@@ -118,8 +118,8 @@ void Markers::take(const SoftSnapshot& snapshot) {
   handles_.assign(snapshot.handles.begin(), first(snapshot.handles, snapshot.handles.size(), most_handles_));
 }
 
-// Which way is out of the body, where a probe is: along the force while it presses, else along the normal of the
-// ellipsoid in the nearest surface's box. The two are blended, so that a stylus does not jump at first touch.
+// The outward direction at a probe: along the force while it presses, else along the normal of the ellipsoid inscribed
+// in the nearest surface's box. The two are blended, so that a stylus does not jump at first touch.
 vec3 Markers::outward(const Known& probe) const {
   const vec3 p(probe.position);
   const Box* nearest = nullptr;
@@ -139,7 +139,8 @@ vec3 Markers::outward(const Known& probe) const {
   return length(out) > 1e-6f ? normalize(out) : vec3(0, 1, 0);
 }
 
-// A unit shape stretched from `from` to `to` along its y axis; a ball lies about `from` with to - from its radius up.
+// A unit shape stretched from `from` to `to` along its y axis; a ball is centred at `from`, with to - from as its
+// radius.
 void Markers::place(Kind kind, vec3 from, vec3 to, float radius, vec3 color, float roughness) {
   const vec3 along = to - from;
   const vec3 y = normalize(along);
@@ -154,7 +155,7 @@ void Markers::lay_out_probe(const Known& probe, vec3 ball, float radius, const V
   if (probe.length > 0 || !probe.points.empty()) return lay_out_tips(probe, radius);
   place(kBall, ball, ball + radius * out, radius, probe.color, 0.25f);
   // The stylus leans away from the arrow, clockwise as seen, and upwards the more the arrow points at the eye, so that
-  // both can be told apart; elsewhere where it would cover the arrow of one of several contacts.
+  // both are distinguishable. It leans elsewhere if it would cover the arrow of one of several contacts.
   const vec3 forward = normalize(vec3(viewpoint.target - viewpoint.eye)), right = cross(forward, out);
   const vec3 up = normalize(vec3(viewpoint.up)), both = right + (1.0f - length(right)) * up;
   const vec3 aside = both / std::max(length(both), kSteadyLean);
@@ -181,7 +182,7 @@ void Markers::lay_out_tips(const Known& probe, float radius) {
   place(kRod, from, from + probe.length * up, radius, kRodColor, 0.35f);
 }
 
-// From `from` along the force, as long as the force is large.
+// An arrow at `from` along the force; its length is proportional to the force, up to a limit.
 void Markers::lay_out_arrow(vec3 from, vec3 force, float thickness) {
   const float newtons = length(force);
   if (!(newtons >= kSmallestForce)) return;
@@ -193,7 +194,7 @@ void Markers::lay_out_arrow(vec3 from, vec3 force, float thickness) {
 }
 
 void Markers::lay_out_force(const Known& probe, vec3 ball, float radius) {
-  // Where it touches in several places, what each of them gives too, from the far side of its tip.
+  // With several contacts, also each one's force, from the far side of its tip.
   for (std::uint32_t i = 0; i < probe.contact_count && probe.contact_count > 1; ++i) {
     const vec3 own(probe.contacts[i].force);
     if (length(own) >= kSmallestForce)
@@ -216,7 +217,7 @@ void Markers::lay_out_frame(const Known& probe) {
   lay_out_axes(vec3(probe.position) - probe.radius * y, mat3(x, y, cross(x, y)));
 }
 
-// Its normal, darker where it slides, and its force.
+// The contact's normal, in another colour while it slides, and its force.
 void Markers::lay_out_contact(const ContactMark& contact) {
   if (!(length(contact.normal) > 0.5f)) return;
   place(kRod, contact.position, contact.position + kNormalLength * diagonal_ * contact.normal,
@@ -224,7 +225,7 @@ void Markers::lay_out_contact(const ContactMark& contact) {
   lay_out_arrow(contact.position, contact.force, kThinArrow);
 }
 
-// Its frame, and the coupling: from its middle to where the device wants that.
+// The handle's frame, and the coupling: from its centre to the device's target.
 void Markers::lay_out_handle(const HandleMark& handle) {
   lay_out_axes(handle.middle, mat3(glm::mat4_cast(quat(handle.pose.rotation))));
   if (length(handle.wanted - handle.middle) > kShortestCoupling * diagonal_)
@@ -238,7 +239,7 @@ std::size_t Markers::upload(const Viewpoint& viewpoint, const RenderOptions& opt
   for (std::vector<Instance>& kind : placed_) kind.clear();
   for (const Known& probe : probes_) {
     if (!probe.placed) continue;
-    // A ball drawn larger than the probe is stands on the same lowest point.
+    // A ball drawn larger than the probe has the same lowest point.
     const float radius = std::max(probe.radius, kSmallestBall * diagonal_);
     const vec3 ball = vec3(probe.position) + (radius - probe.radius) * outward(probe);
     if (options.markers) lay_out_probe(probe, ball, radius, viewpoint);

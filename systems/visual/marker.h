@@ -1,5 +1,5 @@
-// Probes and what they feel: a ball on a stylus, and an arrow along the force. The contacts of soft bodies, and the
-// handles of tools with what holds them, for looking closer.
+// Markers of probes and their forces: a ball on a stylus, and an arrow along the force. For inspection, also the
+// contacts of soft bodies, and the handles of tools with their couplings.
 #pragma once
 
 #include <array>
@@ -16,18 +16,18 @@ namespace pliant {
 
 class Markers {
  public:
-  // `boxes` are the surfaces': they say how large markers are and on which side of a body a stylus stands.
+  // `boxes` are the surfaces': they determine the markers' size and the side of a body on which a stylus is drawn.
   static Result<Markers> make(const World& world, std::vector<Box> boxes);
 
-  // Takes where the probes are now. Probes that the level did not have at make() are ignored.
+  // Takes the probes' current state. Probes that the level did not have at make() are ignored.
   void take(const std::vector<ProbeSnapshot>& probes);
   void take(const SoftSnapshot& snapshot);
-  // Lays out and sends every marker; returns the bytes that travelled.
+  // Lays out and uploads every marker; returns the bytes uploaded.
   std::size_t upload(const Viewpoint& viewpoint, const RenderOptions& options);
   void draw() const;
-  // The balls alone, into the shadow map that is current: a stylus leans with the eye, and an arrow is no thing.
+  // Only the balls, into the current shadow map: a stylus leans with the eye, and an arrow is not an object.
   void draw_shadow() const;
-  bool changed() const { return changed_; }  // a ball moved since the upload before
+  bool changed() const { return changed_; }  // a ball moved since the last upload
 
  private:
   struct Known {  // a probe of the level
@@ -44,7 +44,7 @@ class Markers {
     std::uint32_t contact_count = 0;
     std::array<ProbeContact, kMostShownContacts> contacts;
   };
-  struct Instance {  // as shaders/marker.vert reads it
+  struct Instance {  // in the layout of shaders/marker.vert
     vec4 row_x, row_y, row_z, tint;
     bool operator==(const Instance&) const = default;
   };
@@ -68,7 +68,7 @@ class Markers {
   std::vector<Known> probes_;
   std::vector<ContactMark> contacts_;
   std::vector<HandleMark> handles_;
-  std::size_t most_contacts_ = 0, most_handles_ = 0;  // that there is room for
+  std::size_t most_contacts_ = 0, most_handles_ = 0;  // capacity
   std::vector<Box> boxes_;
   float diagonal_ = 1.0f;  // [m] of the scene
   gpu::Buffer vertices_, indices_, instances_;

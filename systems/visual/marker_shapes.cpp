@@ -14,7 +14,7 @@ struct ProfilePoint {
   vec2 normal;  // outward in the (radius, y) plane, unit
 };
 
-// Turns each pair of profile points (upper end first) about the y axis into a band.
+// Revolves each pair of profile points (upper end first) about the y axis into a band.
 void turn(MarkerMesh& mesh, const std::vector<ProfilePoint>& profile) {
   for (std::size_t row = 0; row + 1 < profile.size(); row += 2) {
     const std::uint32_t first = static_cast<std::uint32_t>(mesh.vertices.size());

@@ -1,5 +1,5 @@
-// The unit shapes that markers are made of: a ball about the origin, and a rod and a cone from y = 0 to y = 1, all of
-// radius 1, counter-clockwise from outside.
+// The unit shapes of markers: a ball about the origin, and a rod and a cone from y = 0 to y = 1. All have radius 1 and
+// are counter-clockwise seen from outside.
 #pragma once
 
 #include <cstdint>

@@ -30,12 +30,12 @@ MaterialConstants constants_of(const Material& m) {
           .absorption = vec4(absorption, 0)};
 }
 
-// What lets most light pass leaves no shadow worth drawing.
+// A mostly transparent material casts no shadow worth drawing.
 bool leaves_shadow(const Material& m) {
   return m.transmission < 0.5f && (m.alpha != Material::Alpha::kBlend || m.base_color.a >= 0.5f);
 }
 
-// A surface that nobody painted: tissue-like, a little wet, so that dents catch the light.
+// The default material: tissue-like, slightly wet, so that dents are visible.
 Material default_material() {
   Material m;
   m.base_color = {0.60f, 0.20f, 0.16f, 1.0f};
@@ -52,7 +52,7 @@ Result<Materials> Materials::make(const World& world) {
   made.textures_.push_back(gpu::Texture::constant(128, 128, 255));  // a flat normal map
   constexpr int kOne = 0, kFlat = 1;
 
-  // A picture may serve as colour and as data: then it is uploaded as both.
+  // An image may serve as colour and as data: then it is uploaded as both.
   std::map<std::pair<std::int32_t, gpu::Meaning>, int> known;
   Status uploaded = Done{};
   auto texture = [&](std::int32_t image, gpu::Meaning meaning, int otherwise) {

@@ -1,4 +1,4 @@
-// Materials on the GPU: one block of constants each, and the pictures they share.
+// Materials on the GPU: one block of constants each, and shared textures.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace pliant {
 
 class Materials {
  public:
-  // Uploads every picture that a material names. The error names the picture.
+  // Uploads every image that a material uses. The error names the image.
   static Result<Materials> make(const World& world);
   // Binds constants and textures of material `index` (-1 or out of range: the default material).
   void bind(std::int32_t index) const;

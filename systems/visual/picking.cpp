@@ -17,7 +17,7 @@ gpu::Object<gpu::DestroyRenderbuffer> plane_of_one_pixel(GLenum format) {
   return gpu::Object<gpu::DestroyRenderbuffer>(id);
 }
 
-// The pixel's middle goes to the middle of the clip cube, and the pixel fills it.
+// Maps the pixel to the whole clip cube.
 mat4 narrowed(const PickQuestion& q) {
   const float wide = static_cast<float>(q.width), high = static_cast<float>(q.height);
   const float x = 2 * static_cast<float>(q.x) / wide - 1, y = 1 - 2 * static_cast<float>(q.y) / high;
@@ -66,7 +66,7 @@ void Picking::draw(Surfaces& surfaces, const mat4& clip_from_world, const PickQu
   surfaces.hold(question.holds);
   surfaces.draw_as_held();
 
-  // Into memory of the GPU's own; it is only fetched once it is there.
+  // Into a GPU buffer; fetched only once it is complete.
   glBindBuffer(GL_PIXEL_PACK_BUFFER, answer_.id());
   for (std::size_t i = 0; i < kPlanes; ++i) {
     glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));

@@ -1,5 +1,5 @@
-// What stands at one pixel: the surfaces as they are drawn now, through a view narrowed to that pixel, into a target of
-// integers. Read back without waiting: the answer is there a picture later at the latest.
+// The object at one pixel: the surfaces as drawn now are rendered into an integer target, through a view narrowed to
+// that pixel. Read back without waiting: the answer is available at most one picture later.
 #pragma once
 
 #include <array>
@@ -20,9 +20,9 @@ class Picking {
  public:
   static Result<Picking> make();
 
-  // Draws the surfaces as the GPU has them. An answer that nobody took yet is forgotten.
+  // Draws the surfaces in their current state on the GPU. An answer not yet taken is discarded.
   void draw(Surfaces& surfaces, const mat4& clip_from_world, const PickQuestion& question);
-  // The answer, once, as soon as the GPU has it; with `wait`, not before.
+  // The answer, once, as soon as the GPU has it; `wait` blocks until then.
   std::optional<PickAnswer> take(const Surfaces& surfaces, bool wait);
 
  private:

@@ -1,4 +1,4 @@
-// Pictures into files.
+// Image files.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-// Writes a PNG beside its place and then renames it, so that a reader never sees half a picture. The folder must exist.
+// Writes a PNG to a temporary file and renames it, so that a reader never sees half a picture. The folder must exist.
 Status write_png(const Image& image, const std::filesystem::path& path);
 
 }  // namespace pliant

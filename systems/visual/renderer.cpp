@@ -17,8 +17,8 @@
 namespace pliant {
 namespace {
 
-constexpr int kSamples = 4;      // a pixel
-constexpr float kPlain = 0.08f;  // [1] linear grey, where the surroundings are not shown
+constexpr int kSamples = 4;      // per pixel
+constexpr float kPlain = 0.08f;  // [1] linear grey, if the surroundings are not shown
 
 std::uint32_t modes_of(const RenderOptions& options) {
   return (options.reflection ? kReflectionMode : 0u) | (options.refraction ? kRefractionMode : 0u) |
@@ -35,15 +35,15 @@ struct Renderer::Parts {
   Markers markers;
   TetLines tetrahedra;
   gpu::Program background;
-  gpu::VertexArray nothing;  // the background's vertices come from their numbers
+  gpu::VertexArray nothing;  // the background's vertices are computed from their index
   gpu::Buffer frame = gpu::Buffer::writable(nullptr, sizeof(FrameConstants));
   gpu::Buffer behind_frame = gpu::Buffer::writable(nullptr, sizeof(FrameConstants));
   gpu::Framebuffer samples, picture;
-  gpu::SceneTexture behind;  // what is seen through glass
-  bool through = false;      // this picture has glass
+  gpu::SceneTexture behind;  // the picture seen through glass
+  bool through = false;      // this picture contains glass
   Shadow shadow;
   bool shaded = false;     // this picture has a shadow
-  bool shadow_old = true;  // and the map does not show it yet
+  bool shadow_old = true;  // the map is out of date
   mat4 lamp_view{0};       // of the newest picture, like clip_from_world
   mat4 clip_from_world{1};
   Picking picking;
@@ -62,7 +62,7 @@ void Renderer::Parts::measure_scene() {
   if (scene.empty()) scene.add(Box{vec3(-0.5f), vec3(0.5f)});
 }
 
-// What this picture needs and the GPU does not have yet; returns the bytes that travelled.
+// Uploads everything that this picture needs; returns the bytes uploaded.
 std::size_t Renderer::Parts::upload(const Viewpoint& viewpoint, int width, int height) {
   measure_scene();
   FrameConstants constants;
@@ -90,7 +90,7 @@ std::size_t Renderer::Parts::upload(const Viewpoint& viewpoint, int width, int h
   return travelled;
 }
 
-// What the first lamp sees; nothing is drawn as long as it sees the same. Returns whether it was.
+// The first lamp's view; drawn only if it has changed. Returns whether it was drawn.
 bool Renderer::Parts::draw_shadow() {
   shadow.bind(kShadowUnit);
   if (!shaded || !shadow_old) return false;
@@ -101,7 +101,7 @@ bool Renderer::Parts::draw_shadow() {
   return true;
 }
 
-// What glass lets through: everything that is not glass, in linear light, in the same view.
+// The picture behind glass: everything that is not glass, in linear light, in the same view.
 void Renderer::Parts::draw_behind(int width, int height) {
   if (!through) return;
   if (!behind.has_size(width, height)) behind = gpu::SceneTexture(width, height);
@@ -115,7 +115,7 @@ void Renderer::Parts::draw_behind(int width, int height) {
   behind.bind(kBehindUnit, kBehindDepthUnit);
 }
 
-// What the eye sees, in order.
+// The passes of the visible picture, in order.
 void Renderer::Parts::draw_scene(vec3 eye) {
   glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
   surfaces.draw_opaque(true);
@@ -147,7 +147,7 @@ FrameStats Renderer::Parts::render(const Viewpoint& viewpoint, int width, int he
   glEnable(GL_FRAMEBUFFER_SRGB);
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LEQUAL);  // the background lies exactly at the far end
+  glDepthFunc(GL_LEQUAL);  // the background is exactly at the far plane
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);

@@ -8,7 +8,7 @@ namespace pliant {
 namespace {
 
 constexpr int kMapSize = 1024;  // [pixels]
-constexpr float kRoom = 0.06f;  // [1] of the diagonal, around the scene at rest: rims and bulges stand out
+constexpr float kRoom = 0.06f;  // [1] of the diagonal, margin around the scene at rest for rims and bulges
 
 // The scene in the lamp's view (looking along -Z).
 Box seen_from(const mat4& view, const Box& scene) {

@@ -1,4 +1,4 @@
-// What the first lamp sees of the scene: a depth map fitted around the surfaces.
+// The first lamp's view of the scene: a depth map fitted to the surfaces.
 #pragma once
 
 #include "components/math.h"
@@ -10,8 +10,8 @@ namespace pliant {
 class Shadow {
  public:
   static Shadow make();
-  // Fits the map to a scene in this box and writes the frame's part about shadows. False, and nothing is written, for a
-  // lamp that shines all around, or from within the box.
+  // Fits the map to a scene in this box and writes the frame's shadow constants. Returns false, and writes nothing, for
+  // a lamp that shines in all directions, or from inside the box.
   bool place(const LampConstants& lamp, const Box& scene, FrameConstants& frame) const;
   void begin() const { map_.begin(); }
   void bind(GLuint unit) const { map_.bind(unit); }

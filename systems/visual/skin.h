@@ -1,4 +1,5 @@
-// The skin of one soft body on the GPU: where every vertex is and which way it faces, as shaders/skin.glsl reads it.
+// The deformed collision mesh of one soft body on the GPU: position and normal of every vertex, in the layout of
+// shaders/skin.glsl.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +13,8 @@
 
 namespace pliant {
 
-// A unit vector in two numbers of 16 bits, to 1e-4 rad: a point of the square into which an octahedron unfolds
-// (Cigolle et al., A Survey of Efficient Representations for Independent Unit Vectors, JCGT 3(2), 2014).
+// A unit vector in two 16-bit numbers, to 1e-4 rad, by the octahedral mapping (Cigolle et al., A Survey of Efficient
+// Representations for Independent Unit Vectors, JCGT 3(2), 2014).
 std::uint32_t folded(vec3 unit);
 
 class Skin {
@@ -21,16 +22,15 @@ class Skin {
   Skin() = default;
   explicit Skin(std::size_t vertices);
 
-  // Takes positions [m] and unit normals, world frame; false, and nothing is taken, where there are too few or too
-  // many.
+  // Takes positions [m] and unit normals, world frame. False, without effect, if their number is wrong.
   bool take(std::span<const vec3> position, std::span<const vec3> normal);
-  // Brings the GPU up to date. Returns the bytes that travelled: 16 a vertex, or none.
+  // Updates the GPU's copy. Returns the bytes uploaded: 16 per vertex, or none.
   std::size_t upload();
 
   std::size_t vertices() const { return here_.size(); }
   const Box& box() const { return box_; }  // [m] world
   const gpu::Buffer& buffer() const { return on_card_; }
-  // As it was last taken.
+  // A copy of the last state taken.
   gpu::Buffer copy() const { return gpu::Buffer::writable(here_.data(), here_.size() * sizeof(glm::uvec4)); }
 
  private:

@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-// As shaders/surface.vert reads it.
+// In the layout of shaders/surface.vert.
 struct Vertex {
   vec3 position, touch_normal, normal;
   vec4 tangent;
@@ -32,7 +32,7 @@ MapPlacement placement_block(const mat4& to_world, std::uint32_t number, bool ri
   return {to_world, mat4(glm::transpose(glm::inverse(mat3(to_world)))), {number, rides ? 1u : 0u, 0u, 0u}};
 }
 
-// What an entity's drawn vertices refer to by touch_vertex, if anything.
+// The mesh to which an entity's drawn vertices refer by touch_vertex; null without one.
 const Mesh* touch_mesh_of(const World& world, Entity entity) {
   Handle<Mesh> mesh;
   if (const Deformable* deformable = world.registry.find<Deformable>(entity)) mesh = deformable->mesh;
@@ -42,7 +42,7 @@ const Mesh* touch_mesh_of(const World& world, Entity entity) {
   return mesh.valid() ? &world.meshes[mesh] : nullptr;
 }
 
-// Every vertex of a surface that neither gives way nor has a skin reads the one entry of a stream of zeros.
+// Every vertex of a rigid surface reads the single entry of a stream of zeros.
 std::vector<Vertex> vertices_of(const DrawMesh& draw, const Mesh* touch, bool by_touch_vertex) {
   std::vector<Vertex> vertices;
   vertices.reserve(draw.vertices.size());
@@ -67,7 +67,7 @@ gpu::VertexArray layout_of(const gpu::Buffer& vertices, const gpu::Buffer& indic
   return layout;
 }
 
-// Closed, and not inside out (by the volume that its triangles sweep from the origin).
+// Closed, and not inside out (by its signed volume).
 bool encloses_volume(const Mesh& mesh) {
   double volume = 0;
   for (const uvec3 t : mesh.triangles)
@@ -109,7 +109,7 @@ Result<Surfaces> Surfaces::make(const World& world) {
   if (!shadow) return shadow.error();
   made.shadow_ = *std::move(shadow);
 
-  GLint largest = 0;  // [bytes] of a stream that a shader can reach
+  GLint largest = 0;  // [bytes] largest stream that a shader can address
   glGetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
   for (auto [entity, drawable] : world.registry.view<Drawable>()) {
     Item item = make_item(world, entity, world.draw_meshes[drawable.mesh]);
@@ -173,8 +173,8 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
     item.parts.push_back({run, box.empty() ? vec3(0) : box.center()});
   }
 
-  // A field that does not exist yet, or has another size than its mesh, counts as at rest. Whatever has none reads
-  // zeros.
+  // A field that does not exist yet, or differs in size from its mesh, counts as at rest. An object without a field
+  // reads zeros.
   const std::size_t padded = touch && (item.gives_way || rides) ? std::size_t{touch->zone_count()} * kZoneSize : 0;
   std::vector<vec4> stream(padded, vec4(0));
   if (item.gives_way && deformable->field.valid() && world.fields[deformable->field].stream.size() == padded)
@@ -208,7 +208,7 @@ void Surfaces::take(const ObjectSnapshot& object, std::uint64_t tick) {
   }
 }
 
-// A body that says nothing of its skin moves as one piece.
+// A body without vertex positions moves rigidly.
 void Surfaces::take(const SoftObjectSnapshot& object) {
   Item* item = find(object.object);
   if (!item || item->gives_way) return;
@@ -220,7 +220,7 @@ void Surfaces::take(const SoftObjectSnapshot& object) {
   item->to_world = to_world;
 }
 
-// A carried drawable without anything to touch may also be scaled, and mirrored by that.
+// A moved drawable that is not touchable may also be scaled, and thereby mirrored.
 void Surfaces::take(const MovedSnapshot& object) {
   Item* item = find(object.object);
   if (!item || item->rides) return;

@@ -1,5 +1,5 @@
-// Every Drawable on the GPU: what never changes in static buffers, and what makes it give way or move: the stream of a
-// deformable, the skin of a soft body, the pose of a rigid one.
+// Every Drawable on the GPU: constant data in static buffers, and the data that deforms or moves it. This is the stream
+// of a deformable, the vertices of a soft body, or the pose of a rigid one.
 #pragma once
 
 #include <cstddef>
@@ -21,34 +21,34 @@ namespace pliant {
 
 class Surfaces {
  public:
-  // Uploads meshes, materials and placements. Streams begin as the height fields stand, or at rest; what moves begins
-  // where its level puts it.
+  // Uploads meshes, materials and placements. Streams start from the current height fields, or at rest; moving objects
+  // start at their level's pose.
   static Result<Surfaces> make(const World& world);
 
-  // Takes an object's changed zones, where a soft or rigid body is, or what carries a drawable; upload() sends them.
-  // Objects that are not drawn are ignored.
+  // Takes an object's changed zones, a soft or rigid body's state, or a moved drawable's placement; upload() sends
+  // them. Objects that are not drawn are ignored.
   void take(const ObjectSnapshot& object, std::uint64_t tick);
   void take(const SoftObjectSnapshot& object);
   void take(const MovedSnapshot& object);
-  std::size_t upload();                      // returns the bytes that travelled
-  bool changed() const { return changed_; }  // something looks different since the upload before
+  std::size_t upload();                      // returns the bytes uploaded
+  bool changed() const { return changed_; }  // something looks different since the last upload
 
-  // Draws with materials: what is opaque first, what blends only in the second call, from the back to the front as seen
+  // Draws with materials. Opaque parts come first; blended parts only in the second call, from back to front as seen
   // from `eye` [m].
   void draw_opaque(bool glass_too) const;
   void draw_blended(vec3 eye) const;
-  // Something is seen through, refracted.
+  // Something is refractive.
   bool has_glass() const { return has_glass_; }
-  // Depth alone, into the shadow map that is current.
+  // Depth only, into the current shadow map.
   void draw_shadow() const;
-  // From now on this body is drawn by draw_as_held() as it stands now; kNoEntity: none is.
+  // From now on draw_as_held() draws this body in its current state; kNoEntity: none.
   void hold(Entity object);
-  // Everything that can be seen, for the program that is in use.
+  // All visible surfaces, with the current program.
   void draw_as_held() const;
 
-  // World boxes of the surfaces, at rest, in no order. [m]
+  // World boxes of the surfaces, at rest, unordered. [m]
   const std::vector<Box>& boxes() const { return boxes_; }
-  // All of them as they were last taken; dents are left out. [m]
+  // Box of all surfaces as last taken, without dents. [m]
   Box box() const;
   // The object with this number (block Placement), or kNoEntity.
   Entity object(std::uint32_t number) const;
@@ -64,25 +64,25 @@ class Surfaces {
     gpu::VertexArray layout;
     std::vector<Part> parts;
     StreamCopies stream;
-    FieldOnGpu field;                      // only where the field is a list on the GPU
-    std::vector<FieldSource> sources;      // its newest
-    FieldReplay replay;                    // only where the GPU steps a copy of the field
-    Skin skin;                             // of a soft body, else of no vertex
-    Entity dented_with = kNoEntity;        // the surface whose dents it takes part in
-    std::optional<std::size_t> stream_of;  // that one's place among the items
+    FieldOnGpu field;                      // only if the field is a list on the GPU
+    std::vector<FieldSource> sources;      // its newest sources
+    FieldReplay replay;                    // only if the GPU steps a copy of the field
+    Skin skin;                             // of a soft body, else empty
+    Entity dented_with = kNoEntity;        // the surface whose dents it shares
+    std::optional<std::size_t> stream_of;  // index of that surface's item
     Box rest;                              // [m] object frame
     mat4 to_world{1};
-    bool moves = false;  // a soft or rigid body, or carried by a prescribed motion
+    bool moves = false;  // a soft or rigid body, or under a prescribed motion
     std::uint32_t number = 0;
-    bool rides = false;  // its vertices are where the skin says
-    bool moved = false;  // its placement is newer here
+    bool rides = false;  // its vertices are those of `skin`
+    bool moved = false;  // its placement has not been uploaded yet
     bool on_gpu = false, replayed = false;
     bool gives_way = false;
-    bool encloses = false;  // its back is never seen from outside, whatever its materials say
-    bool mirrored = false;  // its placement turns triangles inside out
+    bool encloses = false;  // its back is never seen from outside, regardless of its materials
+    bool mirrored = false;  // its placement inverts triangles
   };
   static Item make_item(const World& world, Entity entity, const DrawMesh& draw);
-  // What hold() keeps: where a soft body's vertices and a rigid one's placement were.
+  // State kept by hold(): a soft body's vertices and a rigid one's placement.
   struct Held {
     Entity object = kNoEntity;
     gpu::Buffer skin, placement;
@@ -97,7 +97,7 @@ class Surfaces {
   Held held_;
   Materials materials_;
   gpu::Program program_, shadow_;
-  FieldProgram field_program_;  // these two are compiled only if some field needs them
+  FieldProgram field_program_;  // compiled only if a field needs them, as is the next
   ReplayProgram replay_program_;
   bool changed_ = true, has_glass_ = false;
 };

@@ -1,4 +1,4 @@
-// The passes over every surface: colour, shadow, and whatever program is in use.
+// The passes over every surface: colour, shadow, and the current program.
 #include <algorithm>
 
 #include "systems/visual/frame.h"
@@ -21,7 +21,7 @@ void Surfaces::draw_part(const Part& part) const {
                  reinterpret_cast<const void*>(std::size_t{part.run.first_index} * sizeof(std::uint32_t)));
 }
 
-// Both sides of everything: a sheet, or the rim of a dent, blocks light whichever way it faces.
+// Both sides of everything: a sheet, or the rim of a dent, blocks light in either direction.
 void Surfaces::draw_shadow() const {
   shadow_.use();
   glDisable(GL_CULL_FACE);
@@ -59,8 +59,8 @@ void Surfaces::draw_opaque(bool glass_too) const {
   }
 }
 
-// What blends shows its far side through its near side: the farthest part first, of each the back first, and depth
-// keeps the front in order.
+// A blended part shows its far side through its near side. The farthest part is drawn first, of each part the back
+// first; the depth test keeps the front in order.
 void Surfaces::draw_blended(vec3 eye) const {
   struct Far {
     float away;  // [m]

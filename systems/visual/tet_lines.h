@@ -1,4 +1,4 @@
-// The inside of soft bodies, for looking: the edges of their tetrahedra, over everything.
+// The inside of soft bodies, for inspection: the edges of their tetrahedra, drawn over all surfaces.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +15,9 @@ class TetLines {
  public:
   static Result<TetLines> make(const World& world);
 
-  // Takes where an object's nodes are; what is no soft body of the level is ignored.
+  // Takes an object's node positions; objects that are not soft bodies of the level are ignored.
   void take(const SoftObjectSnapshot& object);
-  // 12 bytes a node where they moved since; returns the bytes that travelled.
+  // Uploads moved nodes, 12 bytes per node; returns the bytes uploaded.
   std::size_t upload();
   void draw() const;
 

@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-// As much as one snapshot brings: more only comes when several were taken for one picture.
+// One snapshot's zones; more only occur if several snapshots were taken for one picture.
 constexpr std::size_t kStagedZones = 512;
 constexpr std::size_t kZoneBytes = kZoneSize * sizeof(vec4);
 

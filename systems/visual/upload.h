@@ -1,5 +1,5 @@
-// The stream of one object, twice: on the processor and on the GPU. This class alone knows which copy is newer, zone
-// by zone; nothing but changed zones travels.
+// The stream of one object, on the CPU and on the GPU. This class tracks which copy is newer, zone by zone; only
+// changed zones are uploaded.
 #pragma once
 
 #include <cstddef>
@@ -16,12 +16,12 @@ namespace pliant {
 class StreamCopies {
  public:
   StreamCopies() = default;
-  // Both copies begin as `initial` (whole zones), or as one zone of zeros where it is empty: a surface at rest.
+  // Both copies start as `initial` (whole zones), or as one zone of zeros if it is empty: a surface at rest.
   explicit StreamCopies(std::span<const vec4> initial);
 
-  // Takes whole zones, packed in the order of `zones`; zones that do not exist are ignored. Nothing travels yet.
+  // Takes whole zones, packed in the order of `zones`; zones that do not exist are ignored. Nothing is uploaded yet.
   void take(std::span<const std::uint32_t> zones, std::span<const vec4> packed);
-  // Brings the GPU up to date, neighbouring zones in one transfer. Returns the bytes that travelled.
+  // Updates the GPU's copy, neighbouring zones in one transfer. Returns the bytes uploaded.
   std::size_t upload();
 
   const gpu::Buffer& buffer() const { return on_card_; }
@@ -30,7 +30,7 @@ class StreamCopies {
  private:
   std::vector<vec4> here_;              // [1,1,1,m] never older than the GPU's
   std::vector<bool> newer_here_;        // per zone
-  std::vector<std::uint32_t> waiting_;  // zones with newer_here_, in the order in which they came
+  std::vector<std::uint32_t> waiting_;  // zones with newer_here_, in order of arrival
   gpu::Buffer on_card_;
   gpu::Staging staging_;
 };

@@ -19,7 +19,7 @@ void each_point(const World& world, bool only_soft, Visit visit) {
   }
 }
 
-// The level's camera looks along its -Z; the target is as far away as the scene's middle.
+// The level's camera looks along its -Z; the target is at the distance of the scene's centre.
 Viewpoint from_camera(const Camera& camera, const mat4& m, const Box& scene) {
   const dvec3 eye(m[3]), forward = -normalize(dvec3(m[2])), up = normalize(dvec3(m[1]));
   const double away = scene.empty() ? 1.0 : std::max(dot(dvec3(scene.center()) - eye, forward), 1e-3);
@@ -53,7 +53,7 @@ Viewpoint default_viewpoint(const World& world) {
       return from_camera(camera, transform->matrix, scene);
   if (scene.empty()) scene.add(Box{vec3(-0.5f), vec3(0.5f)});
 
-  // Slightly above the front and a little from the right; as near as a 4:3 picture allows with room for probes.
+  // Slightly above the front and a little from the right; as close as a 4:3 picture allows with room for probes.
   constexpr float kElevation = 0.55f, kAzimuth = 0.3f;     // [rad]
   constexpr float kFilled = 0.70f, kAspect = 4.0f / 3.0f;  // [1]
   Viewpoint view;
@@ -73,14 +73,14 @@ Viewpoint default_viewpoint(const World& world) {
 }
 
 mat4 view_of(const Viewpoint& viewpoint) {
-  // Seen straight along `up`, any other axis serves as well.
+  // Looking exactly along `up`, any other axis serves.
   const dvec3 forward = viewpoint.target - viewpoint.eye;
   const bool along = length(cross(forward, viewpoint.up)) < 1e-6 * length(forward);
   return mat4(glm::lookAtRH(viewpoint.eye, viewpoint.target, along ? dvec3(0, 0, -1) : viewpoint.up));
 }
 
 mat4 projection_of(const Viewpoint& viewpoint, const Box& scene, float aspect) {
-  // Probes hover around the scene: leave as much room again as it is large.
+  // Probes hover around the scene: the clip planes leave twice its diagonal in front and behind.
   const float away = static_cast<float>(length(dvec3(scene.center()) - viewpoint.eye));
   const float far = away + 2.0f * scene.diagonal();
   const float near = std::max(away - 2.0f * scene.diagonal(), 2e-3f * far);

@@ -1,7 +1,6 @@
-// Whatever contacts can push, as the soft step sees it: a linear system A v = b over its own degrees of freedom, solved
-// by a black box, and a collision mesh whose points move with those degrees of freedom (J).
-// Kinds: rigid (rigid_state.h), soft, with a handle (a tool) or without (soft_body_state.h), fixed (no degrees of
-// freedom), yielding (a P1 surface: none either, but compliance).
+// A body in the soft step: a linear system A v = b over its degrees of freedom, solved by a black box, and a collision
+// mesh that moves with them (J). Kinds: rigid (rigid_state.h), soft, with a handle (a tool) or without
+// (soft_body_state.h), fixed (no degrees of freedom), yielding (a P1 surface: no degrees of freedom, but compliance).
 #pragma once
 
 #include <span>
@@ -22,16 +21,16 @@ struct SurfacePoint {
   dvec3 position{0};           // [m] world, at the beginning of the step
 };
 
-// What a rigid body is made of, in its object frame.
+// Mass properties of a rigid body, in its object frame.
 struct RigidMass {
   double mass = 1.0;  // [kg] > 0
   dvec3 centre{0};    // [m] centre of mass
   dmat3 inertia{1};   // [kg m2] about the centre of mass, along the object's axes; positive definite
 };
 
-// A side of a contact, pushed by unit impulses along its axes.
+// One side of a contact, with unit impulses along the contact's axes.
 struct PushedSide {
-  Eigen::Index contact = 0;  // which of the body's contacts
+  Eigen::Index contact = 0;  // index among the body's contacts
   const SurfacePoint* point = nullptr;
   const dmat3* axes = nullptr;
   double sign = 1.0;
@@ -39,11 +38,11 @@ struct PushedSide {
 
 // J A^-1 J^T = held + lever lever^T [1/kg].
 struct Compliance {
-  Eigen::MatrixXd held;  // symmetric; of a body with a handle: with the handle held still
-  Rows lever;            // rows x 6: what the handle's following adds; without a handle no columns
+  Eigen::MatrixXd held;  // symmetric; for a body with a handle: with the handle fixed
+  Rows lever;            // rows x 6: contribution of the handle's motion; no columns without a handle
 };
 
-// What a program does to a body beside contacts (systems/soft/body_edits.h). World frame.
+// Loads by a program, besides contacts (systems/soft/body_edits.h). World frame.
 struct VertexForce {
   SurfacePoint at;  // a vertex; its position is that of the step
   std::uint32_t vertex = 0;
@@ -51,12 +50,13 @@ struct VertexForce {
 };
 struct BodyLoads {
   dvec3 force{0}, torque{0};        // [N], [N m] at the centre of mass
-  dvec3 impulse{0}, turn{0};        // [N s], [N m s] of the next step alone
+  dvec3 impulse{0}, turn{0};        // [N s], [N m s] for the next step only
   std::vector<VertexForce> forces;  // [N]
-  std::vector<VertexForce> pushes;  // [N s] of the next step alone
+  std::vector<VertexForce> pushes;  // [N s] for the next step only
 };
 
-// Which bodies meet: all but what a probe presses by another law or passes through (probe_tool.h).
+// Collision classes: a probe neither collides with surfaces, which use another law, nor with other probes
+// (probe_tool.h).
 enum class BodyKind : std::uint8_t { kBody, kSurface, kProbe };
 
 class SoftBodyState;
@@ -86,23 +86,23 @@ class Body {
   std::vector<dvec3> surface_velocity;   // [m/s] world, of the free motion after free_step(); for predicting contacts
   double friction_static = 0.4, friction_sliding = 0.3;  // [1]
   BodyKind kind = BodyKind::kBody;
-  bool absent = false;     // meets nothing: nobody knows yet where it is
-  bool taken_out = false;  // whoever owns the run has taken it out: it meets nothing, and is not stepped
+  bool absent = false;     // no contacts: its pose is not known yet
+  bool taken_out = false;  // removed by the owner of the run: no contacts, and not stepped
   BodyLoads loads;
   bool self_collides = false;  // its collision mesh can touch itself
 
   // Degrees of freedom; 0: contacts cannot move it.
   virtual int size() const = 0;
-  // Assembles and factorises A for a step of T [s], and finds v* without contacts. Updates surface_velocity.
+  // Assembles and factorises A for a step of T [s], and computes v* without contacts. Updates surface_velocity.
   virtual void free_step(double T, dvec3 gravity) = 0;
   // False: the step's A could not be factorised; solve() must not be called.
   virtual bool solvable() const { return true; }
-  // Between steps: of what is rigid, and of what is tissue. It keeps its place and its velocity.
+  // Between steps: changes the mass of a rigid body, or the elasticity of tissue. Pose and velocity are kept.
   virtual void set_mass(const RigidMass& mass) { (void)mass; }
   virtual void set_elasticity(double young, double poisson, RayleighDamping damping) {
     (void)young, (void)poisson, (void)damping;
   }
-  // Stands still from here on: what its velocities were meant nothing.
+  // Sets its velocity to zero.
   virtual void halt() {}
   // v: after free_step v*, after correct() the step's final velocity.
   virtual const Vector& velocity() const = 0;
@@ -117,34 +117,35 @@ class Body {
                       Eigen::Ref<Rows> out) const = 0;
   // columns = A^-1 columns.
   virtual void solve(Rows& columns) const = 0;
-  // J A^-1 J^T of `contacts` contacts, three rows each. `sides`: theirs on this body, by ascending contact (both sides
-  // of one that the body has with itself).
+  // J A^-1 J^T of `contacts` contacts, three rows each. `sides`: their sides on this body, by ascending contact (both
+  // sides of a self-contact).
   virtual void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const;
-  // column += J^T of a force at the centre of mass and of a torque, spread over the whole body by its mass.
+  // column += J^T of a force at the centre of mass and of a torque, distributed over the body by mass.
   virtual void load(dvec3 force, dvec3 torque, Rows& column) const { (void)force, (void)torque, (void)column; }
-  // To this pose of its object frame, at rest and undeformed.
+  // Moves its object frame to this pose, at rest and undeformed.
   virtual void place(const Pose& pose) { (void)pose; }
   // v = v* + dv, dv = A^-1 J^T lambda (already solved).
   virtual void correct(const Vector& dv) = 0;
-  // [m/s] Per collision mesh vertex, by velocity() as it is now.
+  // [m/s] Per collision mesh vertex, from the current velocity().
   virtual void move_surface(std::vector<dvec3>& out) const { out.assign(surface_position.size(), dvec3(0)); }
   // x += T v; refreshes surface_position.
   virtual void advance(double T) = 0;
-  // Its contacts have a compliance of their own, though nothing of it moves.
+  // Its contacts are compliant, although it has no degrees of freedom.
   virtual bool yields() const { return false; }
   // Yielding surfaces: w += compliance [m/(N s)... per T] between contacts on this body; rows 3 * contact.
   struct Side {
-    int contact;  // which contact: rows 3 * contact ...
+    int contact;  // index of the contact: rows 3 * contact ...
     const SurfacePoint* point;
   };
   virtual void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
     (void)sides, (void)T, (void)w;
   }
-  // --- For the touch clock's reduced copy (modal.h): of A, what is inertia, and how the step began. After free_step.
+  // --- For the touch clock's reduced model (modal.h): the inertia in A, and the velocity at the beginning of the step.
+  // After free_step.
   virtual void weigh(const Rows& x, Rows& out) const { out.setZero(x.rows(), x.cols()); }  // out = M x
   virtual RayleighDamping damping() const { return {}; }
   virtual Vector starting_velocity() const { return Vector::Zero(size()); }
-  // Fills the object's part of a snapshot; sizes were set by the first call, before the clocks start.
+  // Fills the object's part of a snapshot. Sizes are set by the first call, before the clocks start.
   virtual void show(SoftObjectSnapshot& out) const = 0;
 };
 

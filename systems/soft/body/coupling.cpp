@@ -5,15 +5,15 @@
 namespace pliant {
 namespace {
 
-// A force f of any size, saturated: s(f) = F_max tanh(|f| / F_max) f / |f|, and how it depends on f.
+// A force f of any size, saturated: s(f) = F_max tanh(|f| / F_max) f / |f|, and its derivatives by f.
 struct Saturated {
   dvec3 force{0};       // s(f)
-  dvec3 direction{0};   // f / |f|; zero where f is
-  double secant = 1.0;  // [1] |s(f)| / |f|: its derivative across f, too
+  dvec3 direction{0};   // f / |f|; zero for zero f
+  double secant = 1.0;  // [1] |s(f)| / |f|; also its derivative across f
   double along = 1.0;   // [1] its derivative along f: 1 / cosh^2
 };
 Saturated saturate(dvec3 f, double limit) {
-  // The largest component first, so that no square overflows.
+  // Scaled by the largest component, so that no square overflows.
   const double largest = std::max({std::abs(f.x), std::abs(f.y), std::abs(f.z)});
   if (!(largest > 0)) return {};
   if (!(limit > 0)) return {.secant = 0.0, .along = 0.0};
@@ -33,7 +33,7 @@ dmat3 tangent(const Saturated& s) {
 }
 
 // The symmetric part of -d log(q_d q^-1) / d(rotation of q): 1 along the vector, (angle/2) cot(angle/2) across it,
-// which falls from 1 at no angle to 0 at pi. The skew part turns the frame and does no work.
+// which falls from 1 at zero angle to 0 at pi. The skew part only rotates the frame and does no work.
 dmat3 closing(dvec3 vector) {
   const double half = 0.5 * length(vector);
   if (half < 1e-4)
@@ -55,7 +55,7 @@ double ln_cosh(double x) {
   return x + std::log1p(std::exp(-2.0 * x)) - std::log(2.0);
 }
 
-// [J] of a spring k whose force saturates: the integral of F_max tanh(k x / F_max).
+// [J] of a spring k with saturated force: the integral of F_max tanh(k x / F_max).
 double saturated_energy(double k, double stretch, double limit) {
   return k > 0 && limit > 0 ? limit * limit / k * ln_cosh(k * stretch / limit) : 0.0;
 }

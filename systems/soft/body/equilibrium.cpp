@@ -13,12 +13,12 @@ namespace pliant {
 namespace {
 
 constexpr double kFirstStep = 0.05, kLongestStep = 1e4;  // [s]
-constexpr double kShortestStep = 1e-5;                   // [s] shorter, and nothing lowers the energy any more
-constexpr double kNewtonStep = 10.0;                     // [s] from here on inertia hardly counts
+constexpr double kShortestStep = 1e-5;                   // [s] shorter: the energy cannot be reduced any more
+constexpr double kNewtonStep = 10.0;                     // [s] from here on inertia is negligible
 constexpr int kMostSteps = 200, kMostInverse = 60;
-constexpr double kAtRest = 1e-5;               // [1] of the size: a node that moves less in a long step is there
-constexpr double kStays = 5e-3;                // [1] of the size: a found shape moves no farther when it is let go
-constexpr double kLeastVolume = 0.05;          // [1] of an element's: what is flatter has no shape without weight
+constexpr double kAtRest = 1e-5;               // [1] of the size: convergence criterion on motion in a long step
+constexpr double kStays = 5e-3;                // [1] of the size: largest motion of a valid shape when it is released
+constexpr double kLeastVolume = 0.05;          // [1] of an element's: flatter elements have no unloaded shape
 constexpr double kLeastCorrection = 1.0 / 64;  // [1] of a correction
 constexpr double kEnergyRounding = 1e-12;      // [1] of energies
 
@@ -53,7 +53,7 @@ std::unique_ptr<LinearSolver> solver_for(const Tissue& tissue, std::uint32_t mov
   return solver;
 }
 
-// Where one step of T from rest leads; empty: it has no solution.
+// Result of one step of T from rest; empty if it has no solution.
 std::vector<dvec3> step_from_rest(Tissue& tissue, LinearSolver& solver, double T, dvec3 gravity) {
   const std::vector<dvec3> begin = tissue.position();
   std::fill(tissue.velocity().begin(), tissue.velocity().end(), dvec3(0));
@@ -133,8 +133,8 @@ Equilibrium find_equilibrium(const TetMesh& tets, const SoftBody& body, dvec3 gr
   return out;
 }
 
-// x: the given shape. With X the guess of the one without weight, a Newton step at x leads to where x would sag from
-// X; X is moved back by as much.
+// x: the given shape. With X a guess of the unloaded shape, a Newton step at x gives the sag from X; X is moved back by
+// the excess.
 Unloaded find_unloaded(const TetMesh& tets, const SoftBody& body, dvec3 gravity, const std::stop_token& stop) {
   Unloaded out;
   if (!any_free(tets)) return out;
@@ -163,7 +163,7 @@ Unloaded find_unloaded(const TetMesh& tets, const SoftBody& body, dvec3 gravity,
     }
     there = off < kAtRest * size;
     if (there) break;
-    if (!(off < 1.5 * before)) {  // too far: half as much of the last way
+    if (!(off < 1.5 * before)) {  // too far: half of the last correction
       share *= 0.5;
       for (std::size_t n = 0; n < way.size(); ++n) guess.nodes[n] = last[n] - share * way[n];
       continue;

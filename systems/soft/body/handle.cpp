@@ -8,7 +8,8 @@
 namespace pliant {
 namespace {
 
-// Below this share of the largest moment of inertia the smallest is a line's: no rotation about it could be solved for.
+// If the smallest moment of inertia is below this share of the largest, the body is a line: rotation about it has no
+// inertia.
 constexpr double kLine = 1e-6;
 
 dmat3 point_inertia(double mass, dvec3 r) {
@@ -22,13 +23,13 @@ Eigen::Matrix3d to_eigen(const dmat3& m) {
   return out;
 }
 
-// Whether some axis has no moment of inertia to speak of.
+// Whether some axis has negligible moment of inertia.
 bool on_a_line(const dmat3& inertia) {
   const Eigen::Vector3d moments = to_eigen(inertia).selfadjointView<Eigen::Lower>().eigenvalues();
   return !(moments[0] > kLine * moments[2]);
 }
 
-// Of a full box about its centre.
+// Of a solid box about its centre.
 dmat3 box_inertia(double mass, dvec3 size) {
   const dvec3 s = size * size;
   dmat3 out(0.0);

@@ -1,15 +1,17 @@
-// How tissue hangs on its handle (methods.md 2.2), either way as rows of one coupled system A [v; w] = b:
-//   slave   v_i = G_i w: the handle's nodes have no rows of their own;
+// Attachment of tissue to its handle (methods.md 2.2), either way as rows of one coupled system A [v; w] = b:
+//   slave   v_i = G_i w: the handle's nodes have no rows;
 //           A_th = A_ij G_j, A_hh = G_i^T A_ij G_j, b_h = G_i^T b_i.
-//   spring  the handle's nodes are tissue, tied to where they ride by springs k, b, s = T b + T^2 k, with stretch e_i:
+//   spring  the handle's nodes are tissue, tied to their place on the handle by springs k, b,
+//           s = T b + T^2 k, with stretch e_i:
 //           A_ii += s I, A_th = -s G_i, A_hh += s G_i^T G_i, b_i -= T k e_i, b_h += T k G_i^T e_i.
-//           G_i at the node itself, not at where it rides: pulls and damping then have no torque of their own.
-// Both ways the nodes' mass is the handle's: with springs it is taken off the nodes, so that both are the same tool and
-// the first tends to the second as the springs stiffen. Compared on a bar with the first quarter rigid, T = 1/60 s:
+//           G_i is taken at the node, not at its place on the handle: springs and dampers then exert no torque.
+// In both, the nodes' mass belongs to the handle. With springs it is subtracted from the nodes, so that both describe
+// the same tool and the second tends to the first as the springs stiffen. Compared on a bar with the first quarter
+// rigid, T = 1/60 s:
 //   condition of A, 324 tetrahedra:  slave 4e3;  spring of 1, 10, 100, 1000: 3e3, 2e4, 2e5, 2e6
-//   farthest nodes apart at rest under gravity, of the bar's length:      3 %, 0.5 %, 0.06 %, 0.006 %
-//   step, 2,100 tetrahedra:          slave 2.2 ms;  spring 3.1 ms (the handle's nodes have rows of their own)
-// Slaved nodes are exact, cheaper and better conditioned; springs are P2's own.
+//   largest difference of node positions at rest, of the bar's length:    3 %, 0.5 %, 0.06 %, 0.006 %
+//   step, 2,100 tetrahedra:          slave 2.2 ms;  spring 3.1 ms (the handle's nodes have rows)
+// Slaved nodes are exact, cheaper and better conditioned; springs are those of P2.
 #pragma once
 
 #include <vector>
@@ -21,8 +23,8 @@
 
 namespace pliant {
 
-// Stiffness of a node's spring, in units of young * (size of the tissue around it): usual 100. More: a stiffer bond and
-// a worse condition number of A, which grows in proportion; less: the handle slips inside its tissue.
+// Stiffness of a node's spring, in units of young * (size of the tissue around it): usual 100. More: a stiffer
+// attachment and a proportionally larger condition number of A; less: the handle slips inside its tissue.
 inline constexpr double kTieStiffness = 100.0;
 
 class HandleTie {
@@ -31,9 +33,9 @@ class HandleTie {
   HandleTie(Attachment attachment, const TissueMaterial& material, const Tissue& tissue, std::uint32_t first);
 
   void set_material(const TissueMaterial& material) { material_ = material; }
-  // After tissue.assemble(T, gravity): what the handle adds to tissue.inner(), and border(), corner(), right().
+  // After tissue.assemble(T, gravity): adds the handle to tissue.inner(), and fills border(), corner(), right().
   void assemble(Tissue& tissue, const RigidHandle& handle, double T, dvec3 gravity);
-  // What else acts on the handle: a diagonal of A_hh and its part of b_h.
+  // Adds further terms of the handle: a diagonal of A_hh and a part of b_h.
   void add_to_handle(const Vector6& diagonal, const Vector6& right) {
     corner_.diagonal() += diagonal;
     right_.tail<6>() += right;
@@ -52,7 +54,7 @@ class HandleTie {
   Attachment attachment_;
   TissueMaterial material_;
   std::uint32_t first_ = 0;
-  std::vector<std::uint32_t> row_of_node_;  // slave: which of border_ a node has, or 0xffffffff
+  std::vector<std::uint32_t> row_of_node_;  // slave: index into border_ of a node, or 0xffffffff
   std::vector<HandleRow> border_;
   Matrix6 corner_ = Matrix6::Zero();
   Vector right_;

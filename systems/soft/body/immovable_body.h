@@ -1,4 +1,4 @@
-// A body that contacts cannot move: no degrees of freedom, so there is nothing to push, solve or correct.
+// A body that contacts cannot move: without degrees of freedom there is nothing to push, solve or correct.
 #pragma once
 
 #include "systems/soft/body/body.h"

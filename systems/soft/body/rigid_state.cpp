@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kTurnPerPart = 0.1;  // [rad] a free turn is followed in parts no larger than this
+constexpr double kTurnPerPart = 0.1;  // [rad] largest part into which a free rotation is divided
 constexpr int kMostStepParts = 256;
 
 void place_surface(const Mesh& mesh, const Pose& pose, std::vector<dvec3>& surface_position) {
@@ -18,7 +18,7 @@ void place_surface(const Mesh& mesh, const Pose& pose, std::vector<dvec3>& surfa
     surface_position[v] = pose.position + r * dvec3(mesh.position(v));
 }
 
-// Velocities of points that turn with `angular` about `centre`, which moves with `linear`.
+// Velocities of points that rotate with `angular` about `centre`, which moves with `linear`.
 void move_points(const std::vector<dvec3>& points, dvec3 centre, dvec3 linear, dvec3 angular, std::vector<dvec3>& out) {
   out.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) out[i] = linear + cross(angular, points[i] - centre);
@@ -67,7 +67,7 @@ dvec3 RigidState::free_turn(double T) const {
   dquat q = rotation_;
   for (int i = 0; i < parts; ++i) {
     dvec3 w = inverse_inertia(q) * angular_momentum_;
-    // A contraction by about h |w| < 0.1: eight times leave rounding.
+    // A contraction by about h |w| < 0.1: eight iterations converge to rounding.
     for (int k = 0; k < 8; ++k) w = inverse_inertia(rotation_of(0.5 * h * w) * q) * angular_momentum_;
     q = rotation_of(h * w) * q;
   }
@@ -182,8 +182,8 @@ void FixedBody::advance(double T) {
   refresh_surface();
 }
 
-// A spring under each contact: gap = g0 + T u + compliance lambda / T. Along the normal only: sideways it would need a
-// memory of where it was stretched from, and without one it creeps.
+// A spring under each contact: gap = g0 + T u + compliance lambda / T. Only along the normal: a tangential spring would
+// need to store its anchor, and without it creeps.
 void FixedBody::add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
   if (compliance <= 0.0) return;
   for (const Side& side : sides) w(3 * side.contact, 3 * side.contact) += compliance / (T * T);

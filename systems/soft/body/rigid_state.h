@@ -1,4 +1,4 @@
-// Bodies without an inside: RigidState has six degrees of freedom, FixedBody none (it may move as it is told).
+// Rigid bodies: RigidState has six degrees of freedom, FixedBody none (its motion may be prescribed).
 #pragma once
 
 #include "components/transform.h"
@@ -6,10 +6,10 @@
 
 namespace pliant {
 
-// Newton and Euler. Degrees of freedom: velocity of the centre of mass [m/s], angular velocity [rad/s], world frame.
-// What is kept is the angular momentum L, which only contacts change: a free body turns with q' = exp(h w) q,
-// w = I(exp(h w/2) q)^-1 L (midpoint, so that nothing damps and nothing drives), in as many parts of a step as its spin
-// asks for. The step then has the mean angular velocity of that turn as its v*.
+// Newton-Euler equations. Degrees of freedom: velocity of the centre of mass [m/s], angular velocity [rad/s], world
+// frame. The state is the angular momentum L, which only contacts change. A free body rotates with q' = exp(h w) q, w =
+// I(exp(h w/2) q)^-1 L (midpoint, neither damped nor driven). The step is divided into as many parts as its spin
+// requires. The v* of the step is the mean angular velocity of that rotation.
 class RigidState : public Body {
  public:
   const RigidState* as_rigid() const override { return this; }
@@ -53,18 +53,18 @@ class RigidState : public Body {
   dquat rotation_{1, 0, 0, 0};
   dvec3 linear_{0};            // [m/s]
   dvec3 angular_momentum_{0};  // [kg m2/s]
-  dmat3 inverse_inertia_{1};   // of the step's beginning
+  dmat3 inverse_inertia_{1};   // at the beginning of the step
   Vector velocity_ = Vector::Zero(6), start_ = Vector::Zero(6);
 };
 
-// Ground, walls, and fingers that follow a script: contacts cannot move it.
+// Ground, walls, and scripted fingers: contacts cannot move it.
 class FixedBody : public ImmovableBody {
  public:
   FixedBody(const Mesh& surface, const Pose& pose);
 
-  // From now on it moves so: of its origin [m/s], and turning about it [rad/s], world.
+  // Prescribes its motion from now on: velocity of its origin [m/s], and angular velocity about it [rad/s], world.
   void set_velocity(dvec3 linear, dvec3 angular);
-  // [m/N] > 0: contacts give way along their normals by so much per newton (pads of a gripper); 0: rigid.
+  // [m/N] > 0: compliance of contacts along their normals (pads of a gripper); 0: rigid.
   double compliance = 0.0;
 
   void free_step(double T, dvec3 gravity) override;

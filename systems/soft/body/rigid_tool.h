@@ -1,5 +1,6 @@
 // A rigid instrument: a rigid body that is its own handle (a stylus, a probe, a scalpel's grip). The same coupling,
-// contacts and 1 kHz tick as a tool of tissue, with no tissue between handle and contact. Writer: the soft clock.
+// contacts and 1 kHz tick as for a tool of tissue, but without tissue between handle and contact. Writer: the soft
+// clock.
 #pragma once
 
 #include <Eigen/Cholesky>

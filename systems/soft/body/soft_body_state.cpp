@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-// Steps so long that little is left of inertia, from rest each: what they have not settled is far below what is seen.
+// Steps from rest, so long that inertia is negligible; the remaining motion is far below visibility.
 constexpr double kSettleStep = 0.1;  // [s]
 constexpr int kSettleSteps = 40;
 constexpr double kSettled = 1e-9;  // [1] of the body's size
@@ -26,7 +26,7 @@ bool has_handle_nodes(const TetMesh& tets, const Handle6* handle) {
   return handle != nullptr && tets.handle_count > 0;
 }
 
-// Slaved nodes have no rows of their own; tied ones, and those of a handle that nobody declared, do.
+// Slaved nodes have no rows; tied ones, and handle nodes without a handle, do.
 std::uint32_t moving_nodes(const TetMesh& tets, const Handle6* handle) {
   const bool slaved = has_handle_nodes(tets, handle) && handle->attachment == Attachment::kSlave;
   return slaved ? tets.free_count : tets.pinned_begin();
@@ -38,7 +38,7 @@ dvec3 box_size(const TetMesh& tets) {
   return most - least;
 }
 
-// Weighted by area; in double, for the cross product of a small triangle's edges.
+// Area-weighted; in double, for the cross product of a small triangle's edges.
 void add_normals(const std::vector<uvec3>& triangles, const std::vector<dvec3>& at, std::vector<vec3>& normals) {
   for (const uvec3 t : triangles) {
     const dvec3 area = cross(at[t.y] - at[t.x], at[t.z] - at[t.x]);
@@ -118,7 +118,7 @@ void SoftBodyState::move_surface(std::vector<dvec3>& out) const {
   refresh_surface(of_nodes, out);
 }
 
-// S and its right-hand side, less what is not tissue.
+// S and its right-hand side, without the parts that are not tissue.
 void SoftBodyState::separate_tissue(double T) {
   if (!solvable_) {
     tissue_matrix_.setZero();
@@ -152,7 +152,7 @@ void SoftBodyState::settle(dvec3 gravity) {
     check_in();
     lead_handle(there);
     free_step(kSettleStep, gravity);
-    if (!solvable_ || !velocity_.allFinite()) break;  // the first step will say so
+    if (!solvable_ || !velocity_.allFinite()) break;  // the first step will report it
     const double moved = kSettleStep * velocity_.lpNorm<Eigen::Infinity>();
     advance(kSettleStep);
     halt();
@@ -226,7 +226,7 @@ void SoftBodyState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns
   });
 }
 
-// As a rigid body would take them: each node by its share of the mass, and by its share of the angular acceleration.
+// As for a rigid body: each node gets its share by mass of the force, and of the angular acceleration.
 void SoftBodyState::load(dvec3 force, dvec3 torque, Rows& column) const {
   const std::vector<dvec3>& x = tissue_.position();
   const std::vector<double>& mass = tissue_.mass();
@@ -254,7 +254,7 @@ void SoftBodyState::place(const Pose& pose) {
   refresh_surface(tissue_.position(), surface_position);
 }
 
-// Half a solve instead of a whole one, and only where the contacts' nodes are (LinearSolver::solve_gram).
+// Half a solve instead of a whole one, only at the contacts' nodes (LinearSolver::solve_gram).
 void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const {
   pushed_.clear(tissue_.moving());
   for (const PushedSide& side : sides) {
@@ -285,7 +285,7 @@ void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double 
   });
 }
 
-// Lumped masses; those of the handle's nodes are the handle's, however they are attached.
+// Lumped masses; those of the handle's nodes belong to the handle, however they are attached.
 void SoftBodyState::weigh(const Rows& x, Rows& out) const {
   out.resize(x.rows(), x.cols());
   const std::uint32_t tissue_only = handle_ ? tets_.free_count : tissue_.moving();

@@ -1,6 +1,6 @@
 // A soft body in the soft step, with a rigid handle (a tool) or without one. Degrees of freedom: velocities of its
-// moving nodes, 3 each, then the handle's six. Nodes that are slaved to the handle ride on it, pinned ones stand still.
-// Writer: the soft clock; one thread at a time, as answers use scratch memory.
+// moving nodes, 3 each, then the handle's six. Slaved nodes move with the handle, pinned ones do not move. Writer: the
+// soft clock; one thread at a time, as respond() uses scratch memory.
 #pragma once
 
 #include <memory>
@@ -16,11 +16,11 @@ namespace pliant {
 class SoftBodyState final : public ToolBody {
  public:
   const SoftBodyState* as_tissue() const override { return this; }
-  // `tets` and `collision mesh` outlive it. `handle`: null where none is (its nodes, if any, then move freely).
-  // `placement`: object frame to world at the start.
+  // `tets` and `collision mesh` outlive it. `handle`: null without one (its nodes, if any, then move freely).
+  // `placement`: initial object frame to world.
   SoftBodyState(const TetMesh& tets, const Mesh& surface, const SoftBody& body, const Handle6* handle,
                 const Pose& placement, SolverKind solver = SolverKind::kAuto);
-  // The same over a black box of the caller's.
+  // The same with the caller's solver.
   SoftBodyState(const TetMesh& tets, const Mesh& surface, const SoftBody& body, const Handle6* handle,
                 const Pose& placement, std::unique_ptr<LinearSolver> solver);
 
@@ -43,7 +43,7 @@ class SoftBodyState final : public ToolBody {
   void show(SoftObjectSnapshot& out) const override;
   std::size_t part_count() const { return tets_.parts.size(); }
   void show_part(std::size_t part, SoftObjectSnapshot& out) const;
-  // Of each of TetMesh::parts, in their order; they outlive it.
+  // One per TetMesh::parts, in their order; they outlive it.
   void set_part_meshes(std::vector<const std::vector<uvec3>*> triangles) { part_triangles_ = std::move(triangles); }
 
   const TetMesh& tets() const { return tets_; }
@@ -53,7 +53,7 @@ class SoftBodyState final : public ToolBody {
     return solvable_;
   }  // false: the last step's matrix could not be factorised; nothing moved
 
-  // A tool's tissue, left in its rest shape, would fall and sway, and the hand would be given that work.
+  // Tissue of a tool left in its rest shape would fall and sway, and this work would reach the hand.
   void settle(dvec3 gravity) override;
   void unsettle() override;
   const Rows& follow() const override { return solver_.follow(); }
@@ -61,14 +61,14 @@ class SoftBodyState final : public ToolBody {
   const Matrix6& reduced() const { return solver_.reduced(); }  // S = handle_mass + tissue_matrix + coupling [kg]
 
  private:
-  // Calls use(node, weight) for the nodes that a point of the collision mesh rides on. Weights of zero are left out:
-  // most collision meshes stand on nodes, and a vertex of such a collision mesh rides on one node of twelve.
+  // Calls use(node, weight) for the nodes in which a point of the collision mesh is embedded. Zero weights are skipped:
+  // most collision meshes have their vertices at nodes, so one of twelve weights is non-zero.
   template <class Use>
   void for_each_node(const SurfacePoint& point, Use use) const;
   bool slaved(std::uint32_t node) const { return node >= tissue_.moving() && node < tets_.pinned_begin(); }
   Eigen::Index handle_row() const { return 3 * static_cast<Eigen::Index>(tissue_.moving()); }
   dvec3 arm(std::uint32_t node) const { return handle_->arm(node - tets_.free_count); }
-  dvec3 node_velocity(std::uint32_t node) const;  // [m/s] by velocity()
+  dvec3 node_velocity(std::uint32_t node) const;  // [m/s] from velocity()
   void separate_tissue(double T);
   void refresh_surface(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_surface) const;
 
@@ -77,7 +77,7 @@ class SoftBodyState final : public ToolBody {
   Tissue tissue_;
   std::optional<HandleTie> tie_;
   CoupledSolver solver_;
-  mutable BlockColumns pushed_;  // respond()'s
+  mutable BlockColumns pushed_;  // working memory of respond()
   dquat placed_{1, 0, 0, 0};     // object frame to world at the start
   std::vector<const std::vector<uvec3>*> part_triangles_;
   bool solvable_ = true;

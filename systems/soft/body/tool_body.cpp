@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kLeadMass = 1e4;     // [kg] of what moves a handle that is told where to go: far above any tool's
+constexpr double kLeadMass = 1e4;     // [kg] effective mass of a handle with prescribed motion: far above any tool's
 constexpr double kLeadInertia = 1e2;  // [kg m2]
 
 bool all_finite(const RigidMotion& motion) {
@@ -30,8 +30,8 @@ void ToolBody::set_device(const Pose& pose, const Vector6& velocity) {
   device_ = device;
 }
 
-// What holds up the whole tool in its rest shape. A hand that lifts the weight and lowers it elsewhere would be given
-// work that no surface ever took from it, which no passive device may do.
+// Force that supports the whole tool in its rest shape. Without it, a hand that lifts the weight and lowers it elsewhere
+// would get back work that it never put into a surface, which a passive device must not give.
 Vector6 ToolBody::support(dvec3 gravity) const {
   if (!(device_ || led_) || !settings_.carried) return Vector6::Zero();
   const dvec3 force = -mass_ * gravity;

@@ -12,11 +12,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kApart = 0.25;  // [1] of the reach: presses are first chosen so far apart, then nearer together,
-constexpr double kAlikeStiffness = 0.05;  // [1] down to where two of them look like one
-constexpr double kLeastShare = 0.1;       // [1] as in force_field: a reach that hardly meets a vertex still counts
+constexpr double kApart = 0.25;  // [1] of the reach: minimum distance at which presses are first chosen, then reduced
+constexpr double kAlikeStiffness = 0.05;  // [1] to this, where two presses are indistinguishable
+constexpr double kLeastShare = 0.1;       // [1] as in force_field: lower bound for a reach with hardly a vertex
 
-// The law's secant at a depth, its slope at none. [1]
+// The law's secant at a depth; its slope at zero depth. [1]
 double secant(const RestoringLaw& law, double depth) {
   return depth > 0 ? law_force(law, 1.0, depth) / depth : law.slope(0.0);
 }
@@ -96,7 +96,7 @@ void YieldingBody::place(std::vector<ContactPoint>& contacts, std::uint32_t self
   contacts.resize(kept);
   if (dents_.empty()) return;
 
-  // M, by the eigenvalues of C: negative ones are the rim's and go.
+  // M, by the eigenvalues of C: negative ones belong to the rim and are dropped.
   const auto n = static_cast<Eigen::Index>(dents_.size());
   Vector softness(n), strain(n);  // K^(-1/2), c d0
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -112,7 +112,7 @@ void YieldingBody::place(std::vector<ContactPoint>& contacts, std::uint32_t self
   for (Eigen::Index i = 0; i < n; ++i) contacts[dents_[static_cast<std::size_t>(i)].contact].gap += held_back[i];
 }
 
-// As P1 sees it: at the corners of the triangle under contact i, weighted by its barycentrics; symmetric on average.
+// As in P1: at the corners of the triangle under contact i, weighted by its barycentrics; symmetric on average.
 Eigen::MatrixXd YieldingBody::shares() const {
   const auto n = static_cast<Eigen::Index>(dents_.size());
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);

@@ -9,10 +9,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kNearEdges = 2.5;   // [mean edges] along the surface: such neighbours never collide
-constexpr double kFlatShare = 0.05;  // [rad] edges between triangles that are nearer to one plane cannot touch
-constexpr double kHollow = 0.98;     // [1] cosine across a hollow edge: sharper ones are touched on their flanks
-constexpr double kSmooth = 0.8;      // [1] cosine between a vertex's normal and its triangles': else it is sharp
+constexpr double kNearEdges = 2.5;   // [mean edges] along the surface: closer neighbours never collide
+constexpr double kFlatShare = 0.05;  // [rad] edges whose triangles are coplanar within this cannot touch
+constexpr double kHollow = 0.98;     // [1] cosine across a concave edge: sharper ones are touched on their flanks
+constexpr double kSmooth = 0.8;      // [1] cosine between a vertex's normal and its triangles': below it, it is sharp
 constexpr int kRigid = 6;            // degrees of freedom
 constexpr float kRounding = 4e-7f;   // [1] of coordinates: boxes are single precision
 
@@ -182,7 +182,7 @@ void CollisionMesh::refit(const Body& body, double T, double reach) {
   const bool same = std::equal(position_.begin(), position_.end(), body.surface_position.begin());
   if (still && still_ && same && reach == reach_ && !predicted_) return;
   swept_ = false;
-  still_ = still && same, predicted_ = false;  // a body that has just stopped is predicted to go on, once
+  still_ = still && same, predicted_ = false;  // a body that has just stopped is extrapolated once more
   const double again = last_step_ > 0.0 ? T / last_step_ : 0.0;
   last_step_ = T;
   for (std::uint32_t v = 0; v < count; ++v) {
@@ -264,7 +264,7 @@ void CollisionMesh::find_normals() {
   }
 }
 
-// Normal curvature along every edge that leaves it, dn . dx / dx^2, on average.
+// Normal curvature along every edge at a vertex, dn . dx / dx^2, averaged.
 void CollisionMesh::find_curvatures() {
   std::fill(curvature_.begin(), curvature_.end(), 0.0);
   for (const CollisionEdge& edge : edges_) {
@@ -278,7 +278,7 @@ void CollisionMesh::find_curvatures() {
 
 namespace {
 
-// Two tangents beside a normal.
+// Two tangents for a normal.
 dmat3 frame_of(dvec3 n) {
   const dvec3 along = farthest_axis(n);
   const dvec3 t = unit_or_zero(along - dot(along, n) * n);
@@ -287,7 +287,7 @@ dmat3 frame_of(dvec3 n) {
 
 }  // namespace
 
-// Least squares over the edges that leave a vertex, each as heavy as any; then the mean with its neighbours'.
+// Least squares over the edges at a vertex, equally weighted; then averaged with its neighbours.
 void CollisionMesh::find_rest_bend() {
   struct Sums {
     dmat2 steps{0}, turns{0};  // of tangential steps times steps, turns times steps
@@ -324,7 +324,7 @@ void CollisionMesh::find_rest_bend() {
   for (std::uint32_t v = 0; v < count; ++v) rest_.bend[v] /= weight[v];
 }
 
-// Depth lost to a flat edge that is left out: at most kFlatShare / 4 of its length.
+// Depth lost by omitting a flat edge: at most kFlatShare / 4 of its length.
 void CollisionMesh::find_live_edges() {
   live_ = owned_;
   sharp_.assign(live_.size(), 0), supple_.assign(live_.size(), 0);

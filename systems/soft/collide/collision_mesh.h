@@ -1,5 +1,5 @@
-// A body's surface as the search for contacts sees it: its edges, who its neighbours are, and for every step the boxes
-// of what its triangles sweep. The tree is the mesh's own (components/mesh.h): only boxes are fitted anew.
+// A body's surface for the contact search: its edges and neighbours, and in every step the boxes swept by its
+// triangles. The tree is the mesh's (components/mesh.h): only boxes are refitted.
 #pragma once
 
 #include <algorithm>
@@ -13,12 +13,12 @@
 
 namespace pliant {
 
-// [1] cosine: outward normals of two features that touch are opposed, or nearly.
+// [1] cosine: outward normals of touching features are approximately opposed.
 inline constexpr double kFacing = 0.3;
 
 struct CollisionEdge {
   std::uint32_t from = 0, to = 0;           // vertices
-  std::array<std::uint32_t, 2> triangle{};  // beside it; the same twice at a border
+  std::array<std::uint32_t, 2> triangle{};  // adjacent; the same twice at a border
   std::array<std::uint32_t, 2> opposite{};  // their third vertices
 };
 
@@ -26,27 +26,27 @@ class CollisionMesh {
  public:
   explicit CollisionMesh(const Body& body);
 
-  // Takes over the body's collision mesh for a step of T [s]; boxes grow by `reach` [m]. Fixed collision meshes that
-  // have not moved keep what they have.
+  // Updates from the body's collision mesh for a step of T [s]; boxes grow by `reach` [m]. Fixed collision meshes that
+  // have not moved are unchanged.
   void refit(const Body& body, double T, double reach);
 
-  // The same step once more, with `velocity` [m/s, per vertex] instead of the body's free one: displacements. Boxes
-  // follow with fit_swept(), which does nothing where they already have.
+  // The same step with `velocity` [m/s, per vertex] instead of the body's free one: displacements. fit_swept() then
+  // updates the boxes; it does nothing if they are up to date.
   void sweep(const Body& body, const std::vector<dvec3>& velocity, double T);
   void fit_swept();
 
   // --- Topology
   const Mesh& mesh() const { return *mesh_; }
   const std::vector<CollisionEdge>& edges() const { return edges_; }
-  // Every vertex and every edge is looked at with one triangle only: bits 0-2 of its corners, 3-5 of its edges (edge i
+  // Every vertex and every edge is tested with one triangle only: bits 0-2 of its corners, 3-5 of its edges (edge i
   // goes from corner i to corner i+1).
   std::uint8_t owned(std::uint32_t triangle) const { return owned_[triangle]; }
   std::uint32_t edge_of(std::uint32_t triangle, int i) const { return edge_of_[triangle][i]; }
-  // The same for this step, without edges that cannot touch: where their triangles lie in a plane vertices do, in a
-  // valley nothing does.
+  // The same for this step, without edges that cannot touch: on a plane the vertices touch instead, and a concave edge
+  // cannot touch.
   std::uint8_t live(std::uint32_t triangle) const { return live_[triangle]; }
   // Edges as in live(), of the same triangles. `sharp`: live, and sharper than 37 degrees. `supple`: not live, but of a
-  // collision mesh that bends round a sharp edge that is pressed into it between its vertices.
+  // deformable collision mesh that bends around a sharp edge pressed into it between its vertices.
   std::uint8_t sharp(std::uint32_t triangle) const { return sharp_[triangle]; }
   std::uint8_t supple(std::uint32_t triangle) const { return supple_[triangle]; }
   // [m] at rest: the shortest edge of the triangles around a vertex, beside an edge, of a triangle.
@@ -59,42 +59,43 @@ class CollisionMesh {
   SurfacePoint point_at_vertex(std::uint32_t vertex) const;
   SurfacePoint point_on_edge(std::uint32_t edge, double along) const;
   SurfacePoint point_on_triangle(std::uint32_t triangle, dvec3 barycentric) const;
-  const MeshNeighbours& neighbours() const {
-    return neighbours_;
-  }  // only of collision meshes that collide with themselves
+  const MeshNeighbours& neighbours() const { return neighbours_; }  // only of self-colliding meshes
 
   // --- This step
   Moving vertex(std::uint32_t v) const { return {position_[v], displacement_[v]}; }
-  // [m] Where it will be at the step's end if it goes on as in the last one: contacts included, which displacements
-  // leave out.
+  // [m] Position at the end of the step, extrapolated from the last step: includes contacts, which displacements do
+  // not.
   dvec3 ahead(std::uint32_t v) const { return ahead_[v]; }
-  // Where it will be if the body keeps `velocity` [m/s, per vertex] for T [s]: ahead(), and normals and curvatures as
-  // they are there. All else stays as it is.
+  // Extrapolates with `velocity` [m/s, per vertex] over T [s]: updates ahead(), and the normals and curvatures there.
+  // Everything else is unchanged.
   void predict(const std::vector<dvec3>& velocity, double T);
   std::array<Moving, 3> triangle(std::uint32_t t) const;
   std::array<Moving, 2> edge(std::uint32_t e) const { return {vertex(edges_[e].from), vertex(edges_[e].to)}; }
   EdgeShape edge_shape(std::uint32_t e) const;
   dvec3 normal(std::uint32_t t) const { return normal_[t]; }                // [1] unit (zero where it has no area)
   dvec3 vertex_normal(std::uint32_t v) const { return vertex_normal_[v]; }  // [1] unit
-  bool smooth(std::uint32_t v) const { return smooth_[v] != 0; }  // no triangle around it leans by more than 37 degrees
+  bool smooth(std::uint32_t v) const {
+    return smooth_[v] != 0;
+  }                                                                  // no triangle around it deviates by over 37
+                                                                     // degrees
   double curvature(std::uint32_t v) const { return curvature_[v]; }  // [1/m] mean; > 0: bulges
-  // Of the shape at rest, object frame.
+  // The shape at rest, object frame.
   struct Shape {
     std::vector<dvec3> normal, vertex_normal;
     std::vector<std::uint8_t> smooth;
     std::vector<double> curvature;
-    std::vector<dmat3> bend;  // [1/m] per vertex: the normal turns by bend dx along the surface; symmetric
+    std::vector<dmat3> bend;  // [1/m] per vertex: shape operator, the normal changes by bend dx; symmetric
   };
   const Shape& rest() const { return rest_; }
-  dmat3 turn(std::uint32_t t) const;         // of a triangle, from where it rests
-  dvec3 drift() const { return drift_; }     // [m] mean displacement; boxes hold what moves besides
-  double spread() const { return spread_; }  // [m] how far a vertex's displacement is from the mean at most
+  dmat3 turn(std::uint32_t t) const;         // rotation of a triangle from rest
+  dvec3 drift() const { return drift_; }     // [m] mean displacement; boxes contain the motion relative to it
+  double spread() const { return spread_; }  // [m] largest deviation of a vertex's displacement from the mean
   // Of triangle runs as in Mesh::tree, level 0 the leaves.
   const std::vector<std::vector<Box>>& boxes() const { return boxes_; }
-  // [m] How far sweep() led vertices from where the free motion does, at most: anywhere, in a run as boxes() has it, of
-  // a triangle.
+  // [m] Largest deviation of the sweep() displacements from the free motion: anywhere, in a run as in boxes(), of a
+  // triangle.
   double strayed() const { return strayed_; }
-  double strayed_apart() const { return strayed_apart_; }  // [m] besides what all of them strayed on average
+  double strayed_apart() const { return strayed_apart_; }  // [m] without the mean deviation
   float strayed(std::size_t level, std::uint32_t i) const { return run_strayed_[level][i]; }
   float strayed(std::uint32_t t) const { return triangle_strayed_[t]; }
   Box whole() const { return boxes_.empty() ? Box() : boxes_.back()[0]; }
@@ -105,7 +106,8 @@ class CollisionMesh {
   dvec3 edge_normal(std::uint32_t e) const {  // [1] mean of the two beside it
     return 0.5 * (normal_[edges_[e].triangle[0]] + normal_[edges_[e].triangle[1]]);
   }
-  // Is a point inside? By the nearest feature within `reach` [m] of it and its pseudonormal (Baerentzen & Aanaes 2005).
+  // Whether a point is inside, by the nearest feature within `reach` [m] and its pseudonormal (Baerentzen & Aanaes
+  // 2005).
   bool contains(dvec3 p, double reach) const;
 
  private:
@@ -125,7 +127,7 @@ class CollisionMesh {
   bool deforms_ = false;
   std::vector<bool> at_border_;
   std::vector<double> shortest_, shortest_at_vertex_;
-  std::vector<std::uint32_t> owner_;                           // of each vertex: a triangle that has it
+  std::vector<std::uint32_t> owner_;                           // of each vertex: one of its triangles
   std::vector<std::uint32_t> triangles_first_, triangles_of_;  // around each vertex
   MeshNeighbours neighbours_;
   std::vector<dvec3> position_, displacement_, ahead_;
@@ -136,7 +138,7 @@ class CollisionMesh {
   double last_step_ = 0.0;  // [s]
   dvec3 drift_{0};
   double spread_ = 0.0, strayed_ = 0.0, strayed_apart_ = 0.0;
-  bool swept_ = false;  // boxes are not yet those of the displacements
+  bool swept_ = false;  // boxes are out of date
   std::vector<float> vertex_strayed_, triangle_strayed_;
   std::vector<std::vector<float>> run_strayed_;
   double reach_ = -1.0;

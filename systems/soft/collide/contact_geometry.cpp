@@ -8,18 +8,18 @@ namespace {
 
 constexpr double kSameSide = 0.7;        // [1] cosine: normals of one and the same contact
 constexpr double kCrease = 0.5;          // [1] cosine between triangles: no contact slides over a sharper edge
-constexpr int kMostTriangles = 8;        // walked over in a step
-constexpr double kParallelFaces = 1e-2;  // [1] sine below which two edges have no normal of their own
-constexpr double kDeepest = 0.25;        // [mean edges] predicted to be deeper than this: it will not go on as it did
-constexpr double kLeast = 5e-3;          // [1] sine: normals that lean less than this are as they were
+constexpr int kMostTriangles = 8;        // largest number of triangles crossed in a step
+constexpr double kParallelFaces = 1e-2;  // [1] sine below which the common normal of two edges is undefined
+constexpr double kDeepest = 0.25;        // [mean edges] deeper predictions are invalid: the motion will not continue
+constexpr double kLeast = 5e-3;          // [1] sine: a smaller tilt of the normal is ignored
 constexpr double kDifference = 0.5;      // [mean edges]
-constexpr double kFlatAngle = 0.01;      // [1] of both bends: what is flatter, or hollow, counts as if bent by that
-constexpr double kFlattest = 1e-6;       // [1/m] of flat on flat
-constexpr double kReach = 0.3;           // [mean edges] farther, a turning by differences says nothing
+constexpr double kFlatAngle = 0.01;      // [1] of both curvatures: lower bound for flat or concave surfaces
+constexpr double kFlattest = 1e-6;       // [1/m] lower bound for flat on flat
+constexpr double kReach = 0.3;           // [mean edges] at larger distances differences of normals are meaningless
 
 struct Touch {
   SurfacePoint a, b;
-  dvec3 apart{0};  // [m] from b to a, where they are predicted
+  dvec3 apart{0};  // [m] from b to a, at their predicted positions
   dvec3 normal{0};
 };
 
@@ -28,7 +28,7 @@ double edge_of(const FeaturePair& pair) {
   return static_cast<double>(std::min(pair.a.mesh().mean_edge, pair.b.mesh().mean_edge));
 }
 
-// A surface as it is where the step ends; or as it rests, turned to where one of its triangles is.
+// A surface at the end of the step; or in its rest shape, rotated with one of its triangles.
 class Surface {
  public:
   explicit Surface(const CollisionMesh& collision_mesh) : collision_mesh_(collision_mesh) {}
@@ -41,7 +41,7 @@ class Surface {
   double curvature(std::uint32_t v) const {
     return resting_ ? collision_mesh_.rest().curvature[v] : collision_mesh_.curvature(v);
   }
-  // Corners blended, but where a crease meets a corner the facet's own.
+  // Interpolated vertex normals; at a corner on a crease the facet's normal is used instead.
   dvec3 normal(const SurfacePoint& point) const {
     const uvec3 corners = collision_mesh_.mesh().triangles[point.triangle];
     dvec3 n(0.0);
@@ -61,7 +61,7 @@ class Surface {
   dmat3 turn_{1};
 };
 
-// One side of a contact: the normal of the surface at its point and how curved that is; no normal where it is sharp.
+// One side of a contact: the surface's normal at its point and its curvature; no normal if it is sharp.
 struct Lean {
   dvec3 normal{0};
   double curvature = 0.0;  // [1/m] >= 0
@@ -81,7 +81,7 @@ Lean lean_at(const Surface& surface, const SurfacePoint& point, bool face) {
   return lean;
 }
 
-// Out of b; zero where both are sharp.
+// Out of b; zero if both are sharp.
 dvec3 common_normal(const Lean& a, const Lean& b) {
   if (a.sharp) return b.normal;
   if (b.sharp) return -a.normal;
@@ -94,7 +94,7 @@ dvec3 without(dvec3 v, dvec3 along) {
   return v - dot(v, along) / dot(along, along) * along;
 }
 
-// `offset` [m]: a stands so far aside from where it is predicted.
+// `offset` [m]: displacement of a from its prediction.
 std::optional<Touch> vertex_touch(const FeaturePair& pair, const Surface& of_a, const Surface& of_b, dvec3 offset) {
   const CollisionMesh& b = pair.b;
   const dvec3 p = pair.a.ahead(pair.feature_a) + offset;
@@ -108,7 +108,7 @@ std::optional<Touch> vertex_touch(const FeaturePair& pair, const Surface& of_a, 
     w.z = 1.0 - w.x - w.y;
     const int outside = w.x <= w.y ? (w.x <= w.z ? 0 : 2) : (w.y <= w.z ? 1 : 2);
     const std::uint32_t next = w[outside] < 0.0 ? b.mesh().across[t][(outside + 1) % 3] : kBorder;
-    // Over an edge that bulges, each triangle sends to the other.
+    // Over a convex edge, each triangle may refer to the other.
     if (next != kBorder && next != from && dot(b.normal(next), b.normal(t)) > kCrease) {
       from = t;
       t = next;
@@ -135,7 +135,7 @@ std::optional<Touch> edge_touch(const FeaturePair& pair, const Surface& of_a, co
   touch.apart = a0 + s * e - (b0 + t * f);
   const Lean a = lean_at(of_a, touch.a, false), b = lean_at(of_b, touch.b, false);
   touch.normal = common_normal(a, b);
-  // What is sharp is touched across.
+  // The normal is perpendicular to a sharp edge.
   if (a.sharp && b.sharp)
     touch.normal = dot(n, pair.normal) < 0.0 ? -n : n;
   else if (a.sharp || b.sharp)
@@ -152,14 +152,15 @@ std::optional<Touch> touch_at(const FeaturePair& pair, const Surface& a, const S
   return touch;
 }
 
-// Not where it is so deep that it will not go on as it did.
+// Invalid if so deep that the motion will not continue.
 std::optional<Touch> touch_ahead(const FeaturePair& pair) {
   const std::optional<Touch> touch = touch_at(pair, Surface(pair.a), Surface(pair.b), dvec3(0.0));
   if (!touch || dot(touch->normal, touch->apart) < -kDeepest * edge_of(pair)) return {};
   return touch;
 }
 
-// One side's bend at a contact, as it rests but turned to where it is, along the contact's tangents.
+// One side's shape operator at a contact, in its rest shape but rotated to its current orientation, along the contact's
+// tangents.
 struct Bend {
   dmat2 form{0};  // [1/m]
   bool sharp = false;
@@ -203,7 +204,7 @@ dmat2 raised(const dmat2& symmetric, double least) {
   return 0.5 * (high + low) * dmat2(1.0) + 0.5 * (high - low) * m.across;
 }
 
-// Where both sides are smooth; else the turning stays what differences say.
+// Where both sides are smooth; else `turning` stays as found by differences.
 void find_place(const FeaturePair& pair, ContactPoint& contact) {
   const Bend a = bend_at(pair.a, contact.a, false, contact.axes);
   const Bend b = bend_at(pair.b, contact.b, !pair.edges, contact.axes);

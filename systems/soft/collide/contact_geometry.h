@@ -1,12 +1,12 @@
-// How a contact lies where the step will end. Proximity finds pairs of features where the step begins; in a step of
-// 1/60 s a finger slides over whole triangles, and planes frozen where it began would stand in its way like stairs. So
-// points and normal are those of the step's end, predicted by the last step's motion. A contact's gap is what its law
-// needs: gap + T u_n is the gap at the end.
+// Geometry of a contact at the end of the step. Proximity finds pairs of features at the beginning of the step. In a
+// step of 1/60 s a finger slides over whole triangles, and planes frozen at the beginning would obstruct it like
+// stairs. So points and normal are predicted for the step's end by the last step's motion. The gap is defined for the
+// contact law: gap + T u_n is the gap at the end.
 //
-// Normals are those of the smooth surfaces that collision meshes stand for. A vertex or edge that touches beside the
-// point where those would touch, by s, sees b's normal turned by k_b s and a's by k_a s the other way (k: curvature);
-// weighted with each other's curvature the two cancel. Sharp vertices and edges have no normal; what is flat or hollow
-// decides alone.
+// Normals are those of the smooth surfaces approximated by the collision meshes. Suppose that a vertex or edge touches
+// at distance s from the true contact point. Then b's normal is rotated by k_b s and a's by k_a s in the opposite
+// direction (k: curvature); weighted with each other's curvature the two errors cancel. Sharp vertices and edges have
+// no normal; a flat or concave side alone determines it.
 #pragma once
 
 #include "systems/soft/collide/collision_mesh.h"
@@ -20,24 +20,24 @@ struct FeaturePair {
   const CollisionMesh& b;
   bool edges = false;
   std::uint32_t feature_a = 0, feature_b = 0;
-  dvec3 normal{0, 1, 0};  // [1] where the step begins; what is predicted leans at most 45 degrees against it
+  dvec3 normal{0, 1, 0};  // [1] at the beginning of the step; the prediction deviates from it by at most 45 degrees
 };
 
-// Fills a, b, normal and gap of a contact. False: nothing can be predicted (the motion leads too far round the
-// surface); the contact stays as it was found.
+// Fills a, b, normal and gap of a contact. False: no prediction is possible (the motion leads too far around the
+// surface); the contact is unchanged.
 bool look_ahead(const FeaturePair& pair, ContactPoint& contact);
 
-// After look_ahead, where the collision meshes now know better how they end (CollisionMesh::predict): normal and lean,
-// which is against the axes as they were laid, and end_gap. False: all stays as it was.
+// After look_ahead, when the collision meshes have a better prediction (CollisionMesh::predict): updates normal and
+// lean, which is relative to the contact's axes, and end_gap. False: all is unchanged.
 bool look_again(const FeaturePair& pair, ContactPoint& contact);
 
-// After look_ahead, with the contact's axes laid: what changes as it slips. Its reach, which is nothing where the
-// normal jumps within half an edge; how far the place of touch goes over each body, and its turning with that
-// (Montana 1988, the contact equations without rolling): where both are smooth, with A and B the bends of a and b, each
-// seen from outside, and slip s of a,
+// After look_ahead, with the contact's axes set: changes of the contact with slip. Its reach is zero if the normal
+// jumps within half an edge. Also the motion of the contact point over each body, and the rotation of the normal
+// (Montana 1988, the contact equations without rolling). Where both are smooth, with A and B the shape operators of a
+// and b, each seen from outside, and slip s of a,
 //   over_b = (A + B)^-1 A,  over_a = over_b - 1,  turning = B over_b;
-// a sharp a is touched where it is. Curvature is that of the shapes at rest: the dent in soft things comes along with
-// what slides over them.
+// a sharp a keeps its contact point. Curvature is that of the rest shapes: a dent in soft tissue moves with the object
+// that slides over it.
 void find_turning(const FeaturePair& pair, ContactPoint& contact);
 
 }  // namespace pliant

@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-// Mixes so well that two pairs of features do not share a key in practice (the finaliser of MurmurHash3).
+// Hash finaliser of MurmurHash3: two pairs of features do not share a key in practice.
 std::uint64_t mix(std::uint64_t x) {
   x = (x ^ (x >> 33)) * 0xff51afd7ed558ccdull;
   x = (x ^ (x >> 33)) * 0xc4ceb9fe1a85ec53ull;

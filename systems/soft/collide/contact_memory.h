@@ -1,5 +1,5 @@
-// What the last step knew of a pair of features: side, tangents, impulse. Keys do not name the triangle that a vertex
-// stands on, so a sliding contact keeps its memory from triangle to triangle.
+// The last step's data of a pair of features: side, tangents, impulse. Keys do not contain the triangle under a vertex,
+// so a sliding contact keeps its data from triangle to triangle.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ std::uint64_t edge_key(std::uint32_t body_a, std::uint32_t body_b, std::uint32_t
 class ContactMemory {
  public:
   void take(const std::vector<ContactPoint>& contacts);
-  // Null where the last step had no such contact.
+  // Null if the last step had no such contact.
   const ContactPoint* find(std::uint64_t key) const;
 
  private:
@@ -25,7 +25,7 @@ class ContactMemory {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> by_key_;
 };
 
-// On which side of each other features were and how far apart, whether or not their contact was kept for the solve.
+// Side and distance of two features, whether or not their contact was kept for the solve.
 struct KnownSide {
   std::uint64_t key = 0;
   dvec3 normal{0};   // [1]
@@ -38,13 +38,13 @@ class SideMemory {
   void add(const KnownSide& side) { sides_.push_back(side); }
   void forget(std::uint32_t body);
   void sort();                                     // once all are added, before find()
-  const KnownSide* find(std::uint64_t key) const;  // null where they did not meet
+  const KnownSide* find(std::uint64_t key) const;  // null if they did not meet
 
  private:
   std::vector<KnownSide> sides_;
 };
 
-// Axes, impulse and sliding of a contact: those of the last step turned onto the new normal, or fresh ones.
+// Axes, impulse and sliding of a contact: those of the last step rotated onto the new normal, or new ones.
 void carry_over(const ContactPoint* last, ContactPoint& contact);
 
 }  // namespace pliant

@@ -7,12 +7,13 @@
 namespace pliant {
 namespace {
 
-constexpr double kAlike = 0.9;       // [1] cosine between normals that push the same way
-constexpr double kGrowth = 1.1;      // [1] of the spacing, where too many are left: regular meshes lose half in one go
-constexpr double kSteady = 0.05;     // [edges] another must be deeper by so much to replace one of the last step
-constexpr double kTouches = 0.1;     // [edges] what is nearer touches already, and its neighbours would sink in unheld:
-constexpr double kDenseShare = 0.5;  // [1] such contacts stand so much nearer together than those that only may touch
-constexpr double kWidest = 1e3;      // [1] spacings grow no further: by then one contact a direction is left
+constexpr double kAlike = 0.9;       // [1] cosine between normals of similar contacts
+constexpr double kGrowth = 1.1;      // [1] of the spacing, if too many are left: regular meshes lose half at once
+constexpr double kSteady = 0.05;     // [edges] a new contact must be deeper by this to replace one of the last step
+constexpr double kTouches = 0.1;     // [edges] closer contacts touch already; thinned too far, neighbours would sink
+                                     // in:
+constexpr double kDenseShare = 0.5;  // [1] their spacing relative to that of contacts that do not touch yet
+constexpr double kWidest = 1e3;      // [1] limit of the spacing's growth: by then one contact per direction is left
 
 using Run = std::vector<Candidate>::iterator;
 
@@ -20,7 +21,7 @@ bool same_pair(const Candidate& x, const Candidate& y) {
   return x.body_low == y.body_low && x.body_high == y.body_high;
 }
 
-// How far apart contacts must be.
+// Minimum distance between contacts.
 struct Spacing {
   double edges;        // [1] of the shorter of the two contacts' edges
   double least = 0.0;  // [m] anywhere
@@ -31,11 +32,11 @@ struct Spacing {
   }
 };
 
-// Brings the candidates of [first, last) that are apart to the front, in their order; returns their end.
+// Moves the candidates of [first, last) that are sufficiently apart to the front, in order; returns their end.
 Run keep_apart(Run first, Run last, const Spacing& spacing) {
   Run kept = first;
   for (Run c = first; c != last; ++c) {
-    const bool both_ways = c->body_low == c->body_high;  // a body that touches itself has no lower side
+    const bool both_ways = c->body_low == c->body_high;  // in a self-contact, either side may be the lower one
     const bool taken = std::any_of(first, kept, [&](const Candidate& k) {
       const dvec3 d = k.position - c->position;
       const double apart = spacing.between(*c, k);
@@ -58,7 +59,7 @@ double extent(Run first, Run last) {
   return length(high - low);
 }
 
-// One pair's candidates thinned to `most`: starting at a spacing at which some times that many fit side by side.
+// Thins one pair's candidates to `most`, starting at a spacing at which several times that many fit.
 Run thin_pair(Run first, Run last, Spacing spacing, std::size_t most) {
   const auto too_many = [&] { return static_cast<std::size_t>(last - first) > most; };
   if (too_many()) spacing.least = 0.5 * extent(first, last) / std::sqrt(static_cast<double>(most));
@@ -82,7 +83,7 @@ void thin_contacts(std::vector<Candidate>& candidates, const ThinningLimits& lim
             [&](const Candidate& x, const Candidate& y) { return order(x) < order(y); });
 
   Run kept = candidates.begin();
-  for (Run first = candidates.begin(); first != candidates.end();) {  // sorted so, every pair is a run
+  for (Run first = candidates.begin(); first != candidates.end();) {  // sorted, every pair is a contiguous run
     const Run last = std::find_if(first, candidates.end(), [&](const auto& c) { return !same_pair(c, *first); });
     const Run end = thin_pair(first, last, {limits.spacing}, limits.most_of_pair);
     kept = kept == first ? end : std::move(first, end, kept);

@@ -1,4 +1,4 @@
-// When four moving points become coplanar: a cubic in time.
+// Times at which four moving points become coplanar: a cubic in time.
 #include <algorithm>
 #include <cmath>
 
@@ -13,13 +13,13 @@ double value(const TimeCubic& c, double t) {
   return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
 }
 
-// In Bernstein form over [0, 1] a polynomial stays within its coefficients: all positive, and there is no root.
+// In Bernstein form over [0, 1] a polynomial stays within its coefficients: if all are positive, it has no root.
 bool stays_positive(const TimeCubic& c) {
   return c[0] > 0.0 && c[0] + c[1] / 3.0 > 0.0 && c[0] + (2.0 * c[1] + c[2]) / 3.0 > 0.0 &&
          c[0] + c[1] + c[2] + c[3] > 0.0;
 }
 
-// Where it stops rising or falling inside (0, 1): c1 + 2 c2 t + 3 c3 t2 = 0.
+// Extrema inside (0, 1): c1 + 2 c2 t + 3 c3 t2 = 0.
 int turning_points(const TimeCubic& c, std::array<double, 2>& t) {
   const double qa = 3.0 * c[3], qb = c[2], qc = c[1];
   int count = 0;
@@ -35,7 +35,7 @@ int turning_points(const TimeCubic& c, std::array<double, 2>& t) {
   return count;
 }
 
-// The root of a falling stretch: regula falsi in its Illinois form, which is done at once where the motion is plain.
+// The root in a falling interval: regula falsi in its Illinois form, which converges at once for simple motion.
 double root(const TimeCubic& c, double lo, double hi) {
   double at_lo = value(c, lo), at_hi = value(c, hi);
   const double enough = 1e-14 * (at_lo - at_hi);

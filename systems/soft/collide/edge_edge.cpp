@@ -6,14 +6,14 @@
 namespace pliant {
 namespace {
 
-constexpr double kParallel = 1e-2;   // [1] sine below which two edges have no normal of their own
+constexpr double kParallel = 1e-2;   // [1] sine below which the common normal of two edges is undefined
 constexpr double kLeaning = 0.05;    // [1] sine by which a triangle may lean over its edge
 constexpr double kEdgeSlack = 1e-6;  // [1] beyond the ends
 
 struct Feet {
   double a, b;  // [1] along either edge
 };
-// Of the common perpendicular of two lines that are not parallel.
+// Feet of the common perpendicular of two non-parallel lines.
 std::optional<Feet> feet(dvec3 a0, dvec3 a1, dvec3 b0, dvec3 b1) {
   const dvec3 e = a1 - a0, f = b1 - b0, r = a0 - b0;
   const double ee = dot(e, e), ff = dot(f, f), ef = dot(e, f), er = dot(e, r), fr = dot(f, r);

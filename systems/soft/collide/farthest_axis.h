@@ -1,11 +1,11 @@
-// Where tangents begin, if nothing else says which way.
+// Start direction of tangents, in the absence of another.
 #pragma once
 
 #include "components/math.h"
 
 namespace pliant {
 
-// The world axis that is farthest from a direction; of equals the first.
+// The world axis farthest from a direction; the first of equals.
 inline dvec3 farthest_axis(dvec3 from) {
   const dvec3 size = glm::abs(from);
   dvec3 axis(0.0);

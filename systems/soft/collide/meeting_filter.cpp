@@ -8,33 +8,33 @@
 namespace pliant {
 namespace {
 
-constexpr double kSameMeetingSide = 0.5;  // [1] cosine: a normal that is still the one of the last step
+constexpr double kSameMeetingSide = 0.5;  // [1] cosine: the normal is on the same side as in the last step
 constexpr double kOtherFace = 0.8;        // [1] cosine below which a vertex has a further contact (in a corner)
 constexpr std::uint32_t kMostOfVertex = 3;
-constexpr double kAtOnce = 4.0;   // [margins] what sinks in farther in one step,
-constexpr double kDeepens = 2.0;  // [1] beyond so many times how deep it was, did not
-constexpr double kComing = 1e-3;  // [margins] in a step: slower, and it does not go into a sheet but lies in it
-constexpr double kGraze = 0.3;    // [margins] what crosses by less is left to the next step
+constexpr double kAtOnce = 4.0;   // [margins] plus kDeepens times the last depth:
+constexpr double kDeepens = 2.0;  // [1] largest penetration that can develop in one step
+constexpr double kComing = 1e-3;  // [margins] in a step: a slower vertex rests in a sheet rather than entering it
+constexpr double kGraze = 0.3;    // [margins] smaller crossings are left to the next step
 
 struct MeetingFilter {
   const PairView& pair;
   std::vector<Found>& out;
-  Crossings crossings{};  // of what was missed
+  Crossings crossings{};  // of the missed contacts
 
   void take_edges(const MeetingSide& a, std::uint32_t edge_a, const MeetingSide& b, std::uint32_t edge_b,
                   const Meeting& m) {
     const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
     const ContactPoint* last = pair.memory.find(key);
     const bool met = came_from(pair.sides.find(key), m);
-    // Edges deep below each other that never met: others hold those bodies.
+    // Deep edges without an earlier contact: other contacts support those bodies.
     if (m.gap < -pair.margin && !met && !(began_inside() && leads_out(a, b, m))) return;
     if (a.sheet() && !meets_front(a.collision_mesh.edge_normal(edge_a), -m.normal, m, met)) return;
     if (b.sheet() && !meets_front(b.collision_mesh.edge_normal(edge_b), m.normal, m, met)) return;
     out.push_back({a.index, b.index, true, edge_a, edge_b, m, last, key});
   }
 
-  // Whether the last step saw it on this side. Nothing sinks in deep at once: where it would have, it has gone round a
-  // corner, and is deep behind a face that it left.
+  // Whether the last step saw it on this side. A penetration cannot become deep at once: if it did, the feature went
+  // around a corner, and is deep behind a face that it left.
   bool came_from(const KnownSide* side, const Meeting& m) const {
     if (!side || dot(side->normal, m.normal) <= kSameMeetingSide) return false;
     return -m.gap <= kAtOnce * pair.margin + kDeepens * std::max(0.0, -side->gap);
@@ -45,17 +45,18 @@ struct MeetingFilter {
     return dot(a.index < b.index ? pair.way : -pair.way, m.normal) > kSameMeetingSide;
   }
 
-  // Whether what meets an edge of a sheet, pushed along `push` by it, is in front of it.
+  // Whether a feature that is pushed along `push` by an edge of a sheet is in front of it.
   bool meets_front(dvec3 front, dvec3 push, const Meeting& m, bool met) const {
     const double along = dot(front, push);
     return along >= 0.0 && (m.gap >= 0.0 || met || (along > kFacing && enters(m)));
   }
-  // A sheet has no inside. What shows behind it without a past and goes in was put there, or slipped in beside others;
-  // what goes out came from behind.
+  // A sheet has no inside. A feature behind it without history that moves in was placed there, or passed in beside
+  // others; one that moves out came from behind.
   bool enters(const Meeting& m) const { return m.gap >= -pair.margin && m.end_gap < m.gap - kComing * pair.margin; }
 
-  // Meetings of every vertex of body a with body b. In front, a vertex touches what it meets; behind, it touches what
-  // it came from: the side of the last step, or, where there is none, the nearest if it really is inside.
+  // Meetings of every vertex of body a with body b. In front, a vertex touches every triangle that it meets. Behind, it
+  // touches the one that it came from: on the side of the last step, or without one the nearest, if it really is
+  // inside.
   void take_vertices(const MeetingSide& a, const MeetingSide& b, std::vector<VertexMeeting>& met) {
     std::sort(met.begin(), met.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
       return x.vertex != y.vertex ? x.vertex < y.vertex : x.triangle < y.triangle;
@@ -82,14 +83,14 @@ struct MeetingFilter {
     });
     for (const VertexMeeting& m : met) {
       if (m.meeting.gap < 0.0 || count == kMostOfVertex) continue;
-      if (behind && dot(behind->meeting.normal, m.meeting.normal) < 0.0) continue;  // a thin body's far side
+      if (behind && dot(behind->meeting.normal, m.meeting.normal) < 0.0) continue;  // far side of a thin body
       const bool alike = std::any_of(kept.begin(), kept.begin() + count, [&](const VertexMeeting* k) {
         return dot(k->meeting.normal, m.meeting.normal) > kOtherFace;
       });
       if (!alike) kept[count++] = &m;
     }
 
-    // Each takes on the past contact whose normal is the most alike; the others take the ordinals that are left.
+    // Each takes the past contact with the most similar normal; the others take the remaining ordinals.
     std::array<bool, kMostOfVertex> used{};
     for (std::uint32_t i = 0; i < count; ++i) {
       std::uint32_t best = kMostOfVertex;
@@ -107,7 +108,7 @@ struct MeetingFilter {
     }
   }
 
-  // Of the triangles that a vertex is behind: the one that it came from, else the nearest if it is inside.
+  // Among the triangles that a vertex is behind: the one that it came from, else the nearest if it is inside.
   std::optional<VertexMeeting> side_to_return_to(const MeetingSide& a, const MeetingSide& b,
                                                  std::span<const VertexMeeting> met) const {
     std::array<const KnownSide*, kMostOfVertex> past;
@@ -136,19 +137,19 @@ struct MeetingFilter {
     const double depth = -m.meeting.gap;
     if (a.index == b.index) return depth <= pair.margin && in_front_at_rest(b.collision_mesh.mesh(), m);
     if ((a.sheet() || b.sheet()) && !enters(m.meeting)) return false;
-    if (!b.collision_mesh.mesh().closed) return depth <= pair.margin;  // far behind it is the open
+    if (!b.collision_mesh.mesh().closed) return depth <= pair.margin;  // far behind it is outside
     return b.collision_mesh.contains(a.collision_mesh.vertex(m.vertex).x, pair.reach.behind);
   }
-  // Through a thin part of a body its own far side looks like something that was entered.
+  // Through a thin part of a body, its far side looks like an entered surface.
   static bool in_front_at_rest(const Mesh& mesh, const VertexMeeting& m) {
     const uvec3 c = mesh.triangles[m.triangle];
     const vec3 n = cross(mesh.position(c.y) - mesh.position(c.x), mesh.position(c.z) - mesh.position(c.x));
     return dot(n, mesh.position(m.vertex) - mesh.position(c.x)) >= 0.0f;
   }
 
-  // --- What was missed
+  // --- Missed contacts
   bool crosses(const Meeting& m) const { return m.crosses && m.end_gap < -kGraze * pair.margin; }
-  // What is a contact already has a law that is straight: it may be kept, and the surface bends away under it.
+  // An existing contact has a linear law: it may be satisfied while the surface curves away under it.
   bool slips(const Meeting& m) const { return m.crosses && m.end_gap < -pair.margin; }
   void count(const Meeting& m) { crossings.add({1, m.when}); }
 
@@ -166,7 +167,7 @@ struct MeetingFilter {
     out.push_back({a.index, b.index, true, edge_a, edge_b, m, pair.memory.find(key), key});
   }
 
-  // The first triangle that a vertex crosses, under a key that is still free, unless find() saw it on that side.
+  // The first triangle that a vertex crosses, under a free key, unless find() saw it on that side.
   void take_missed_vertices(const MeetingSide& a, const MeetingSide& b, std::vector<VertexMeeting>& met) {
     std::sort(met.begin(), met.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
       if (x.vertex != y.vertex) return x.vertex < y.vertex;

@@ -1,6 +1,6 @@
-// Which of the meetings of two collision meshes' features are contacts. In front of each other they are; behind, a
-// feature touches what it came from, as the last step remembers, or, where it has no past, the nearest if it really is
-// inside.
+// Selects contacts among the meetings of two collision meshes' features. Features in front of each other are contacts.
+// Behind, a feature touches the one that it came from, by the last step's memory. Without history it touches the
+// nearest, if it really is inside.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-// A contact before it is known whether it is kept.
+// A contact before thinning.
 struct Found {
   std::uint32_t body_a, body_b;
   bool edges;  // else a vertex of a on a triangle of b
@@ -20,19 +20,19 @@ struct Found {
   std::uint64_t key;         // contact_memory.h
 };
 
-// What is known of a pair of bodies when its meetings are looked at.
+// State of a pair of bodies when its meetings are filtered.
 struct PairView {
-  double margin = 0.0;  // [m] within which pairs are taken along although they are not about to touch
+  double margin = 0.0;  // [m] distance within which pairs are included although they do not touch yet
   Reach reach;
-  dvec3 way{0};  // [1] of pairs that began inside each other, until they are out: where the first of them is pushed
+  dvec3 way{0};  // [1] for pairs that began inside each other, until separated: direction in which the first is pushed
   const ContactMemory& memory;
-  const SideMemory& sides;  // of the last step; for missed ones, of this one
+  const SideMemory& sides;  // of the last step; for missed contacts, of this one
 };
 
-// Append to `out`; sort the meetings on the way.
+// Appends to `out`; sorts the meetings.
 void take_contacts(const PairView& pair, const MeetingSide& a, const MeetingSide& b, Meetings& meetings,
                    std::vector<Found>& out);
-// Of what only a solution brings about: what crosses, and was not seen on that side before.
+// Contacts that only a solution produces: crossings that were not seen on that side before.
 Crossings take_missed(const PairView& pair, const MeetingSide& a, const MeetingSide& b, Meetings& meetings,
                       std::vector<Found>& out);
 

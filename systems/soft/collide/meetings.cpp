@@ -7,8 +7,8 @@
 namespace pliant {
 namespace {
 
-// [1] What the normals of a vertex and of the triangle that it touches may have in common at most. A sheet is touched
-// from its front, at its border from the side, too.
+// [1] Largest dot product of the normals of a vertex and of the triangle that it touches. A sheet is touched from its
+// front, at its border also from the side.
 double facing(const MeetingSide& a, std::uint32_t vertex) {
   if (!a.sheet()) return kFacing;
   return a.collision_mesh.at_border(vertex) ? 0.0 : -kFacing;
@@ -59,7 +59,7 @@ struct MeetingSearch {
       if (of_t & 1u << i)
         try_vertex(b, b.collision_mesh.mesh().triangles[t][i], a, s, back, a.index == b.index ? out.of_a : out.of_b);
     }
-    // Of two edges one that is live, the other too, unless a sharp one is pressed into something that bends.
+    // Of two edges one is live; the other must be too, unless a sharp one is pressed into a deformable mesh.
     const unsigned edges_s = of_s | a.collision_mesh.supple(s), edges_t = of_t | b.collision_mesh.supple(t);
     if (edges_s < 8u || edges_t < 8u || (of_s < 8u && of_t < 8u)) return;
     for (int i = 0; i < 3; ++i) {

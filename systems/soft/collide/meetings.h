@@ -1,5 +1,5 @@
-// Which features of two collision meshes meet within a step, or of one collision mesh with itself: vertices and
-// triangles, edges and edges. Which of these meetings are contacts is decided elsewhere (meeting_filter.h).
+// Finds the features of two collision meshes that meet within a step, or of one mesh with itself: vertices and
+// triangles, edges and edges. The contacts among these meetings are selected by meeting_filter.h.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ struct MeetingSide {
   std::uint32_t index;  // of the body
   const Body& body;
   const CollisionMesh& collision_mesh;
-  // A fixed surface that encloses nothing: it stops what comes from its front and lets pass what comes from behind.
+  // A fixed open surface: it stops features from its front and lets features from behind pass.
   bool sheet() const { return body.size() == 0 && !collision_mesh.mesh().closed; }
 };
 
@@ -29,11 +29,11 @@ struct EdgeMeeting {
 
 struct Meetings {
   std::vector<EdgeMeeting> edges;
-  std::vector<VertexMeeting> of_a, of_b;  // vertices of the first body, of the second; a body's own are all in of_a
+  std::vector<VertexMeeting> of_a, of_b;  // vertices of the first body, of the second; self-meetings are all in of_a
 };
 
-// Fills `out`; a and b may be the same body. Triangles that have strayed by no more than `strayed` [m] together are
-// left out (CollisionMesh::strayed).
+// Fills `out`; a and b may be the same body. Pairs of triangles whose summed deviation is at most `strayed` [m] are
+// skipped (CollisionMesh::strayed).
 void find_meetings(const MeetingSide& a, const MeetingSide& b, const Reach& reach, float strayed, Meetings& out);
 
 }  // namespace pliant

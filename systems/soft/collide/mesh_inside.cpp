@@ -1,5 +1,5 @@
-// Whether a point is inside a collision mesh: its nearest feature, and the side of that feature's pseudonormal
-// (Baerentzen & Aanaes 2005, angle-weighted: the only weights that are right at every vertex).
+// Inside test of a collision mesh: the nearest feature, and the side of its pseudonormal (Baerentzen & Aanaes 2005,
+// angle-weighted: the only weights that are correct at every vertex).
 #include <algorithm>
 #include <cmath>
 
@@ -48,7 +48,7 @@ bool CollisionMesh::contains(dvec3 p, double reach) const {
   if (boxes_.empty()) return false;
   Nearest best{reach * reach};
   const vec3 pf(p);
-  // Depth first; boxes are larger than what they hold, which is on the safe side.
+  // Depth first; boxes are conservative.
   std::array<std::pair<std::uint32_t, std::uint32_t>, 128> stack;
   std::size_t top = 0;
   stack[top++] = {static_cast<std::uint32_t>(boxes_.size() - 1), 0};

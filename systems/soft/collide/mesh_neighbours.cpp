@@ -36,7 +36,7 @@ void MeshNeighbours::find_near(const Mesh& mesh, double distance, const std::vec
       for (std::uint32_t k = first[w]; k < first[w + 1]; ++k)
         for (int i = 0; i < 3; ++i) {
           const std::uint32_t x = mesh.triangles[triangles[k]][i];
-          // Whatever shares a triangle is a neighbour, however long its edges are.
+          // Vertices that share a triangle are neighbours, regardless of their distance.
           const double step = static_cast<double>(length(mesh.position(x) - mesh.position(w)));
           offer(x, w == v ? std::min(step, distance) : d + step);
         }
@@ -53,8 +53,8 @@ void MeshNeighbours::find_settled(const Mesh& mesh, const std::vector<std::uint3
                                   const std::vector<std::uint32_t>& triangles) {
   static_assert(kLeafSize * kLeafSize <= 16);
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
-  std::vector<std::uint8_t> near_to(mesh.vertex_count, 0);  // bit i: corner i of the triangle that is looked at
-  std::vector<std::uint32_t> looked_at(count, count);       // by which triangle last
+  std::vector<std::uint8_t> near_to(mesh.vertex_count, 0);  // bit i: corner i of the current triangle
+  std::vector<std::uint32_t> looked_at(count, count);       // last triangle that visited it
   std::vector<Leaves> found;
   leaves_first_.assign(1, 0);
   for (std::uint32_t leaf = 0; leaf * kLeafSize < count; ++leaf) {
@@ -74,7 +74,7 @@ void MeshNeighbours::find_settled(const Mesh& mesh, const std::vector<std::uint3
           const uvec3 c = mesh.triangles[t];
           const unsigned x = near_to[c.x], y = near_to[c.y], z = near_to[c.z];
           // Vertices: each is near to a corner of the other triangle. Edges: two corners of s are near to every edge of
-          // t, so that no edge of s is without one.
+          // t, so that every edge of s is covered.
           const auto two = [](unsigned bits) { return (bits & (bits - 1u)) != 0u; };
           if (x == 0 || y == 0 || z == 0 || (x | y | z) != 7u) continue;
           if (!two(x | y) || !two(y | z) || !two(z | x)) continue;

@@ -1,5 +1,5 @@
-// What of a collision mesh lies so near to each other along the surface, at rest, that it never collides: a collision
-// mesh that collides with itself would otherwise be compared with its own neighbourhood in every step.
+// Pairs of features of a collision mesh so close to each other along the surface, at rest, that they never collide.
+// Otherwise a self-colliding mesh would be compared with its neighbourhood in every step.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@ namespace pliant {
 
 class MeshNeighbours {
  public:
-  MeshNeighbours() = default;  // nothing is near to anything
-  // Vertices are near up to `distance` [m] along edges, and where they share a triangle. `first`, `triangles`: those
+  MeshNeighbours() = default;  // no neighbours
+  // Vertices are near up to `distance` [m] along edges, and if they share a triangle. `first`, `triangles`: those
   // around vertex v are triangles[first[v]] to triangles[first[v + 1]].
   MeshNeighbours(const Mesh& mesh, double distance, const std::vector<std::uint32_t>& first,
                  const std::vector<std::uint32_t>& triangles);
 
   bool near(std::uint32_t vertex_a, std::uint32_t vertex_b) const;
-  // Of two leaves a <= b of the mesh's tree, bit kLeafSize * i + k: triangles i and k of them have no vertex and no
-  // edge that could touch the other's, as near() has it.
+  // For two leaves a <= b of the mesh's tree, bit kLeafSize * i + k: no vertex or edge of their triangles i and k can
+  // touch the other's, by near().
   std::uint16_t settled(std::uint32_t leaf_a, std::uint32_t leaf_b) const;
 
  private:

@@ -1,18 +1,18 @@
-// Pairs of triangles whose swept boxes meet and that do not all look the same way: both trees descended together
-// (Gottschalk, Lin & Manocha 1996), the larger level first, in an order that depends on nothing but the boxes. The look
-// at normals keeps a smooth collision mesh from being compared with its own neighbourhood.
+// Pairs of triangles whose swept boxes overlap and whose normals are not all similar. Both trees are descended together
+// (Gottschalk, Lin & Manocha 1996), the larger level first, in an order that depends only on the boxes. The test of
+// normals keeps a smooth collision mesh from being compared with its neighbourhood.
 #pragma once
 
 #include "systems/soft/collide/collision_mesh.h"
 
 namespace pliant {
 
-// Box a, swept by what the one body drifts relative to the other, against box b.
+// Box a, swept by the relative drift of the two bodies, against box b.
 struct RelativeSweep {
   vec3 low{0}, high{0};  // [m]
   RelativeSweep() = default;
   explicit RelativeSweep(float reach) : low(-reach), high(reach) {}
-  // `reach` [m]: boxes that come so near to each other meet.
+  // `reach` [m]: distance up to which boxes overlap.
   RelativeSweep(const CollisionMesh& a, const CollisionMesh& b, float reach = 0.0f) {
     const vec3 d(a.drift() - b.drift());
     low = glm::min(d, vec3(0.0f)) - reach;
@@ -45,11 +45,11 @@ struct PairWalk {
   const CollisionMesh& a;
   const CollisionMesh& b;
   const RelativeSweep sweep;
-  const float strayed;  // [m] two runs must have strayed by more than this together (CollisionMesh::strayed)
+  const float strayed;  // [m] lower bound of the summed deviation of two runs (CollisionMesh::strayed)
   Use& use;
 
   static std::uint32_t width(std::size_t level) { return level == 0 ? kLeafSize : kTreeWidth; }
-  static std::uint32_t size(const CollisionMesh& collision_mesh, std::size_t level) {  // of what stands below `level`
+  static std::uint32_t size(const CollisionMesh& collision_mesh, std::size_t level) {  // number of children of `level`
     return static_cast<std::uint32_t>(level == 0 ? collision_mesh.mesh().triangles.size()
                                                  : collision_mesh.boxes()[level - 1].size());
   }
@@ -78,7 +78,7 @@ struct PairWalk {
       for (std::uint32_t t = ib * kLeafSize; t < end(b, 0, ib); ++t)
         if (a.strayed(s) + b.strayed(t) > strayed && sweep.meet(a.box(s), b.box(t))) use(s, t);
   }
-  // Of one collision mesh with itself, without what its neighbours settle.
+  // Within one collision mesh, without the pairs settled by its neighbours.
   void own_leaves(std::uint32_t ia, std::uint32_t ib) const {
     const unsigned settled = a.neighbours().settled(ia, ib);
     if (settled == (1u << kLeafSize * kLeafSize) - 1u) return;
@@ -103,8 +103,8 @@ struct PairWalk {
 
 }  // namespace detail
 
-// use(triangle of a, triangle of b). Boxes meet from `reach` [m] on, besides what they were grown by;
-// triangles that have strayed by no more than `strayed` [m] together are left out.
+// use(triangle of a, triangle of b). Boxes overlap up to a distance of `reach` [m], in addition to their growth. Pairs
+// of triangles whose summed deviation is at most `strayed` [m] are skipped.
 template <class Use>
 void for_each_pair(const CollisionMesh& a, const CollisionMesh& b, Use use, float reach = 0.0f, float strayed = -1.0f) {
   if (a.boxes().empty() || b.boxes().empty()) return;

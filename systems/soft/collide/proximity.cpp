@@ -1,6 +1,6 @@
-// From collision meshes to contacts: the features that meet (meetings.h), which of them are contacts
-// (meeting_filter.h), and how few are enough (contact_thinning.h); pair by pair over all bodies. Their boxes are
-// compared all with all, n^2 / 2 tests: for hundreds of bodies, not for thousands.
+// From collision meshes to contacts: the features that meet (meetings.h), the contacts among them (meeting_filter.h),
+// and their reduction (contact_thinning.h); pair by pair over all bodies. All body boxes are compared, n^2 / 2 tests:
+// for hundreds of bodies, not for thousands.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,17 +19,17 @@
 namespace pliant {
 namespace {
 
-constexpr double kSlender = 2.0;  // [1] of a mean edge to the shortest one there: beyond, the shortest one counts
-constexpr double kDeepestWithin = 10.0;  // [margins] no penetration of a body into itself is followed farther
+constexpr double kSlender = 2.0;  // [1] mean edge over the shortest local one: beyond it, the shortest one counts
+constexpr double kDeepestWithin = 10.0;  // [margins] largest self-penetration that is tracked
 constexpr double kDeeper = 1.5;
-constexpr double kRises = 0.95;  // [1] of a penetration: what is left of it where it is being pushed out
-constexpr double kSunk = 0.1;    // [margins] what thinning left out joins where it is deeper and stays so
+constexpr double kRises = 0.95;  // [1] of a penetration: remainder while it is being corrected
+constexpr double kSunk = 0.1;    // [margins] contacts dropped by thinning are added if deeper than this and lasting
 
-// Tunables of the margin within which pairs are taken along although they are not about to touch.
-constexpr double kMarginOfEdge = 0.1;   // [1] of a mean edge: less misses what the step's end brings together
+// Tunables of the margin within which pairs are included although they do not touch yet.
+constexpr double kMarginOfEdge = 0.1;   // [1] of a mean edge: less misses contacts that begin within the step
 constexpr double kMarginOfBody = 0.01;  // [1] of a body's diagonal, for meshes of few large triangles
 
-// [m] What cannot move has none of its own: a ground of two triangles says nothing of what lies on it.
+// [m] An immovable body has no margin: a ground of two triangles has no relation to the objects on it.
 double margin_of(const Body& body) {
   if (body.size() == 0) return std::numeric_limits<double>::infinity();
   const Mesh& mesh = *body.collision_mesh;
@@ -37,14 +37,14 @@ double margin_of(const Body& body) {
                   kMarginOfBody * static_cast<double>(mesh.box.diagonal()));
 }
 
-// [m] By how much one of two boxes must move along an axis to leave the other; negative: how far they are apart. No
-// penetration of what they hold is deeper, if it is left by the shortest way.
+// [m] Distance by which one of two boxes must move along an axis to leave the other; negative: their separation. It
+// bounds the penetration of their contents along the shortest way.
 double overlap(const Box& a, const Box& b) {
   const vec3 by = glm::min(a.max - b.min, b.max - a.min);
   return static_cast<double>(std::min({by.x, by.y, by.z}));
 }
 
-// What a step leaves of two bodies that are inside each other.
+// State that a step leaves for two interpenetrating bodies.
 struct PairPast {
   double deepest = 0.0;  // [m] >= 0
   dvec3 way{0};          // PairView::way
@@ -60,18 +60,18 @@ struct Proximity::Parts {
   std::vector<CollisionMesh> collision_meshes;
   std::vector<double> mean_edge, own_margin;   // [m] per body
   std::vector<bool> yields;                    // per body
-  std::vector<bool> seen;                      // per body: an earlier step looked at it
-  std::map<std::uint64_t, PairPast> touching;  // of pairs that are inside each other
+  std::vector<bool> seen;                      // per body: an earlier step included it
+  std::map<std::uint64_t, PairPast> touching;  // pairs that interpenetrate
   ContactMemory memory;
   SideMemory sides;                    // of the last step
-  std::optional<double> margin_given;  // of this step's find()
-  bool late = false;                   // looking for what was missed
-  Crossings crossings;                 // of what was
-  Meetings meetings;                   // of the pair of bodies that is looked at
+  std::optional<double> margin_given;  // in this step's find()
+  bool late = false;                   // searching for missed contacts
+  Crossings crossings;                 // of the missed contacts
+  Meetings meetings;                   // of the current pair of bodies
   std::vector<Found> found;
-  std::vector<Candidate> candidates, thinned;  // those to be kept; all that there were before
+  std::vector<Candidate> candidates, thinned;  // those to keep; all before thinning
 
-  // Of what find_between() appended: what there is no number for touches nothing (a body has blown up).
+  // Adds the contacts appended by find_between(); contacts with NaN are dropped (a body has diverged).
   void keep(std::size_t first, PairPast& past) {
     std::size_t kept = first;
     for (std::size_t i = first; i < found.size(); ++i) {
@@ -95,7 +95,7 @@ struct Proximity::Parts {
     found.resize(kept);
   }
 
-  // [m] The mean edges tell how finely a collision mesh is meshed; those of a slender bar are longer than it is wide.
+  // [m] The mean edges give the resolution of a collision mesh; those of a slender bar are longer than its width.
   double edge_there(const Found& f) const {
     const CollisionMesh &a = collision_meshes[f.body_a], &b = collision_meshes[f.body_b];
     const double shortest = f.edges ? std::min(a.shortest_at_edge(f.feature_a), b.shortest_at_edge(f.feature_b))
@@ -129,7 +129,7 @@ struct Proximity::Parts {
     c.predicted = look_ahead(pair, c);
     c.source = candidate.source;
     c.key = candidate.key;
-    // A probe has no friction of its own: as on a yielding surface, what it touches says how it grips.
+    // A probe has no friction coefficient: as on a yielding surface, the touched body's applies.
     const Body &first = a.kind == BodyKind::kProbe ? b : a, &second = b.kind == BodyKind::kProbe ? a : b;
     c.mu_static = std::sqrt(first.friction_static * second.friction_static);
     c.mu_sliding = std::sqrt(first.friction_sliding * second.friction_sliding);
@@ -140,7 +140,7 @@ struct Proximity::Parts {
   }
 
   // --- Bodies
-  // How pair i, k (i <= k) is looked at in this step, by what the last one left.
+  // Search parameters of pair i, k (i <= k) in this step, from the last step's state.
   PairView view_of(std::uint32_t i, std::uint32_t k, const PairPast& past) const {
     PairView pair{margin_between(i, k), {0.0, 0.0}, past.way, memory, sides};
     if (late) return pair;
@@ -163,7 +163,7 @@ struct Proximity::Parts {
     const PairView pair = view_of(i, k, past);
     const MeetingSide a{i, *bodies[i], collision_meshes[i]}, b{k, *bodies[k], collision_meshes[k]};
     const std::size_t first = found.size();
-    // What find() saw moving within a margin of where it does now it has not missed.
+    // Features whose motion find() saw within a margin of the current one were not missed.
     find_meetings(a, b, pair.reach, late ? static_cast<float>(pair.margin) : -1.0f, meetings);
     if (late)
       crossings.add(take_missed(pair, a, b, meetings, found));
@@ -202,7 +202,8 @@ struct Proximity::Parts {
     for (const Candidate& c : candidates) out.push_back(contact_of(bodies, c));
   }
 
-  // What joined in an earlier step stays for as long as it pushes: the same contacts, warm, step after step.
+  // A contact that joined in an earlier step stays while it carries load: the same contacts, warm-started, step after
+  // step.
   void keep_joined() {
     std::vector<std::uint64_t> kept;
     for (const Candidate& c : candidates) kept.push_back(c.key);
@@ -232,8 +233,7 @@ struct Proximity::Parts {
     sides.sort();
   }
 
-  // [m] Where the contact will be at the step's end, by its normal and the motion that the collision meshes were swept
-  // with.
+  // [m] Gap at the end of the step, by the contact's normal and the displacements of the collision meshes' sweep.
   double end_gap(const Found& f) const {
     const auto displacement = [](const CollisionMesh& collision_mesh, const SurfacePoint& point) {
       const std::array<Moving, 3> corner = collision_mesh.triangle(point.triangle);
@@ -244,7 +244,7 @@ struct Proximity::Parts {
                                                      displacement(collision_meshes[f.body_b], b));
   }
 
-  // Candidates that thinning left out although those that it kept do not hold them: they sink in.
+  // Adds candidates that thinning dropped although the kept ones do not support them: they sink in.
   void take_sinking(const std::vector<ContactPoint>& contacts) {
     std::vector<std::uint64_t> kept;
     for (const ContactPoint& c : contacts) kept.push_back(c.key);
@@ -258,8 +258,8 @@ struct Proximity::Parts {
     }
   }
 
-  // Whether what the bodies do now may bring together what find() saw apart: not where they move as they did then, or
-  // hardly relative to each other.
+  // Whether the bodies' current motion may cause contacts that find() did not see: not if it is the same motion, or
+  // hardly relative.
   bool may_miss(std::uint32_t i, std::uint32_t k) const {
     const double changed = i == k ? 2.0 * collision_meshes[i].strayed_apart()
                                   : collision_meshes[i].strayed() + collision_meshes[k].strayed();

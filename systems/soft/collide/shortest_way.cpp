@@ -6,11 +6,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kBulge = 1e-3;          // [diagonals] a vertex may be so far in front of a face: rounding, flat caps
+constexpr double kBulge = 1e-3;          // [diagonals] tolerance of a vertex in front of a face: rounding, flat caps
 constexpr double kMostTests = 5e7;       // faces times vertices; larger meshes count as not convex
-constexpr double kMostEdgePairs = 1e5;   // where there are more, normals are dense
-constexpr double kParallelEdges = 1e-6;  // [1] squared sine below which two edges span no axis
-constexpr double kShorter = 1e-6;        // [1] an axis must be shorter by so much to replace an earlier one
+constexpr double kMostEdgePairs = 1e5;   // above it, normals are dense
+constexpr double kParallelEdges = 1e-6;  // [1] squared sine below which two edges give no axis
+constexpr double kShorter = 1e-6;        // [1] relative improvement required to replace an earlier axis
 
 struct Extent {
   double low = 1e300, high = -1e300;  // [m]

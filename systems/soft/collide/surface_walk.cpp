@@ -5,8 +5,8 @@
 namespace pliant {
 namespace {
 
-constexpr int kMostWalked = 16;      // gone over; a way of an edge or two needs fewer
-constexpr double kWalkCrease = 0.5;  // [1] cosine between triangles: sharper edges end a surface
+constexpr int kMostWalked = 16;      // triangles crossed; a distance of an edge or two needs fewer
+constexpr double kWalkCrease = 0.5;  // [1] cosine between triangles: a surface ends at sharper edges
 
 struct Facet {
   uvec3 corners;
@@ -20,7 +20,7 @@ Facet facet_at(const Body& body, std::uint32_t triangle) {
   return {c, e, f, cross(e, f)};
 }
 
-// The same way, as long, in the facet's plane.
+// The vector rotated into the facet's plane, with its length kept.
 dvec3 laid_flat(dvec3 by, const Facet& facet) {
   const dvec3 flat = by - dot(by, facet.normal) / dot(facet.normal, facet.normal) * facet.normal;
   const double size = length(flat);
@@ -38,7 +38,7 @@ std::optional<SurfacePoint> walk(const Body& body, SurfacePoint p, dvec3 by) {
     const double y = dot(cross(by, facet.aside), facet.normal) / nn, z = dot(cross(facet.along, by), facet.normal) / nn;
     const dvec3 way(-y - z, y, z);  // of the barycentrics
     double share = 1.0;
-    int left_behind = -1;  // the corner opposite to the edge that the way leaves by
+    int left_behind = -1;  // the corner opposite to the edge where the path leaves
     for (int i = 0; i < 3; ++i) {
       if (!(p.barycentric[i] + share * way[i] < 0.0)) continue;
       share = std::max(0.0, -p.barycentric[i] / way[i]);
@@ -57,7 +57,7 @@ std::optional<SurfacePoint> walk(const Body& body, SurfacePoint p, dvec3 by) {
       for (int j = 0; j < 3; ++j)
         if (i != left_behind && beyond.corners[j] == facet.corners[i]) there[j] = std::max(0.0, p.barycentric[i]);
     const double sum = there.x + there.y + there.z;
-    if (!(sum > 0.0)) return {};  // neighbours that do not share the edge: no surface
+    if (!(sum > 0.0)) return {};  // neighbours without a common edge: not a surface
     p.triangle = next;
     p.barycentric = there / sum;
     by *= 1.0 - share;

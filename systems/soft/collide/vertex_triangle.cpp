@@ -6,10 +6,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kSlack = 1e-6;  // [1] of barycentrics: triangles that share an edge leave no gap between them
-constexpr double kLean = 0.5;    // [1] how far beside the triangle a foot may be, in gaps
+constexpr double kSlack = 1e-6;  // [1] tolerance of barycentrics: no gap between triangles that share an edge
+constexpr double kLean = 0.5;    // [1] largest distance of a foot beside the triangle, in gaps
 
-// Of the foot of p on the plane of the triangle with (unnormalised) normal n.
+// Barycentrics of the foot of p on the plane of the triangle with (unnormalised) normal n.
 dvec3 barycentric_of(dvec3 p, dvec3 a, dvec3 b, dvec3 c, dvec3 n) {
   const double nn = dot(n, n);
   const double u = dot(cross(b - p, c - p), n) / nn;
@@ -33,7 +33,7 @@ double along(dvec3 p, dvec3 a, dvec3 b) {
   return ee > 0.0 ? std::clamp(dot(p - a, e) / ee, 0.0, 1.0) : 0.0;
 }
 
-// Barycentrics of the triangle's point nearest to the foot, if the foot is not farther beside it than `beside` [m].
+// Barycentrics of the triangle's point nearest to the foot, if the foot is at most `beside` [m] outside.
 std::optional<dvec3> foot(dvec3 p, const std::array<dvec3, 3>& x, dvec3 n, double beside) {
   const dvec3 w = barycentric_of(p, x[0], x[1], x[2], n);
   if (smallest(w) >= -kSlack) return clamp_inside(w);
@@ -79,7 +79,7 @@ std::optional<Meeting> meet_triangle(const Moving& vertex, const std::array<Movi
   const double area1 = length(n1);
   m.end_gap = area1 > 0.0 ? dot(n1, end - x1[0]) / area1 : m.gap;
 
-  // What does not travel as far as the gap does not cross it.
+  // A vertex that travels less than the gap does not cross it.
   double travel = 0.0;
   for (const Moving& c : triangle) travel = std::max(travel, length(vertex.d - c.d));
   if (m.gap >= 0.0 && m.gap <= travel) {

@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kRelax = 1.6;     // [1] of a step
+constexpr double kRelax = 1.6;     // [1] over-relaxation factor
 constexpr double kFirstRho = 0.1;  // [1] of the mean diagonal of a contact's block
 constexpr int kBalance = 50;       // iterations between changes of rho
 constexpr double kBalanced = 10.0, kBalanceBy = 3.0;
@@ -25,11 +25,11 @@ Eigen::Vector3d onto_cone(const Eigen::Vector3d& v, double mu) {
 struct Admm {
   ContactSweeps& sweeps;
   const Eigen::Index rows = 3 * sweeps.problem().count;
-  Eigen::SparseMatrix<double> W{rows, rows};  // in the contacts' own axes
+  Eigen::SparseMatrix<double> W{rows, rows};  // in the contacts' axes
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor;
-  Vector scale = Vector::Zero(rows);                     // [1/kg] a contact's share of rho
+  Vector scale = Vector::Zero(rows);                     // [1/kg] a contact's factor of rho
   Vector bias = scale, u = scale, x = scale, z = scale;  // [m/s], [N s]
-  Vector s = scale;                                      // [N s] of what is left apart, summed and scaled
+  Vector s = scale;                                      // [N s] scaled dual variable
   double rho = kFirstRho;
 
   int count() const { return sweeps.problem().count; }
@@ -40,7 +40,7 @@ struct Admm {
     }
   }
 
-  // False: a factor would cost more than `work` multiplications.
+  // False: the factorisation would cost more than `work` multiplications.
   bool fill(double work) {
     std::vector<Eigen::Triplet<double>> entries;
     Vector column(rows), own(rows);
@@ -59,7 +59,7 @@ struct Admm {
       }
     W.setFromTriplets(entries.begin(), entries.end());
     for (int i = 0; i < count(); ++i) scale.segment<3>(3 * i).setConstant(W.diagonal().segment<3>(3 * i).sum() / 3.0);
-    scale = scale.cwiseMax(1e-9 * scale.maxCoeff());  // what cannot be pushed
+    scale = scale.cwiseMax(1e-9 * scale.maxCoeff());  // contacts that cannot be pushed
     return scale.minCoeff() > 0.0;
   }
   bool factorise() {
@@ -69,7 +69,7 @@ struct Admm {
     return factor.info() == Eigen::Success;
   }
 
-  // By how much Coulomb's law shifts the normal velocity.
+  // Shift of the normal velocity by Coulomb's law.
   double shift(int i) const { return sweeps.mu(i) * std::hypot(u[3 * i + 1], u[3 * i + 2]); }
   void start() {
     read(sweeps.problem().bias, bias);
@@ -80,7 +80,7 @@ struct Admm {
       s[3 * i] -= shift(i) / (rho * scale[3 * i]);
     }
   }
-  // Returns how far it still is from the end [m/s]: x from z, and z from itself before.
+  // Returns the residuals [m/s]: x against z, and z against the previous z.
   dvec2 iterate() {
     Vector right = rho * scale.cwiseProduct(z - s) - bias;
     for (int i = 0; i < count(); ++i) right[3 * i] -= shift(i);

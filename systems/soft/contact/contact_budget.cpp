@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-// act() on what is left to each of a contact's bodies that moves.
+// Calls act() on the remaining budget of each movable body of a contact.
 template <class Act>
 void for_each_side(const std::vector<std::unique_ptr<Body>>& bodies, const ContactPoint& c, std::vector<int>& left,
                    Act&& act) {

@@ -1,4 +1,5 @@
-// A bound on what one body's contacts may cost, far above what scenes need: a soft body answers three times a contact.
+// A bound on the cost of one body's contacts, far above the needs of scenes: a soft body solves for three columns per
+// contact.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +10,15 @@
 
 namespace pliant {
 
-inline constexpr int kMostOfBody = 256;  // contacts of a body that moves; more: a step's cost grows with their square
+inline constexpr int kMostOfBody = 256;  // contacts of a movable body; more: a step's cost grows with their square
 
-// Leaves every body that moves at most `most` contacts, in their order. Those that carried the largest impulses in the
-// last step stay first, then the deepest. Returns how many were cut.
+// Limits every movable body to `most` contacts, keeping their order. Contacts with the largest impulses in the last
+// step are preferred, then the deepest. Returns the number of contacts cut.
 std::size_t cut_contacts(const std::vector<std::unique_ptr<Body>>& bodies, int most,
                          std::vector<ContactPoint>& contacts);
 
-// The same where contacts join those of a solve: the first `known` stay, of the others, in their order, those for which
-// every body has room. Returns how many were cut.
+// The same for contacts that join a solve. The first `known` stay; of the others, in order, those for which every body
+// has room. Returns the number of contacts cut.
 std::size_t cut_late_contacts(const std::vector<std::unique_ptr<Body>>& bodies, int most, std::size_t known,
                               std::vector<ContactPoint>& contacts);
 

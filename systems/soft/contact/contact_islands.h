@@ -1,6 +1,6 @@
-// Which contacts move each other. Contacts on one body that moves, or that yields, are joined; a fixed body joins
-// nothing. What is not joined is solved apart: its own residual, its own stop, and W grows with the contacts of an
-// island, not of the level.
+// Partition of contacts into coupled islands. Contacts on one movable or yielding body are coupled; a fixed body
+// couples nothing. Islands are solved separately: each has its residual and stopping criterion, and W grows with the
+// contacts of an island, not of the level.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,8 @@
 
 namespace pliant {
 
-// Fills problem.part_count, place and each part's members and size; one island: no parts. Islands are numbered by their
-// first contact, and contacts keep their order in them.
+// Fills problem.part_count, place and each part's members and size; a single island has no parts. Islands are numbered
+// by their first contact; contacts keep their order in them.
 void split_contacts(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
                     ContactProblem& problem);
 

@@ -9,17 +9,17 @@
 namespace pliant {
 namespace {
 
-constexpr int kSweepsBetween = 10, kMostBetween = 20;  // sweeps to a Newton step; the latter after failures
-constexpr int kDense = 240, kMostUnknowns = 900;       // up to the former a dense system is the faster one
-constexpr double kMostWork = 4e7;                      // [1] multiplications in all: about 5 ms
-constexpr int kDrops = 4;                              // times that a step is found anew
-constexpr double kTogether = 2.0;                      // [1] contacts met within so many times the first are dropped
-// [1] of the diagonal. Less at first, and rigid bodies that meet at more contacts than they have degrees of freedom get
-// impulses without end as long as one contact is taken for closed that opens.
+constexpr int kSweepsBetween = 10, kMostBetween = 20;  // sweeps before a Newton step; the latter after failures
+constexpr int kDense = 240, kMostUnknowns = 900;       // up to the former a dense solver is faster
+constexpr double kMostWork = 4e7;                      // [1] multiplications in total: about 5 ms
+constexpr int kDrops = 4;                              // number of times that a step is recomputed
+constexpr double kTogether = 2.0;                      // [1] contacts reached within this multiple of the first
+// [1] of the diagonal. With less at first, rigid bodies with more contacts than degrees of freedom get unbounded
+// impulses while an opening contact is assumed closed.
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-9, kMostDamping = 1e-2;
 constexpr double kHarder = 30.0, kEasier = 0.1;  // [1] damping after a failure, after a success
-constexpr double kFalls = 0.9;                   // [1] of the residual: a step that achieves less has failed
-constexpr double kOnBorder = 1.0 - 1e-9;         // [1] of the cone: there a contact slides
+constexpr double kFalls = 0.9;                   // [1] of the residual: a step with less reduction has failed
+constexpr double kOnBorder = 1.0 - 1e-9;         // [1] of the cone: beyond it a contact slides
 
 double mean_tangential(const dmat3& w) {
   return 0.5 * (w[1][1] + w[2][2]);
@@ -94,7 +94,7 @@ bool ContactNewton::find_step() {
   for (int again = 0;; ++again) {
     if (solves_ == most_ || !choose_unknowns()) return false;
     const bool solved = solve_system();
-    if (work_ > kMostWork) most_ = solves_;  // no more of them in this solve
+    if (work_ > kMostWork) most_ = solves_;  // no more Newton steps in this solve
     if (!solved) return false;
     ++solves_;
     for (int c = 0; c < unknowns_; ++c)
@@ -106,8 +106,8 @@ bool ContactNewton::find_step() {
 }
 
 // Unknown c moves the impulse of contact[c] along way[c]; its equation is test[c] . u + extra[c] x_c = right[c]. All in
-// W's axes. base: the impulses that it starts from, with nothing of what is dropped and, of what slides, friction along
-// z as large as it must be.
+// W's axes. base: the initial impulses. They are zero for dropped contacts; for sliding ones, friction along z has its
+// required magnitude.
 bool ContactNewton::choose_unknowns() {
   ContactProblem& p = s_.problem();
   unknowns_ = 0;
@@ -130,7 +130,7 @@ bool ContactNewton::choose_unknowns() {
       };
       if (size > 0.0 && length(dvec2(l.y, l.z)) >= kOnBorder * mu * l.x) {
         const dvec2 t = z / size, aside(-t.y, t.x);
-        const double straightens = std::min(1.0, mu * wt * l.x / size);  // how much of u aside turns z
+        const double straightens = std::min(1.0, mu * wt * l.x / size);  // share of the transverse u that rotates z
         const double along = mu * l.x, across = dot(aside, dvec2(l.y, l.z));
         base = dvec3(l.x, along * t + across * aside);
         const dvec3 q(0.0, aside);
@@ -184,7 +184,7 @@ bool ContactNewton::solve_system() {
 }
 
 bool ContactNewton::drop_pulling() {
-  const auto met = [&](int c) {  // [1] of the step: where the contact ceases to push
+  const auto met = [&](int c) {  // [1] of the step: where the contact stops pushing
     const dvec3 way = s_.to_own(m_.contact[c], &m_.way[c].x);
     const double from = s_.to_own(m_.contact[c], &m_.base[m_.contact[c]].x).x, by = m_.right[c] * way.x;
     return way.x > 0.5 && from + by < 0.0 ? from / -by : 2.0;

@@ -12,11 +12,11 @@
 namespace pliant {
 namespace {
 
-// ADMM: where half of the sweeps did not settle it, or, of many contacts, after a few sweeps. Newton steps on so many
-// cost more than it does.
+// ADMM runs if half of the sweeps did not converge, or, with many contacts, after a few sweeps: Newton steps on that
+// many cost more than ADMM.
 constexpr int kLarge = 140, kLargeSweeps = 10;
 constexpr AdmmLimits kMuch{.iterations = 100, .work = 1e7};    // about 10 ms,
-constexpr AdmmLimits kLittle{.iterations = 100, .work = 2e6};  // and 2 ms: a tool's contacts all know each other
+constexpr AdmmLimits kLittle{.iterations = 100, .work = 2e6};  // and 2 ms: a tool's contacts are all coupled
 
 SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
   SweepReport report;
@@ -61,7 +61,7 @@ SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
   return report;
 }
 
-// Between the whole and one of its parts.
+// Exchange between the whole problem and one of its parts.
 void hand_out(const ContactProblem& whole, ContactProblem& part) {
   part.own.resize(whole.own.empty() ? 0 : part.members.size());
   for (std::size_t k = 0; k < part.members.size(); ++k) {

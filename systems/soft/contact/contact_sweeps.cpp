@@ -8,14 +8,14 @@
 namespace pliant {
 namespace {
 
-// A diagonal smaller than this share of the largest one cannot be pushed: such contacts are left alone.
+// A contact with a diagonal smaller than this share of the largest one cannot be pushed; it is skipped.
 constexpr double kImmovable = 1e-14;
 
 double length2(double x, double y) {
   return std::sqrt(x * x + y * y);
 }
 
-// The largest point of the segment from 0 to (x, y) inside the disc.
+// Projects (x, y) radially onto the disc.
 void clamp_to_disc(double& x, double& y, double radius) {
   const double l = length2(x, y);
   if (l <= radius) return;
@@ -23,12 +23,12 @@ void clamp_to_disc(double& x, double& y, double radius) {
   x *= s, y *= s;
 }
 
-// One contact with all others held: u = w lambda + c.
+// One contact with all others fixed: u = w lambda + c.
 struct LocalSolve {
   dmat3 w;       // symmetric
   dvec3 c;       // [m/s]
   double mu;     // [1]
-  dvec3 lambda;  // [N s] guess in, answer out
+  dvec3 lambda;  // [N s] in: guess; out: solution
 
   bool stick() {
     const double det = glm::determinant(w);
@@ -38,8 +38,8 @@ struct LocalSolve {
     lambda = held;
     return true;
   }
-  // methods.md 2.5, a few times over: the normal impulse that stops the approach, then a step of friction against the
-  // slip, scaled back to the cone. It ends where Coulomb holds; what is left is left to the next sweep.
+  // methods.md 2.5, a few iterations: the normal impulse that stops the approach, then a friction step against the
+  // slip, scaled back to the cone. It stops when Coulomb's law holds; the next sweep reduces the remainder.
   void slide() {
     const double trace = w[1][1] + w[2][2];
     const double step = trace > 0.0 ? 2.0 / trace : 0.0;
@@ -84,8 +84,8 @@ dmat3 ContactSweeps::read_block(int i) const {
   return turned_ ? glm::transpose(p_.own[i]) * block * p_.own[i] : block;
 }
 
-// Keeping u whole costs the same as forming each contact's three rows anew (W is symmetric), vectorises without
-// reordering a sum, and contacts that do not change cost nothing.
+// Updating the whole u costs the same as recomputing each contact's three rows (W is symmetric). It vectorises without
+// reordering a sum, and unchanged contacts cost nothing.
 void ContactSweeps::add_columns(int i, dvec3 d, double* out) const {
   if (p_.sparse.first.empty()) {
     add_three(out, p_.W.data() + 3 * i * stride_, stride_, 3 * p_.count, d.x, d.y, d.z);

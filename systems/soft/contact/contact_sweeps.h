@@ -1,5 +1,5 @@
-// A contact problem under way: its impulses and the velocities that belong to them, block Gauss-Seidel sweeps over its
-// contacts, and how far it is from the contact laws. Vectors of a contact come in its own axes: normal, two tangents.
+// A contact problem being solved: its impulses and velocities, block Gauss-Seidel sweeps over its contacts, and its
+// residual. Vectors of a contact are in its axes: normal, two tangents.
 #pragma once
 
 #include "systems/soft/contact/contact_problem.h"
@@ -11,24 +11,23 @@ class ContactSweeps {
   // One problem without parts.
   explicit ContactSweeps(ContactProblem& problem);
 
-  // A guess may come from another problem: whatever cannot be is dropped. Then u = W lambda + bias.
+  // The guess may come from another problem: infeasible parts are dropped. Then u = W lambda + bias.
   void start();
-  // u = W lambda + bias, of whatever lambda is.
+  // u = W lambda + bias, for the current lambda.
   void refresh_velocity();
-  // Every impulse into its cone.
+  // Projects every impulse into its cone.
   void project();
   void sweep() {
     for (int i = 0; i < p_.count; ++i) relax(i);
   }
   double residual() const;  // [m/s] SweepReport::residual
-  // [m/s] Of the contacts that close without impulses: what is still far away does not say how exact the others must
-  // be.
+  // [m/s] Over contacts that close without impulses: distant contacts must not affect the accuracy of the others.
   double fastest() const;
 
-  // Contacts that have come to the border of the static cone and slip go on with the sliding coefficient. Decided only
-  // on settled impulses: on the way there every contact with a small normal impulse seems to slip. How many changed?
+  // Contacts at the border of the static cone that slip switch to the sliding coefficient. Only with converged
+  // impulses: before, every contact with a small normal impulse seems to slip. Returns the number of changes.
   int begin_slips(double slowest);
-  // Those that slipped and now lie inside the sliding cone hold again.
+  // Slipping contacts that are now inside the sliding cone stick again.
   void end_slips();
 
   ContactProblem& problem() { return p_; }
@@ -46,17 +45,17 @@ class ContactSweeps {
     return turned_ ? x * p_.own[i] : x;
   }
   dvec3 from_own(int i, dvec3 v) const { return turned_ ? p_.own[i] * v : v; }
-  // out += what `impulse`, in W's axes, of contact i does to every contact's velocity.
+  // out += change of every contact's velocity by `impulse`, in W's axes, of contact i.
   void add_columns(int i, dvec3 impulse, double* out) const;
 
  private:
   void relax(int i);
   double residual_of(int i) const;
-  dmat3 read_block(int i) const;  // W's, in its own axes
+  dmat3 read_block(int i) const;  // of W, in the contact's axes
 
   ContactProblem& p_;
   std::ptrdiff_t stride_;
-  bool turned_;  // contacts have axes of their own
+  bool turned_;  // contacts have axes different from W's
 };
 
 }  // namespace pliant

@@ -9,8 +9,8 @@
 namespace pliant {
 namespace {
 
-constexpr int kRoundsUnsettled = 2;  // rounds after which a solution that did not settle is not built upon
-constexpr int kMostRounds = 8;  // in which contacts that a solution brings about join; a round reaches one body further
+constexpr int kRoundsUnsettled = 2;  // rounds after which a solution that did not converge is not extended
+constexpr int kMostRounds = 8;       // in which contacts found by a solution join; a round reaches one body further
 
 // The contacts of each body.
 void sort_by_body(const std::vector<ContactPoint>& contacts, std::vector<BodyResponse>& of) {
@@ -22,7 +22,7 @@ void sort_by_body(const std::vector<ContactPoint>& contacts, std::vector<BodyRes
   }
 }
 
-// Its sides of its contacts. Side a feels +lambda, side b -lambda; of a self-contact both are this body's.
+// A body's sides of its contacts. Side a gets +lambda, side b -lambda; both sides of a self-contact are this body's.
 void list_sides(std::uint32_t index, const std::vector<ContactPoint>& contacts, const BodyResponse& response,
                 std::vector<PushedSide>& sides) {
   sides.clear();
@@ -35,7 +35,7 @@ void list_sides(std::uint32_t index, const std::vector<ContactPoint>& contacts, 
   }
 }
 
-// How the k-th of a body's contacts moves by what pushes the m-th, k >= m.
+// Motion of the k-th of a body's contacts per impulse at the m-th, k >= m.
 Eigen::Matrix3d answer(const BodyResponse& response, Eigen::Index k, Eigen::Index m) {
   const Rows& lever = response.compliance.lever;
   Eigen::Matrix3d block = response.compliance.held.block<3, 3>(3 * k, 3 * m);
@@ -64,7 +64,7 @@ void find_compliances(const std::vector<std::unique_ptr<Body>>& bodies, const st
   }
 }
 
-// W of all islands from what the bodies answer. [1/kg]
+// Assembles W of all islands from the bodies' responses. [1/kg]
 class OperatorFiller {
  public:
   OperatorFiller(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
@@ -97,7 +97,7 @@ class OperatorFiller {
   }
   const ContactPoint& at(int contact) const { return contacts_[static_cast<std::size_t>(contact)]; }
 
-  // Where most blocks are zero and there are many: a pile, not a hand.
+  // Many contacts and mostly zero blocks: a pile, not a hand.
   bool is_sparse(const std::vector<int>& members) const {
     if (members.size() <= kAlwaysDense) return false;
     std::size_t blocks = 0;
@@ -113,7 +113,7 @@ class OperatorFiller {
     w.topLeftCorner(rows, rows).setZero();
   }
 
-  // Body by body the lower triangles: contacts are in ascending order, and the mirror image is the same.
+  // The lower triangles body by body: contacts are in ascending order; the upper ones are mirrored.
   void fill_dense() {
     for (std::uint32_t b = 0; b < bodies_.size(); ++b) {
       const BodyResponse& response = delassus_.of[b];
@@ -196,8 +196,8 @@ class OperatorFiller {
         to[column * run->rows + row] += mirrored ? block(column, row) : block(row, column);
   }
 
-  static constexpr std::size_t kAlwaysDense = 96;  // contacts: their W fits into a processor's cache
-  static constexpr double kSparse = 0.5;           // [1] of the blocks: fewer are not zero
+  static constexpr std::size_t kAlwaysDense = 96;  // contacts: their W fits into a CPU cache
+  static constexpr double kSparse = 0.5;           // [1] of the blocks: sparse if fewer are non-zero
 
   const std::vector<std::unique_ptr<Body>>& bodies_;
   const std::vector<ContactPoint>& contacts_;
@@ -206,23 +206,22 @@ class OperatorFiller {
   std::vector<int> everyone_;
 };
 
-// [m/s] J v* of one side: the collision mesh is interpolated linearly by every body.
+// [m/s] J v* of one side: every body interpolates its collision mesh linearly.
 dvec3 free_velocity(const Body& body, const SurfacePoint& point) {
   const uvec3 t = body.collision_mesh->triangles[point.triangle];
   return point.barycentric.x * body.surface_velocity[t.x] + point.barycentric.y * body.surface_velocity[t.y] +
          point.barycentric.z * body.surface_velocity[t.z];
 }
 
-// [m] How much less than its gap a contact is to close: what of a penetration this step does not undo, if nothing
-// yields.
+// [m] Part of a penetration that this step does not correct, if nothing yields.
 double still_inside(const ContactPoint& c, std::size_t i, double beta, const Delassus& delassus) {
   const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
   const bool yields = delassus.compliance.size() > 0 && delassus.compliance(row, row) > 0.0;
   return yields ? 0.0 : (1.0 - beta) * c.depth;
 }
 
-// The contacts' laws become those of the normals and gaps that they will have. An end gap was predicted with the
-// velocities of the solution that there is, and changes with what a new one does to them.
+// Updates the contacts' laws to their predicted normals and gaps. An end gap was predicted with the velocities of the
+// current solution, and changes with a new one.
 void look_again(const std::vector<ContactPoint>& contacts, double T, double beta, const Delassus& delassus,
                 ContactProblem& problem) {
   problem.own.assign(contacts.size(), dmat3(1.0));
@@ -233,7 +232,7 @@ void look_again(const std::vector<ContactPoint>& contacts, double T, double beta
     const double inside = still_inside(c, i, beta, delassus);
     problem.own[i] = leaning_axes(c.lean);
     const dvec3 normal = problem.own[i][0];
-    // Of the velocities alone, those of the solution and those without impulses.
+    // Without gaps: velocities of the solution, and without impulses.
     problem.velocity[row] -= (c.gap + inside) / T, problem.bias[row] -= (c.gap + inside) / T;
     const double closing =
         dot(normal, dvec3(problem.velocity[row], problem.velocity[row + 1], problem.velocity[row + 2]));

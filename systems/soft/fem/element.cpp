@@ -12,8 +12,8 @@ namespace pliant {
 namespace {
 
 constexpr double kFlat = 1e-9;       // [1] volume over the longest edge cubed
-constexpr int kNewtonSteps = 4;      // before an element is looked at by itself
-constexpr double kConverged = 1e-6;  // [rad] a step this small leaves an error of its square
+constexpr int kNewtonSteps = 4;      // before an element is treated individually
+constexpr double kConverged = 1e-6;  // [rad] a smaller step leaves an error of its square
 constexpr double kCertain = 1e-7;    // [1] as in polar.cpp
 
 PLIANT_KERNEL void deform(const ElementPack& pack, ElementVisit& v) {

@@ -47,7 +47,7 @@ Modes find_modes(const PivotedFactor& factor, const Eigen::MatrixXd& mass, const
   inertia = triangle.solve(inertia.transpose().eval());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inertia);
 
-  // Heaviest, that is slowest, first; m above 1 / inertia() is rounding.
+  // Largest mass, that is slowest, first; m above 1 / inertia() is rounding.
   Eigen::Index kept = 0;
   out.frequency2.resize(size);
   out.step_share.resize(size);

@@ -9,9 +9,9 @@ namespace pliant {
 namespace {
 
 constexpr int kPolarSteps = 6;
-constexpr double kPolarConverged = 1e-6;  // [rad] a step this small leaves an error of its square
-constexpr double kCertainPolar = 1e-7;    // [1] smallest det H over (tr H / 3)^3 that still counts as positive
-constexpr double kTie = 1e-9;  // [1] of the largest eigenvalue: how close eigenvalues must be to count as equal
+constexpr double kPolarConverged = 1e-6;  // [rad] a smaller step leaves an error of its square
+constexpr double kCertainPolar = 1e-7;    // [1] smallest det H over (tr H / 3)^3 that counts as positive
+constexpr double kTie = 1e-9;             // [1] of the largest eigenvalue: tolerance for equal eigenvalues
 
 using Matrix4 = std::array<std::array<double, 4>, 4>;
 
@@ -64,7 +64,7 @@ void extract_rotation_globally(const dmat3& F, dquat& q) {
   diagonalise(N, V);
   double largest = N[0][0], size = 0;
   for (int i = 0; i < 4; ++i) largest = std::max(largest, N[i][i]), size = std::max(size, std::abs(N[i][i]));
-  // The guess, projected onto all eigenvectors that tie for the largest eigenvalue.
+  // Projects the guess onto all eigenvectors that tie for the largest eigenvalue.
   const std::array<double, 4> guess{q.w, q.x, q.y, q.z};
   std::array<double, 4> answer{};
   int first = -1;
@@ -77,7 +77,7 @@ void extract_rotation_globally(const dmat3& F, dquat& q) {
   }
   double norm2 = 0;
   for (const double x : answer) norm2 += x * x;
-  if (norm2 < 1e-12) {  // the guess says nothing
+  if (norm2 < 1e-12) {  // the guess is orthogonal to all
     for (int k = 0; k < 4; ++k) answer[k] = V[k][first];
     norm2 = 1;
   }
@@ -92,7 +92,7 @@ void extract_rotation(const dmat3& F, dquat& q) {
     const dvec3 a(B[1][2] - B[2][1], B[2][0] - B[0][2], B[0][1] - B[1][0]);
     const double xx = trace - B[0][0], yy = trace - B[1][1], zz = trace - B[2][2];
     const double xy = -0.5 * (B[0][1] + B[1][0]), xz = -0.5 * (B[0][2] + B[2][0]), yz = -0.5 * (B[1][2] + B[2][1]);
-    // H^-1 by its adjugate, whose leading entries are the minors that tell whether H is positive definite.
+    // H^-1 by its adjugate, whose leading entries are the minors that decide whether H is positive definite.
     const double cxx = yy * zz - yz * yz, cxy = xz * yz - xy * zz, cxz = xy * yz - xz * yy;
     const double czz = xx * yy - xy * xy, cyz = xy * xz - xx * yz, cyy = xx * zz - xz * xz;
     const double det = xx * cxx + xy * cxy + xz * cxz;

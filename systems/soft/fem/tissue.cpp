@@ -10,7 +10,7 @@ namespace pliant {
 namespace {
 
 constexpr std::uint32_t kNoElement = 0xffffffffu;
-constexpr double kFeather = 1e-6;  // [1] of the mean: mass of a node that only flat elements hold, so that A is regular
+constexpr double kFeather = 1e-6;  // [1] of the mean: mass of a node with only flat elements, so that A is regular
 
 // `to` (row major) += p_i c_j^T + q_j c_i^T + d I, with p = V lambda c, q = V mu c, d = V mu b_i . b_j: one K'_ij.
 inline void add_block(double* __restrict to, dvec3 pi, dvec3 cj, dvec3 qj, dvec3 ci, double d) {
@@ -64,7 +64,7 @@ void Tissue::set_elasticity(double young, double poisson, double alpha, double b
 void Tissue::take_elements() {
   mass_.assign(mesh_.nodes.size(), 0.0);
   std::vector<Tet> tets = mesh_.tets;
-  for (Tet& tet : tets) std::sort(tet.begin(), tet.end());  // a pair then always stands in the upper triangle
+  for (Tet& tet : tets) std::sort(tet.begin(), tet.end());  // a pair is then always in the upper triangle
   std::sort(tets.begin(), tets.end());
   double total = 0.0;
   for (const Tet& tet : tets) {
@@ -98,7 +98,7 @@ void Tissue::lay_out() {
     for (std::uint32_t k = inner_.diagonal[row] + 1; k < inner_.first[row + 1]; ++k)
       inner_mirror_.push_back({k, inner_.find(inner_.column[k], row)});
 
-  // Pairs with a handle node that has no row of its own, sorted, each once; corner has its diagonal and both triangles.
+  // Pairs with a handle node that has no row, sorted, each once; corner has its diagonal and both triangles.
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
   const std::uint32_t end = mesh_.pinned_begin();
   std::vector<Pair> outer, corner;
@@ -177,7 +177,7 @@ void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) 
       add_blocks(pack, lane, *slots, scale, now);
       if (pack.node[lane][3] >= end) add_told(pack, lane, scale, now);
     }
-    // f_el + K' (x - begin): the stress of where the step began, turned as the guess is.
+    // f_el + K' (x - begin): the stress at the beginning of the step, with the rotations of the guess.
     if (begin) take_edges(pack, *begin, now), take_forces(pack, lambda_, mu_, now);
     for (std::size_t lane = 0; lane < pack.count; ++lane) add_forces(pack.node[lane], lane, now, T, end, right_);
   }
@@ -201,8 +201,8 @@ void Tissue::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& 
   }
 }
 
-// Pinned nodes have no rows: what A says of their velocities v goes to the right. sum_p K'_ip v_p is V sigma c_i of the
-// strain sym(sum_p v_p c_p^T).
+// Pinned nodes have no rows: A times their velocities v goes to the right-hand side. sum_p K'_ip v_p is V sigma c_i of
+// the strain sym(sum_p v_p c_p^T).
 void Tissue::add_told(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit) {
   const Tet& tet = pack.node[lane];
   dmat3 L(0);
@@ -214,7 +214,8 @@ void Tissue::add_told(const ElementPack& pack, std::size_t lane, const Scale& sc
     if (tet[i] < mesh_.pinned_begin()) add(right_, tet[i], -(sigma * lane_of(visit.c[i], lane)));
 }
 
-// Only upper blocks were added to. Diagonal ones are symmetric but for rounding; a solver may read either half.
+// Fills the lower blocks from the upper ones. Diagonal blocks are symmetric up to rounding; a solver may read either
+// half.
 void Tissue::mirror() {
   const auto even = [](Block& b) { b(1, 0) = b(0, 1), b(2, 0) = b(0, 2), b(2, 1) = b(1, 2); };
   for (const std::uint32_t k : inner_.diagonal) even(inner_.value[k]);

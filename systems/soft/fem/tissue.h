@@ -7,7 +7,7 @@
 //   eps = sym(sum x_i c_i^T) - I,  sigma = 2 mu eps + lambda tr(eps) I,  f_i = -V sigma c_i,
 //   K'_ij = V (lambda c_i c_j^T + mu (c_j c_i^T + (b_i . b_j) I)).
 // With R the exact polar factor f is minus the gradient of the energy V (mu |eps|^2 + lambda/2 tr(eps)^2) at any
-// deformation; K' leaves out how R turns, which keeps it positive semidefinite.
+// deformation. K' neglects the derivative of R, which keeps it positive semidefinite.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ namespace pliant {
 
 enum class Strain : std::uint8_t {
   kCorotational,
-  kLinear,  // R = I: for studies; right only while nothing turns
+  kLinear,  // R = I: for studies; valid only without rotation
 };
 
 struct TissueMaterial {
@@ -35,17 +35,16 @@ struct TissueMaterial {
 
 class Tissue {
  public:
-  // `moving`: leading nodes that have their own rows in the step (free ones; with spring attachment also the handle's).
-  // Nodes from there on move as they are told (position() and velocity() are written by their owner).
-  // A tetrahedron that is flat at rest (volume < 1e-9 of its longest edge cubed) has no stiffness: it would be
-  // infinite.
+  // `moving`: leading nodes with rows in the step (free ones; with spring attachment also the handle's). The motion of
+  // the other nodes is prescribed (their owner writes position() and velocity()). A tetrahedron that is flat at rest
+  // (volume < 1e-9 of its longest edge cubed) gets no stiffness: it would be infinite.
   Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_t moving);
 
-  // From the next assemble() on; the masses stay.
+  // Effective from the next assemble(); masses are kept.
   void set_elasticity(double young, double poisson, double alpha, double beta);
   const TissueMaterial& material() const { return material_; }
 
-  // [m], [m/s], world, per node. Writer: whoever steps this tissue.
+  // [m], [m/s], world, per node. Writer: the caller that steps this tissue.
   std::vector<dvec3>& position() { return x_; }
   std::vector<dvec3>& velocity() { return v_; }
   const std::vector<dvec3>& position() const { return x_; }
@@ -54,17 +53,17 @@ class Tissue {
   std::uint32_t moving() const { return moving_; }
 
   // Rotations, forces and matrices at the current positions, for a step T [s] under gravity [m/s2].
-  // inner: rows and columns of moving nodes; outer: A_ij for moving i and handle nodes j (those between moving and the
-  // pinned), as a list; corner: A_ij among handle nodes; right: M v0 + T (f_el + f_ext) for all non-pinned nodes (3
-  // each), where terms of K' and D on handle nodes outside `moving` stay on the left (they are unknowns of the handle)
-  // and those on pinned nodes, which have a velocity when somebody moves them, are in it.
-  // `begin`: positions at the beginning of the step, when position() already is a guess of its end (iterations of the
-  // non-linear step): f_el is then linearised about the guess, and velocity() still is v0.
+  // inner: rows and columns of moving nodes.
+  // outer: A_ij for moving i and handle nodes j (those between moving and the pinned), as a list.
+  // corner: A_ij among handle nodes.
+  // right: M v0 + T (f_el + f_ext) for all non-pinned nodes (3 each). Terms of K' and D on handle nodes outside
+  // `moving` stay on the left (they are unknowns of the handle); those on pinned nodes, which may have prescribed
+  // velocities, are included.
+  // `begin`: positions at the beginning of the step, if position() already is a guess of its end (iterations of the
+  // non-linear step). f_el is then linearised about the guess, and velocity() still is v0.
   void assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin = nullptr);
   const BlockMatrix& inner() const { return inner_; }
-  BlockMatrix& inner() {
-    return inner_;
-  }  // its owner adds what ties nodes to a handle; the next assemble() starts anew
+  BlockMatrix& inner() { return inner_; }  // its owner adds the coupling to a handle; the next assemble() starts anew
   struct Entry {
     std::uint32_t row, column;  // nodes
     Block value;
@@ -74,13 +73,13 @@ class Tissue {
   const Vector& right() const { return right_; }
 
   double elastic_energy() const;  // [J] at the current positions
-  // [N] of the last assemble(), 3 per node, all nodes; on pinned nodes: minus what holds them needs to give.
+  // [N] of the last assemble(), 3 per node, all nodes; on pinned nodes: minus the reaction force.
   const Vector& elastic_force() const { return force_; }
 
  private:
-  // Where the blocks of a pair of an element's nodes go: of inner, outer or corner, as the nodes say.
+  // Indices of the blocks of an element's node pairs: into inner, outer or corner, depending on the nodes.
   using Slots = std::array<std::uint32_t, 10>;  // pairs (0,0) (0,1) (0,2) (0,3) (1,1) (1,2) (1,3) (2,2) (2,3) (3,3)
-  struct Scale;                                 // what one assemble() multiplies with
+  struct Scale;                                 // factors of one assemble()
 
   void take_elements();
   void lay_out();
@@ -98,9 +97,9 @@ class Tissue {
   std::uint32_t moving_ = 0;
   std::vector<dvec3> x_, v_;
   std::vector<double> mass_;
-  std::vector<ElementPack> packs_;  // stiff elements by their nodes, ascending: what lies together is added together
+  std::vector<ElementPack> packs_;  // stiff elements by their nodes, ascending, for locality of assembly
   std::vector<Slots> slots_;        // of each element
-  std::vector<std::array<std::uint32_t, 2>> inner_mirror_, corner_mirror_;  // an upper block and its lower twin
+  std::vector<std::array<std::uint32_t, 2>> inner_mirror_, corner_mirror_;  // an upper block and its lower counterpart
   BlockMatrix inner_;
   std::vector<Entry> outer_, corner_;
   Vector right_, force_;

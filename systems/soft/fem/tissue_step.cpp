@@ -12,7 +12,8 @@ dvec3 node_of(const Vector& v, std::size_t node) {
   return {v[i], v[i + 1], v[i + 2]};
 }
 
-// What the system has on the right: handle nodes without rows are told where to go, so their terms move over.
+// The system's right-hand side: the motion of handle nodes without rows is prescribed, so their terms move to the
+// right.
 Vector right_side(const Tissue& tissue, double h, const std::vector<dvec3>* push) {
   Vector right = tissue.right().head(3 * tissue.moving());
   for (const Tissue::Entry& entry : tissue.outer()) {
@@ -28,7 +29,7 @@ Vector right_side(const Tissue& tissue, double h, const std::vector<dvec3>* push
 }  // namespace
 
 TissueReport step_tissue(Tissue& tissue, LinearSolver& solver, double T, dvec3 gravity, const TissueStep& step) {
-  // The midpoint rule is an implicit Euler step of half the length and the same again without asking.
+  // The midpoint rule is an implicit Euler step of half the length, then an extrapolation by the same amount.
   const bool midpoint = step.scheme == Scheme::kMidpoint;
   const double h = midpoint ? T / 2 : T;
   const std::vector<dvec3> begin = tissue.position();

@@ -1,6 +1,6 @@
-// Conjugate gradients for a right-hand side or two, a factor for many: each step is begun as the last one would best
-// have been, and the other method steps in when it turns out otherwise. Measured on one core, clamped beams of 160 /
-// 504 / 2,106 / 7,774 nodes (540 / 2,100 / 10k / 40k tetrahedra), a step of 10 ms, ms:
+// Conjugate gradients for one or two right-hand sides, a factor for many. Each step begins with the method that would
+// have been best for the last one; the other takes over if the prediction was wrong. Measured on one core, clamped
+// beams of 160 / 504 / 2,106 / 7,774 nodes (540 / 2,100 / 10k / 40k tetrahedra), a step of 10 ms, ms:
 //   factorise and solve one:          0.25 /  2.1 /   49 /   725
 //   conjugate gradients to 1e-9, one: 0.23 /  0.9 /  5.3 /    27   (bench/soft_solver.cpp)
 #pragma once

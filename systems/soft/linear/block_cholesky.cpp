@@ -23,7 +23,7 @@ void BlockCholesky::analyse(const BlockMatrix& a) {
   std::size_t factor = 0, top = 0, highest = 0;
   flops_ = 0;
   int most_rows = 0, most_columns = 0;
-  std::vector<std::size_t> waiting;  // strips of updates on the stack, as factorise() will have them
+  std::vector<std::size_t> waiting;  // strips of updates on the stack, as in factorise()
   for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
     const Supernode& node = e.supernodes[s];
     Front& f = fronts_[s];
@@ -102,7 +102,7 @@ void BlockCholesky::assemble(const Front& f, const BlockMatrix& a, double* panel
   }
 }
 
-// What a child left, added to its parent's panel and triangle, column by column.
+// Adds a child's update to its parent's panel and triangle, column by column.
 void BlockCholesky::add_update(const Front& child, const double* update, const Front& parent, double* panel,
                                double* triangle) {
   const int above = child.columns / kStrip, parent_above = parent.columns / kStrip;
@@ -178,7 +178,7 @@ void BlockCholesky::solve(const Vector& b, Vector& x) const {
     for (std::uint32_t d = 0; d < 3; ++d) x[3 * old_of_new_[i] + d] = w[3 * i + d];
 }
 
-// Eight columns at a time. A subtree in which no right-hand side has numbers is left out on the way up.
+// Eight columns at a time. Subtrees without non-zero right-hand sides are skipped in the forward substitution.
 void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
   if (columns.cols() == 1) {
     Vector x;
@@ -207,7 +207,8 @@ void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
   }
 }
 
-// One front's forward substitution in a pack of eight right-hand sides: its own rows of x, and what they leave below.
+// One front's forward substitution for a pack of eight right-hand sides: its rows of x, and its update of the rows
+// below.
 void BlockCholesky::forward_pack(const Front& f, Strip* x) const {
   std::copy_n(x + f.first, f.columns, local_.data());
   std::fill(local_.data() + f.columns, local_.data() + f.strips * kStrip, Strip{});
@@ -217,9 +218,9 @@ void BlockCholesky::forward_pack(const Front& f, Strip* x) const {
     for (int l = 0; l < kStrip; ++l) x[f.below[i]].lane[l] += local_[static_cast<std::size_t>(f.columns) + i].lane[l];
 }
 
-// B^T A^-1 B = Y^T Y with Y = L^-1 B: no substitution backwards, and Y has numbers only on the way from B's rows to the
-// roots of the elimination tree. Threes stand in the order in which their first rows are eliminated, so that few packs
-// of eight columns meet in a front far from the roots.
+// B^T A^-1 B = Y^T Y with Y = L^-1 B. It needs no backward substitution, and Y is non-zero only on the paths from B's
+// rows to the roots of the elimination tree. Triples are sorted by the elimination order of their first rows, so that
+// few packs of eight columns share a front far from the roots.
 void BlockCholesky::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const {
   const std::vector<Eigen::Index> place = place_columns(b);
   const auto packs = static_cast<std::size_t>((3 * b.count() + kStrip - 1) / kStrip);
@@ -238,7 +239,7 @@ void BlockCholesky::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) con
       }
     }
 
-  std::vector<std::size_t> here;  // packs with numbers in this front
+  std::vector<std::size_t> here;  // packs with non-zeros in this front
   for (std::size_t s = 0; s < fronts_.size(); ++s) {
     const Front& f = fronts_[s];
     here.clear();
@@ -267,7 +268,7 @@ void BlockCholesky::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) con
     }
 }
 
-// Where each three's columns go.
+// Column index of each triple.
 std::vector<Eigen::Index> BlockCholesky::place_columns(const BlockColumns& b) const {
   std::vector<std::pair<std::uint32_t, Eigen::Index>> order;  // first row, three
   for (Eigen::Index three = 0; three < b.count(); ++three) {
@@ -282,7 +283,7 @@ std::vector<Eigen::Index> BlockCholesky::place_columns(const BlockColumns& b) co
   return place;
 }
 
-// x_ = up to eight columns in the factor's order; touched_: fronts in which one of them has numbers.
+// x_ = up to eight columns in the factor's order; touched_: fronts in which one of them is non-zero.
 void BlockCholesky::take_columns(Eigen::Ref<const Rows> some) const {
   touched_.resize(fronts_.size());
   for (std::uint32_t s = 0; s < fronts_.size(); ++s) {

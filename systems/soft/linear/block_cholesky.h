@@ -1,8 +1,8 @@
-// Sparse Cholesky factor A = L L^T of 3x3 blocks by the multifrontal method (Duff and Reid 1983; Liu 1992): each
-// supernode of the elimination tree gathers its columns of A and what its children leave, factorises its dense panel
+// Sparse Cholesky factor A = L L^T of 3x3 blocks by the multifrontal method (Duff and Reid 1983; Liu 1992). Each
+// supernode of the elimination tree assembles its columns of A and its children's updates, factorises its dense panel
 // and leaves an update for its parent. All arithmetic is dense (panel_kernels.h). Chosen over the left-looking method
-// for its simpler memory traffic; the order of operations is fixed by the pattern, so bits repeat.
-// One thread at a time: solving uses scratch memory of the solver.
+// for its simpler memory traffic. The pattern fixes the order of operations, so results repeat to the bit. One thread
+// at a time: solving uses scratch memory of the solver.
 #pragma once
 
 #include <vector>
@@ -28,17 +28,17 @@ class BlockCholesky final : public LinearSolver {
   struct alignas(64) Strip {
     double lane[kStrip];
   };
-  // A block of A on or below the diagonal, and where it goes in its panel.
+  // A block of A on or below the diagonal, and its place in its panel.
   struct Source {
     std::uint32_t value, row, column;
   };
   struct Front {
     std::uint32_t first = 0;      // its first column
-    int columns = 0, strips = 0;  // of the panel; in numbers, not blocks
-    std::size_t panel = 0;        // where it stands in factor_
+    int columns = 0, strips = 0;  // of the panel; in scalars, not blocks
+    std::size_t panel = 0;        // index in factor_
     std::uint32_t sources_begin = 0, sources_end = 0;
     std::vector<std::uint32_t> below;  // rows under the diagonal block, three a block row
-    std::vector<int> in_parent;        // where those rows are in the parent's front
+    std::vector<int> in_parent;        // index of those rows in the parent's front
     std::uint32_t parent = 0xffffffff;
     std::uint32_t children = 0;
     int rest() const { return strips - columns / kStrip; }  // strips of the update
@@ -61,7 +61,7 @@ class BlockCholesky final : public LinearSolver {
   double flops_ = 0;
   std::vector<Strip> factor_;       // allocated by the first factorise()
   std::vector<double> reciprocal_;  // of L's diagonal
-  std::vector<Strip> stack_;        // updates that wait for their parents
+  std::vector<Strip> stack_;        // updates waiting for their parents
   std::vector<std::size_t> row_from_, row_panel_, row_triangle_;
   mutable std::vector<Strip> x_, local_, sums_, packs_, tiles_;
   mutable std::vector<char> touched_;

@@ -1,4 +1,4 @@
-// Right-hand sides that are zero but for a few block rows, three at a time: what contacts do along their three axes.
+// Right-hand sides with few non-zero block rows, three at a time: unit impulses of contacts along their three axes.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace pliant {
 
 struct BlockColumns {
-  // Adds up with others of the same row.
+  // Entries of the same row are summed.
   struct Entry {
     std::uint32_t row = 0;  // block row
     Block value;            // in the three columns
@@ -25,7 +25,10 @@ struct BlockColumns {
     const auto at = static_cast<std::size_t>(three);
     return std::span(entries).subspan(first[at], first[at + 1] - first[at]);
   }
-  void close() { first.push_back(static_cast<std::uint32_t>(entries.size())); }  // the next entries are of others
+  void close() {
+    first.push_back(static_cast<std::uint32_t>(entries.size()));
+  }  // subsequent entries belong to the
+     // next triple
 };
 
 }  // namespace pliant

@@ -27,7 +27,7 @@ Eigen::MatrixXd BlockMatrix::dense() const {
 }
 
 BlockMatrix make_pattern(std::uint32_t size, const std::vector<std::array<std::uint32_t, 4>>& groups) {
-  // Neighbours with repetitions, bucketed by row; then sorted and thinned row by row.
+  // Neighbours with repetitions, bucketed by row; then sorted and made unique row by row.
   std::vector<std::uint32_t> begin(size + 1, 1);  // every row has its diagonal
   begin[0] = 0;
   for (const auto& group : groups)

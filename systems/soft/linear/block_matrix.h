@@ -1,5 +1,5 @@
-// Sparse symmetric positive definite matrices of 3x3 blocks: what tetrahedra assemble into. Both triangles are stored;
-// columns ascend within a row; every row has its diagonal block. The pattern is fixed, the numbers change.
+// Sparse symmetric positive definite matrices of 3x3 blocks, as assembled from tetrahedra. Both triangles are stored;
+// columns ascend within a row; every row has its diagonal block. The pattern is fixed, the values change.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@
 namespace pliant {
 
 using Vector = Eigen::VectorXd;
-// One row a degree of freedom, one column a right-hand side: a row of columns lies together, for SIMD across them.
+// One row per degree of freedom, one column per right-hand side: rows are contiguous, for SIMD across columns.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
@@ -18,17 +18,17 @@ struct BlockMatrix {
   std::uint32_t size = 0;               // block rows; 3 * size rows
   std::vector<std::uint32_t> first;     // size + 1: run of each block row in `column` and `value`
   std::vector<std::uint32_t> column;    // block columns, ascending in a row
-  std::vector<std::uint32_t> diagonal;  // of each row: where its diagonal block stands
+  std::vector<std::uint32_t> diagonal;  // of each row: index of its diagonal block
   std::vector<Block> value;
 
-  // Where block (row, col) stands, or 0xffffffff.
+  // Index of block (row, col), or 0xffffffff.
   std::uint32_t find(std::uint32_t row, std::uint32_t col) const;
   void multiply(const Vector& x, Vector& y) const;  // y = A x
   Eigen::MatrixXd dense() const;                    // for tests
 };
 
-// The pattern of a graph: rows i and j couple for every pair within each group (a tetrahedron's nodes); nodes at or
-// above `size` are left out. Numbers are zero.
+// The pattern of a graph: rows i and j are coupled for every pair within each group (a tetrahedron's nodes). Nodes at
+// or above `size` are left out. Values are zero.
 BlockMatrix make_pattern(std::uint32_t size, const std::vector<std::array<std::uint32_t, 4>>& groups);
 
 }  // namespace pliant

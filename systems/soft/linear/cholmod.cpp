@@ -20,8 +20,8 @@ void Cholmod::release() {
   cholmod_free_sparse(&lower_, &common_);
 }
 
-// Columns 3c, 3c+1, 3c+2 of the lower half: blocks of row c from its diagonal on, for A is symmetric. Diagonal blocks
-// are stored whole; CHOLMOD skips what stands above the diagonal.
+// Columns 3c, 3c+1, 3c+2 of the lower half: blocks of row c from its diagonal on, since A is symmetric. Diagonal blocks
+// are stored whole; CHOLMOD skips entries above the diagonal.
 void Cholmod::analyse(const BlockMatrix& a) {
   release();
   std::size_t blocks = 0;

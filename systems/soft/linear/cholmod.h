@@ -1,5 +1,5 @@
-// SuiteSparse's supernodal Cholesky factor (CHOLMOD), for comparison. Its supernodal part is under the GPL: only builds
-// that ask for it have it (-DPLIANT_CHOLMOD=ON, Debian's libsuitesparse-dev).
+// SuiteSparse's supernodal Cholesky factor (CHOLMOD), for comparison. Its supernodal part is under the GPL, so it is
+// only in builds that request it (-DPLIANT_CHOLMOD=ON, Debian's libsuitesparse-dev).
 #pragma once
 #ifdef PLIANT_CHOLMOD
 

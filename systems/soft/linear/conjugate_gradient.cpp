@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-// In four lanes, so that the order of additions does not depend on the machine.
+// In four lanes, so that the order of additions is machine-independent.
 double dot_of(const std::vector<double>& a, const std::vector<double>& b) {
   double lane[4] = {};
   for (std::size_t i = 0; i < a.size(); i += 4)
@@ -52,13 +52,13 @@ void ConjugateGradient::solve(const Vector& b, Vector& x) const {
       w.x[4 * i + d] = x[3 * pattern_.old_of_new[i] + d];
     }
   residual();
-  coarse_.correct(w.r.data(), w.x.data());  // what the second level relies on: P^T r = 0 from here on
+  coarse_.correct(w.r.data(), w.x.data());  // required by the second level: P^T r = 0 from here on
   residual();
   precondition();
   w.p = w.z;
   double rz = dot_of(w.r, w.z);
   for (iterations_ = 0; iterations_ < kMostIterations; ++iterations_) {
-    // z is nearly the error: the preconditioner is nearly A^-1.
+    // z approximates the error, since the preconditioner approximates A^-1.
     if (!(dot_of(w.z, w.z) > tolerance * tolerance * dot_of(w.x, w.x))) break;
     multiply(pattern_, matrix_, w.p.data(), w.q.data());
     const double step = rz / dot_of(w.p, w.q);

@@ -1,12 +1,12 @@
-// Preconditioned conjugate gradients for large bodies: an incomplete Cholesky factor, then a correction by rigid
-// motions of neighbourhoods of what it leaves,
+// Preconditioned conjugate gradients for large bodies: an incomplete Cholesky factor, then a correction of its
+// remainder by rigid motions of neighbourhoods,
 //   z = M r,  z += P (P^T A P)^-1 P^T (r - A z)        (A-DEF2: Tang, Nabben, Vuik, Erlangga 2009),
 // M and its products in single precision, the iteration in double. Iterations to 1e-6 of the direct solution, clamped
 // beam, nu = 0.45, a step of 10 ms, at 2,100 / 10k / 40k tetrahedra: block Jacobi 140 / 235 / 350, incomplete Cholesky
-// alone 30 / 49 / 74, with the correction 12 / 14 / 16. A stale exact factor took 6 the next step, but 15 after four
+// alone 30 / 49 / 74, with the correction 12 / 14 / 16. A stale exact factor took 6 in the next step, but 15 after four
 // steps and 37 after eight.
-// Sees only matrices whose diagonal blocks or coarse part are not positive definite; others that are not end in a
-// residual that does not fall (iterations() is then kMostIterations).
+// factorise() detects only matrices whose diagonal blocks or coarse part are not positive definite. Others that are not
+// end with a residual that does not fall (iterations() is then kMostIterations).
 #pragma once
 
 #include "systems/soft/linear/incomplete_cholesky.h"
@@ -32,7 +32,7 @@ class ConjugateGradient final : public LinearSolver {
   double tolerance = 1e-9;
 
  private:
-  struct Work {  // four numbers a node
+  struct Work {  // four numbers per node
     std::vector<double> b, x, r, z, p, q;
     std::vector<float> r_single, z_single, q_single;
   };

@@ -1,4 +1,4 @@
-// The plain truth other solvers are tested against: a dense Cholesky factor, O(n^3).
+// Reference for tests of other solvers: a dense Cholesky factor, O(n^3).
 #pragma once
 
 #include <Eigen/Cholesky>

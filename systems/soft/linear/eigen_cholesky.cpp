@@ -15,7 +15,7 @@ void EigenCholesky::analyse(const BlockMatrix& a) {
 }
 
 bool EigenCholesky::factorise(const BlockMatrix& a) {
-  // Column c of A is row c, for A is symmetric; columns 3c, 3c+1, 3c+2 take three numbers of each block in turn.
+  // Column c of A is row c, since A is symmetric; columns 3c, 3c+1, 3c+2 take three numbers of each block in turn.
   for (std::uint32_t col = 0; col < a.size; ++col)
     for (int j = 0; j < 3; ++j) {
       double* out = lower_.valuePtr() + lower_.outerIndexPtr()[3 * col + j];

@@ -1,5 +1,4 @@
-// Eigen's SimplicialLDLT (approximate minimum degree order, column by column): the slower twin that needs no code of
-// ours.
+// Eigen's SimplicialLDLT (approximate minimum degree order, column by column): a slower reference from a library.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -17,7 +16,7 @@ class EigenCholesky final : public LinearSolver {
   void solve_many(Eigen::Ref<Rows> columns) const override;
 
  private:
-  Eigen::SparseMatrix<double> lower_;  // the matrix without what stands above its diagonal blocks
+  Eigen::SparseMatrix<double> lower_;  // the matrix without the part above its diagonal blocks
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;
 };
 

@@ -87,7 +87,7 @@ std::vector<std::vector<std::uint32_t>> column_rows(const BlockMatrix& a, const 
     std::sort(rows[c].begin(), rows[c].end());
     rows[c].erase(std::unique(rows[c].begin(), rows[c].end()), rows[c].end());
     if (parent[c] == kNoParent) continue;
-    auto& up = rows[parent[c]];  // children's rows arrive before the parent's own are thinned out
+    auto& up = rows[parent[c]];  // children's rows are added before the parent's are made unique
     up.insert(up.end(), rows[c].begin() + 1, rows[c].end());
   }
   return rows;
@@ -95,15 +95,15 @@ std::vector<std::vector<std::uint32_t>> column_rows(const BlockMatrix& a, const 
 
 struct Candidate {
   Supernode node;
-  double entries = 0;  // blocks of the factor without the zeros taken along
+  double entries = 0;  // blocks of the factor without the explicit zeros
 };
 
 double panel_blocks(double count, double below) {
   return count * (count + 1) / 2 + count * below;
 }
 
-// Whether a supernode and its parent, right after it, go together: fewer fronts for more zeros. On beams of 500 to
-// 2,100 nodes twice these shares of zeros cost 5 to 10 % more, and so did none at all.
+// Whether to merge a supernode with its parent, which directly follows it: fewer fronts for more zeros. On beams of 500
+// to 2,100 nodes, twice these shares of zeros cost 5 to 10 % more, and so did none at all.
 bool worth_merging(const Candidate& s, const Candidate& parent) {
   const double count = s.node.count + parent.node.count;
   const double blocks = panel_blocks(count, static_cast<double>(parent.node.below.size()));

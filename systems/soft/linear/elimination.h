@@ -1,8 +1,7 @@
-// How a sparse symmetric matrix of blocks is eliminated: in which order, and which columns go together. Symbolic work
-// of block_cholesky.h; depends on the pattern alone, done once.
-// Order: approximate minimum degree on the graph of blocks (Amestoy, Davis, Duff 1996), then a postorder of the
-// elimination tree. Supernodes: runs of columns with (nearly) the same rows, merged while few zeros are taken along
-// (relaxed supernodes, Ashcraft and Grimes 1989).
+// Symbolic elimination of a sparse symmetric matrix of blocks: its order, and the grouping of columns. For
+// block_cholesky.h; depends only on the pattern, done once. Order: approximate minimum degree on the graph of blocks
+// (Amestoy, Davis, Duff 1996), then a postorder of the elimination tree. Supernodes: runs of columns with (nearly) the
+// same rows, merged while few zeros are included (relaxed supernodes, Ashcraft and Grimes 1989).
 #pragma once
 
 #include <cstdint>
@@ -15,12 +14,12 @@ namespace pliant {
 struct Supernode {
   std::uint32_t first = 0, count = 0;  // block columns, in the new order
   std::vector<std::uint32_t> below;    // block rows under them, ascending
-  std::uint32_t parent = 0xffffffff;   // where its update goes: the supernode that eliminates below.front()
+  std::uint32_t parent = 0xffffffff;   // receives its update: the supernode that eliminates below.front()
 };
 
 struct Elimination {
   std::vector<std::uint32_t> old_of_new, new_of_old;
-  std::vector<Supernode> supernodes;  // children before parents, a subtree in one run
+  std::vector<Supernode> supernodes;  // children before parents, each subtree contiguous
 };
 
 Elimination plan_elimination(const BlockMatrix& a);

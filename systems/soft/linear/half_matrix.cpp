@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-// Breadth first from a node of least degree, neighbours by degree; one tree after the other.
+// Breadth first from a node of smallest degree, neighbours by degree; one tree after the other.
 std::vector<std::uint32_t> cuthill_mckee(const BlockMatrix& a) {
   const auto degree = [&](std::uint32_t v) { return a.first[v + 1] - a.first[v]; };
   const auto fewer = [&](std::uint32_t u, std::uint32_t v) {

@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-// Four floats in a register. They stand at any address: a reference would promise one that is a multiple of 16.
+// Four floats in a register. Their address may be unaligned: a reference would promise a multiple of 16.
 typedef float Pack __attribute__((vector_size(16)));
 Pack at(const float* p) {
   Pack four;

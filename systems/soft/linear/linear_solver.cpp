@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-// Small systems are always factorised: conjugate gradients are no faster there (auto_solver.h), and a factor is exact.
+// Small systems are always factorised: conjugate gradients are not faster there (auto_solver.h), and a factor is exact.
 constexpr std::uint32_t kSmall = 400;  // block rows
 
 std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t block_rows) {

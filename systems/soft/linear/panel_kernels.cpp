@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <cstring>
 
-// Every kernel is compiled for plain x86-64 and for AVX2, and picks when it is called: GCC's own picking among versions
-// of one name works only for callers that see them all, and gives everybody else the plain one. AVX-512 was no faster
-// where both were measured (19 Gflop/s each: without fused multiply-add AVX2 keeps three ports busy, AVX-512 two).
-// Sanitizers get the plain version.
+// Every kernel is compiled for plain x86-64 and for AVX2, and selects the version at each call. GCC's function
+// multiversioning works only for callers that see all versions; others get the plain one. AVX-512 was not faster where
+// both were measured (19 Gflop/s each: without fused multiply-add AVX2 keeps three ports busy, AVX-512 two). Sanitizers
+// get the plain version.
 #if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)
 #define PLIANT_KERNEL(returns, name, parameters, arguments, body)                          \
   returns plain::name parameters {                                                         \
@@ -39,11 +39,11 @@ struct Machine {
   typedef double Pack __attribute__((vector_size(kBytes), may_alias));
   static constexpr int kLanes = kBytes / 8;
   static constexpr int kPacks = kStrip / kLanes;  // packs in a strip
-  static constexpr int kGroup = kBytes / 8;  // columns of a tile summed at a time: as many as sixteen registers allow
+  static constexpr int kGroup = kBytes / 8;       // columns of a tile summed at a time: the limit of sixteen registers
 };
 
-// tile[j] += sum over p of a[p] * scalar(p, j), j < width <= 8 (and some beyond), p < length: strips of 8, `step`
-// apart, times numbers of the panel, which stand
+// tile[j] += sum over p of a[p] * scalar(p, j), j < width <= 8 (and some beyond), p < length. a: strips of 8, `step`
+// apart. The scalars are numbers of the panel:
 //   kRow:    at b[8 p + j], one strip of the panel: its rows j, columns p;
 //   kColumn: at b[(p / 8) * stride + 8 j + p % 8], strip after strip: rows p, columns j.
 enum class Read { kRow, kColumn };
@@ -62,7 +62,7 @@ PLIANT_INLINE void add_products(const double* a, const double* b, int length, in
     for (int p = 0; p < length; p += kRun, scalar += stride)
       for (int run = 0; run < kRun; ++run)
         for (int l = 0; l < M::kPacks; ++l) {
-          Pack strip;  // at any address
+          Pack strip;  // unaligned
           std::memcpy(&strip, a + (p + run) * step + l * M::kLanes, sizeof strip);
           for (int j = 0; j < M::kGroup; ++j) sum[j][l] += strip * scalar[j * kNext + run];
         }
@@ -85,7 +85,7 @@ PLIANT_INLINE void scale(double* x, double s) {
   for (int l = 0; l < kStrip; ++l) x[l] *= s;
 }
 
-// Column by column, to the right: the triangle of a diagonal tile and the rows that share its strip.
+// Right-looking, column by column: the triangle of a diagonal tile and the rows that share its strip.
 template <int kBytes>
 PLIANT_INLINE bool factorise_tile(double* tile, int width, double* reciprocal) {
   for (int j = 0; j < width; ++j) {

@@ -1,7 +1,7 @@
 // Dense arithmetic on the panels of a sparse Cholesky factor (block_cholesky.h). A panel has `strips` strips of 8 rows,
-// each stored column after column: element (r, c) stands at panel[(r / 8) * 8 * columns + c * 8 + r % 8]. Its first
-// `columns` rows are the lower triangle of a diagonal block. What is solved for stands in packs of 8 right-hand sides.
-// Every number is summed in the same order whatever the width of the machine's registers: same bits everywhere.
+// each stored column after column: element (r, c) is at panel[(r / 8) * 8 * columns + c * 8 + r % 8]. Its first
+// `columns` rows are the lower triangle of a diagonal block. Right-hand sides are in packs of 8. Every number is summed
+// in the same order for every register width: same bits everywhere.
 #pragma once
 
 namespace pliant {
@@ -13,40 +13,40 @@ struct FactorPanel {
   int columns = 0, strips = 0;
 };
 
-// Doubles in a triangle of strips: strip i holds columns 0 .. 8 i + 7.
+// Doubles in a triangle of strips: strip i has columns 0 .. 8 i + 7.
 constexpr long triangle_size(int strips) {
   return 32L * strips * (strips + 1);
 }
 
-// data (the panel's) = its Cholesky factor, rows under the diagonal block included. reciprocal: 1 / diagonal, `columns`
-// of them. False: a pivot is not positive and finite.
+// data (the panel's) = its Cholesky factor, including the rows under the diagonal block. reciprocal: 1 / diagonal,
+// `columns` of them. False: a pivot is not positive and finite.
 [[nodiscard]] bool factorise_panel(double* data, FactorPanel panel, double* reciprocal);
 
 // triangle -= L L^T over the strips from columns / 8 on, L the panel. Rows and columns that belong to the diagonal
-// block get junk, and so does what stands above the diagonal.
+// block, and entries above the diagonal, are undefined.
 void update_triangle(FactorPanel panel, double* triangle);
 
-// One right-hand side. forward: x (rows of the panel) holds the diagonal block's part of the right-hand side, then its
-// solution, then what is to be added to the rows below. backward: x holds solutions below, right-hand side above;
+// One right-hand side. forward: x (rows of the panel) is the diagonal block's part of the right-hand side on entry,
+// then its solution, followed by the update of the rows below. backward: x has solutions below, right-hand side above;
 // sums: scratch of 8 * columns.
 void forward(FactorPanel panel, const double* reciprocal, double* x);
 void backward(FactorPanel panel, const double* reciprocal, double* x, double* sums);
 
-// The same for packs of 8 right-hand sides: x[8 * row + which]. Backwards, columns are taken a few at a time, and
-// those beyond the last are read too, for nothing: with strips below a diagonal block whose columns are no multiple of
-// 8, 64 doubles behind the panel must be readable. In a factor the next panel stands there, as the last has no strips
-// below.
+// The same for packs of 8 right-hand sides: x[8 * row + which]. backward_many processes a few columns at a time, and
+// also reads beyond the last one without using the values. With strips below a diagonal block whose columns are not a
+// multiple of 8, 64 doubles after the panel must therefore be readable. In a factor the next panel follows; the last
+// one has no strips below.
 void forward_many(FactorPanel panel, const double* reciprocal, double* x);
 void backward_many(FactorPanel panel, const double* reciprocal, double* x);
 
-// tile[8 j + i] += x_i . y_j over `rows` rows of eight columns each, whose rows stand `x_step` and `y_step` numbers
-// apart. The tile is 64-byte aligned.
+// tile[8 j + i] += x_i . y_j over `rows` rows of eight columns each, with row strides `x_step` and `y_step`. The tile
+// is 64-byte aligned.
 void add_gram(const double* x, int x_step, const double* y, int y_step, int rows, double* tile);
 
-// Width of the registers that these use on this machine: 32 with AVX2, else 16. [bytes]
+// Width of the registers used on this machine: 32 with AVX2, else 16. [bytes]
 int panel_register_bytes();
 
-// The same for any machine: what the others must agree with.
+// Portable versions: the reference for the others.
 namespace plain {
 bool factorise_panel(double* data, FactorPanel panel, double* reciprocal);
 void update_triangle(FactorPanel panel, double* triangle);

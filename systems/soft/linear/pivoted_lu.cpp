@@ -24,7 +24,7 @@ PLIANT_KERNEL void subtract_column(double* __restrict x, const double* __restric
   for (int i = 0; i < rows; ++i) x[i] -= l[i] * f;
 }
 
-// The matrix and where its columns stand.
+// The matrix and the layout of its columns.
 struct Columns {
   double* a;
   std::ptrdiff_t stride;
@@ -32,7 +32,7 @@ struct Columns {
   double* operator[](int column) const { return a + column * stride; }
 };
 
-// Columns [first, end), from row `first` on. Interchanges reach these columns alone.
+// Columns [first, end), from row `first` on. Interchanges affect only these columns.
 bool factorise_panel_columns(const Columns& m, int first, int end, int* pivots) {
   for (int j = first; j < end; ++j) {
     double* const column = m[j];
@@ -49,7 +49,7 @@ bool factorise_panel_columns(const Columns& m, int first, int end, int* pivots) 
   return true;
 }
 
-// One column to the right of a factorised panel [first, end): interchanges, its part of U, and what is left of it.
+// One column to the right of a factorised panel [first, end): interchanges, its part of U, and the update of the rest.
 void eliminate(const Columns& m, int first, int end, const int* pivots, double* column) {
   for (int j = first; j < end; ++j) std::swap(column[j], column[pivots[j]]);
   for (int j = first; j < end; ++j) subtract_column(column + j + 1, m[j] + j + 1, end - j - 1, column[j]);

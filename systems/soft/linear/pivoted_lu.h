@@ -1,6 +1,5 @@
 // LU factorisation with row interchanges (Golub and Van Loan, Matrix Computations, 3.4) of small dense matrices that
-// need not be symmetric. Allocates nothing. Every number is summed in the same order whatever the width of the
-// machine's registers.
+// need not be symmetric. Allocates nothing. Every number is summed in the same order for every register width.
 #pragma once
 
 namespace pliant {

@@ -1,4 +1,4 @@
-// A registered solver (pliant/linear_solver.h) behind the seam of the built-in ones.
+// A registered solver (pliant/linear_solver.h) behind the interface of the built-in ones.
 #pragma once
 
 #include "pliant/linear_solver.h"
@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-// Null where the factory makes nothing.
+// Null if the factory returns nothing.
 std::unique_ptr<LinearSolver> make_registered(const SolverFactory& factory);
 
 }  // namespace pliant

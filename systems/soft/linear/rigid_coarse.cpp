@@ -9,10 +9,10 @@ namespace pliant {
 namespace {
 
 constexpr std::uint32_t kNoGroup = 0xffffffff;
-constexpr std::uint32_t kGroupNodes = 40;  // fewer: better corrections, but a coarse system that costs more
-constexpr double kFaintest = 1e-8;         // [1] of a group's stiffness against turning, added to it
+constexpr std::uint32_t kGroupNodes = 40;  // fewer: better corrections, but a more expensive coarse system
+constexpr double kFaintest = 1e-8;         // [1] of a group's rotational stiffness, added to it
 
-// Who is next to whom, both ways.
+// Adjacency lists, in both directions.
 std::vector<std::vector<std::uint32_t>> neighbours(const HalfPattern& pattern) {
   std::vector<std::vector<std::uint32_t>> out(pattern.size());
   for (std::uint32_t i = 0; i < pattern.size(); ++i)
@@ -23,7 +23,7 @@ std::vector<std::vector<std::uint32_t>> neighbours(const HalfPattern& pattern) {
   return out;
 }
 
-// Balls of nodes grown breadth first; what is left over too small joins a neighbour.
+// Balls of nodes grown breadth first; small remainders join a neighbour.
 std::vector<std::uint32_t> grow_groups(const HalfPattern& pattern, std::uint32_t& count) {
   const auto next_to = neighbours(pattern);
   std::vector<std::uint32_t> group(pattern.size(), kNoGroup), ball;
@@ -120,7 +120,7 @@ bool RigidCoarse::factorise(const HalfPattern& pattern, const HalfMatrix<double>
     matrix_.value[k] += matrix_.value[m].transpose().eval();
     matrix_.value[m] = matrix_.value[k].transpose().eval();
   }
-  // Nodes on a line, or one alone, cannot be told to turn every way: such turns are left out.
+  // Nodes on a line, or a single node, do not determine every rotation: such rotations are regularised away.
   for (std::uint32_t g = 0; g < groups_; ++g) {
     Block& turn = matrix_.value[matrix_.diagonal[2 * g + 1]];
     const double size = turn.trace();

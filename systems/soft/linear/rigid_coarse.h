@@ -1,7 +1,7 @@
-// A coarse space for elasticity: neighbourhoods of nodes that move as rigid bodies, six numbers each. What local
-// methods (incomplete factors) are slow at - bending and drifting of the whole - is solved there exactly. P: from
-// motions of neighbourhoods to motions of nodes, u = t + w x (x - centre) / length. (Smoothed aggregation's tentative
-// space: Vanek, Mandel, Brezina 1996; as a second level: Tang et al. 2009, A-DEF2.)
+// A coarse space for elasticity: neighbourhoods of nodes that move as rigid bodies, six numbers each. Global bending
+// and drift, on which local methods (incomplete factors) converge slowly, are solved there exactly. P: from motions of
+// neighbourhoods to motions of nodes, u = t + w x (x - centre) / length. (Smoothed aggregation's tentative space:
+// Vanek, Mandel, Brezina 1996; as a second level: Tang et al. 2009, A-DEF2.)
 #pragma once
 
 #include <utility>
@@ -16,16 +16,16 @@ namespace pliant {
 class RigidCoarse {
  public:
   void analyse(const HalfPattern& pattern);
-  // position: [m] of each node of the BlockMatrix; empty: neighbourhoods only drift, which is slower.
+  // position: [m] of each node of the BlockMatrix; empty: neighbourhoods only translate, which converges more slowly.
   [[nodiscard]] bool factorise(const HalfPattern& pattern, const HalfMatrix<double>& a,
                                const std::vector<dvec3>& position);
-  // z += P (P^T A P)^-1 P^T r; four numbers a node.
+  // z += P (P^T A P)^-1 P^T r; four numbers per node.
   void correct(const float* r, float* z) const { add_correction(r, z); }
   void correct(const double* r, double* z) const { add_correction(r, z); }
 
  private:
-  // Where the product of a block of A goes: blocks (drift, drift), (drift, turn) and (turn, drift), (turn, turn) of a
-  // pair of groups stand two by two.
+  // Destination of the product of a block of A: blocks (drift, drift), (drift, turn) and (turn, drift), (turn, turn) of
+  // a pair of groups are adjacent in pairs.
   struct Slot {
     std::uint32_t drift, turn;
   };
@@ -39,7 +39,7 @@ class RigidCoarse {
   std::vector<Slot> slot_, own_;  // of each block left of the diagonal; of each diagonal block
   std::vector<std::pair<std::uint32_t, std::uint32_t>> mirror_;  // a block of matrix_ and its transpose
   std::vector<dvec3> arm_;                                       // [1] (x - centre) / length
-  BlockMatrix matrix_;                                           // two block rows a group: drift, turn
+  BlockMatrix matrix_;                                           // two block rows per group: drift, turn
   BlockCholesky solver_;
   mutable Vector right_, motion_;
 };

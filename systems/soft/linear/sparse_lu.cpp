@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kFillIn = 2.0;  // [1] of what columns of a pile's system hold, squared, in multiplications
+constexpr double kFillIn = 2.0;  // [1] multiplications over the sum of squared column counts, for a pile's system
 
 }  // namespace
 

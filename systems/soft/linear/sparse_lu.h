@@ -1,4 +1,4 @@
-// A larger system with many zeros: what it holds of a pile couples neighbours only. For the soft clock: it allocates.
+// LU of a larger system with many zeros: in a pile only neighbours are coupled. For the soft clock: it allocates.
 #pragma once
 
 #include <vector>
@@ -6,7 +6,7 @@
 namespace pliant {
 
 // a: n x n, column after column. x = A^-1 x, n numbers. False: there is no solution, or it would cost more than `work`
-// multiplications. Afterwards `work` is about what it costs.
+// multiplications. On return `work` is the estimated cost.
 [[nodiscard]] bool solve_sparse_lu(const std::vector<double>& a, int n, double* x, double& work);
 
 }  // namespace pliant

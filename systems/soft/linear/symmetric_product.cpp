@@ -15,7 +15,7 @@ struct alignas(64) Tile {
   double value[kStrip * kStrip] = {};  // column after column
 };
 
-// Columns up to the next eight are zero.
+// Pads with zero columns to a multiple of eight.
 Rows padded(const Rows& x, Eigen::Index columns) {
   Rows out(x.rows(), columns);
   out.leftCols(x.cols()) = x;

@@ -6,8 +6,8 @@
 namespace pliant {
 namespace {
 
-// What the tissue does by its own inertia when the handle shakes it: A^-1 M Phi, A^-1 M A^-1 M Phi, ... Scaled to count
-// as much as the softest contact.
+// Response of the tissue's inertia to motion of the handle: A^-1 M Phi, A^-1 M A^-1 M Phi, ... Scaled to the compliance
+// of the softest contact.
 void shake(const ToolContacts& contacts, BodyAnswers& out) {
   const ToolBody& tool = contacts.tool();
   const ContactProblem& problem = contacts.step().problem;
@@ -47,14 +47,14 @@ void gather_contacts(const ToolContacts& contacts, const BodyAnswers& of, const 
   }
 }
 
-// G, symmetric as A is: shaken^T of the contacts' answers is J of the shaken ones'. Of the contacts' own the step knows
-// it already.
+// G, symmetric as A is: shaken^T times the contacts' responses equals J times the shaken responses. The contacts' block
+// is known from the step.
 void fill_gram(const ToolContacts& contacts, BodyAnswers& out) {
   const BodyResponse& response = contacts.step().delassus.of[out.index];
   const Eigen::MatrixXd& held = response.compliance.held;
   const Rows& lever = response.compliance.lever;
   const Eigen::Index rows = out.contact_rows(), shaken = out.shaken.cols();
-  const bool follows = lever.cols() > 0 && out.index != contacts.tool_index();  // another tool: its handle moves
+  const bool follows = lever.cols() > 0 && out.index != contacts.tool_index();  // of another tool: its handle is free
   std::vector<Eigen::Index> from;
   for (const int i : out.local) {
     const auto at = std::lower_bound(response.contacts.begin(), response.contacts.end(), contacts.in_step(i));
@@ -106,7 +106,7 @@ Rows answers_to(const ToolContacts& contacts, const BodyAnswers& of, const std::
     of.body->solve(solved);
   }
   Rows out(solved.rows(), static_cast<Eigen::Index>(picks.size()));
-  for (Eigen::Index row = 0; row < out.rows(); ++row) {  // as they are stored
+  for (Eigen::Index row = 0; row < out.rows(); ++row) {  // in storage order
     const double *from = solved.data() + row * solved.cols(),
                  *shaken = of.shaken_answers.data() + row * of.shaken_answers.cols();
     for (Eigen::Index k = 0; k < out.cols(); ++k) {

@@ -1,20 +1,20 @@
-// How one body answers in a finished step to what pulls at it. Takes the chosen contacts and a body; gives G, how much
-// V moves along the rows of its contacts, and of the tool also along those of what its own inertia does when the handle
-// shakes it, V = A^-1 of unit impulses along those same rows; and such columns of V as are asked for. The tool's handle
-// is held: what follows it is told apart, by ToolBody::follow.
+// Response of one body in a finished step to impulses. Input: the chosen contacts and a body. V = A^-1 of unit impulses
+// along the rows of the body's contacts. For the tool there are additional rows: its inertial forces when the handle is
+// shaken. Output: G, the motion of V along these rows, and selected columns of V. The tool's handle is fixed; the
+// motion that follows the handle is described by ToolBody::follow.
 #pragma once
 
 #include "systems/tool/reduce/tool_contacts.h"
 
 namespace pliant {
 
-inline constexpr int kShakes = 2;  // tunable: how well the tool's own vibration is followed; six columns each
+inline constexpr int kShakes = 2;  // tunable: accuracy of the tool's own vibration; six columns each
 
 struct BodyAnswers {
   const Body* body = nullptr;
   std::uint32_t index = 0;
-  std::vector<int> local;  // which of the chosen contacts it takes part in, ascending
-  Rows shaken;             // of the tool: rows that its own inertia pulls at, size x columns; empty for objects
+  std::vector<int> local;  // its contacts among the chosen ones, ascending
+  Rows shaken;             // of the tool: rows of its inertial forces, size x columns; empty for objects
   Rows shaken_answers;     // V's last columns, A^-1 shaken
   Eigen::MatrixXd gram;    // G = [J; shaken^T] V [1/kg], V = A^-1 [J^T shaken]
   Eigen::Index contact_rows() const { return 3 * static_cast<Eigen::Index>(local.size()); }

@@ -7,8 +7,8 @@ namespace {
 
 constexpr SweepLimits kAgain{100, 1e-4, 0};
 
-// The contacts that give way, solved with the handle going `extra` [m/s], [rad/s] faster over the step. Impulses and
-// velocities of all contacts go in and out.
+// Solves the compliant contacts again, with the handle moving `extra` [m/s], [rad/s] faster over the step. Updates
+// impulses and velocities of all contacts.
 void solve_again(const CondensedContacts& model, const Eigen::MatrixXd& W, const Vector6& extra, Vector& impulse,
                  Vector& velocity, std::vector<std::uint8_t>& sliding) {
   std::vector<int> soft;
@@ -46,8 +46,8 @@ void solve_again(const CondensedContacts& model, const Eigen::MatrixXd& W, const
   }
 }
 
-// Modes and tissue go along with the handle's way and with what the contacts do otherwise; the model's displacements
-// stay zero where it now stands.
+// Modes and tissue follow the handle's displacement and the change of contact impulses; the model's displacements stay
+// zero at its new pose.
 void move_along(const Vector6& left, const Vector& change, double T, HandleModel& model) {
   CondensedContacts& c = model.contacts;
   const Eigen::Index modes = c.modes, rows = 3 * c.count;

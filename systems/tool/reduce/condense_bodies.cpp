@@ -6,12 +6,12 @@
 namespace pliant {
 namespace {
 
-// A body's modes, and what describes its motion in them.
+// A body's modes and their equations of motion.
 struct BodyModes {
   Modes modes;
-  std::vector<int> picks;       // the rows of G that they are made of
+  std::vector<int> picks;       // rows of G that span them
   Rows weighed;                 // M V(:, picks)
-  std::array<Rows, 2> by_slip;  // of modes.at_contacts: contact rows x modes, per slip along either tangent
+  std::array<Rows, 2> by_slip;  // of modes.at_contacts: contact rows x modes, derivative by slip along either tangent
   StepSplit split;
 };
 
@@ -32,8 +32,8 @@ BodyModes modes_of(const ToolContacts& contacts, const BodyAnswers& of, int most
   return out;
 }
 
-// The body's rows of `from_modes` and of its changes, and its share of `flexibility` and of `W`. Returns flexibility
-// times damping [s m/N].
+// The body's rows of `from_modes` and of its slip derivatives, and its part of `flexibility` and of `W`. Returns
+// flexibility times damping [s m/N].
 double scatter(const BodyAnswers& of, const BodyModes& body, CondensedContacts& out, Eigen::Ref<Eigen::MatrixXd> W) {
   const Eigen::MatrixXd left = left_flexibility(of.gram, body.modes, body.split);
   const Eigen::Index modes = body.modes.count();
@@ -53,8 +53,8 @@ double scatter(const BodyAnswers& of, const BodyModes& body, CondensedContacts& 
   return body.split.damping.beta * left.topLeftCorner(of.contact_rows(), of.contact_rows()).trace();
 }
 
-// [m/s] of the body's own share of the contacts' velocities at the rows of G; of a tool, beyond what follows its
-// handle.
+// [m/s] the body's part of the contacts' velocities at the rows of G; for a tool, relative to the motion that follows
+// its handle.
 Vector own_velocity(const ToolContacts& contacts, const BodyAnswers& of) {
   const ToolBody& tool = contacts.tool();
   Rows v = of.body->velocity();
@@ -64,7 +64,7 @@ Vector own_velocity(const ToolContacts& contacts, const BodyAnswers& of) {
   return out;
 }
 
-// How the modes move and what drives them. After scatter.
+// Equations of motion of the modes. After scatter.
 void describe_modes(const ToolContacts& contacts, const BodyAnswers& of, const BodyModes& body,
                     CondensedContacts& out) {
   const Modes& modes = body.modes;
@@ -86,7 +86,7 @@ void describe_modes(const ToolContacts& contacts, const BodyAnswers& of, const B
   out.load.segment(first, count) = (m_v - m_v0) / T + alpha * m_v + beta * k_v -
                                    out.from_modes.block(0, first, rows, count).transpose() * out.force.head(rows);
 
-  // Between handle and modes; phi^T A Phi = 0 splits it.
+  // Coupling between handle and modes, split by means of phi^T A Phi = 0.
   auto mass = out.modal_mass.middleRows(first, count);
   mass.setZero();
   if (of.index == contacts.tool_index())
@@ -101,7 +101,7 @@ Eigen::MatrixXd condense_bodies(const ToolContacts& contacts, double tick, Conde
   const FinishedStep& step = contacts.step();
   const Eigen::Index rows = contacts.rows();
   Eigen::MatrixXd W = out.flexibility.topLeftCorner(rows, rows) / (step.T * step.T);
-  double lag = 0.0;  // [s m/N] sum of damping times flexibility: one lag for all, by how much each gives way
+  double lag = 0.0;  // [s m/N] sum of damping times flexibility: one common lag, weighted by compliance
   out.modes = 0;
   for (std::uint32_t b = 0; b < step.bodies.size(); ++b) {
     if (step.bodies[b]->size() == 0 || !contacts.takes_part(b)) continue;

@@ -1,5 +1,5 @@
-// Every body that the chosen contacts push, condensed for the touch tick. Takes the contacts and how each body answers
-// to them; gives a few vibration modes per body (modal.h) and what they leave as flexibility without inertia.
+// Condenses every body at the chosen contacts for the touch tick. Input: the contacts and each body's response. Output:
+// a few vibration modes per body (modal.h), and the residual flexibility without inertia.
 #pragma once
 
 #include "systems/tool/reduce/tool_contacts.h"
@@ -7,13 +7,13 @@
 namespace pliant {
 
 // Tunables. Unit, usual value, and what changing it does.
-inline constexpr double kExplained = 1e-6;      // [1] of the largest compliance: below it a direction is not a mode's
-inline constexpr int kMostBodyModes = 48;       // of one body: cost of a step against modes at many contacts
-inline constexpr double kHighestPerTick = 1.0;  // [rad] frequency x tick: faster modes are springs to the touch tick
+inline constexpr double kExplained = 1e-6;      // [1] of the largest compliance: stiffer directions get no mode
+inline constexpr int kMostBodyModes = 48;       // of one body: cost of a step against accuracy at many contacts
+inline constexpr double kHighestPerTick = 1.0;  // [rad] frequency x tick: faster modes become springs
 
-// After describe_contacts, whose flexibility it adds to. `tick` [s]: of the touch clock. Fills the modes (all that has
-// as many rows or columns), flexibility and flexibility_lag.
-// Returns W_a [1/kg]: the Delassus operator of tool tissue, objects and yielding surfaces, the handle held.
+// Called after describe_contacts, to whose flexibility it adds. `tick` [s]: of the touch clock. Fills the modes
+// (everything with as many rows or columns), flexibility and flexibility_lag. Returns W_a [1/kg]: the Delassus operator
+// of tool tissue, objects and yielding surfaces, the handle fixed.
 Eigen::MatrixXd condense_bodies(const ToolContacts& contacts, double tick, CondensedContacts& out);
 
 }  // namespace pliant

@@ -18,7 +18,7 @@ void describe_handle(const ToolBody& tool, double T, HandleModel& out) {
   out.handle_load = tool.handle_load();
 }
 
-// Of the tool's contacts that were not chosen; their forces stay what they are.
+// Wrench of the tool's contacts that were not chosen; their forces are constant.
 Vector6 wrench_of_others(const ToolContacts& contacts) {
   const FinishedStep& step = contacts.step();
   const ToolBody& tool = contacts.tool();
@@ -37,7 +37,7 @@ Vector6 wrench_of_others(const ToolContacts& contacts) {
   return out;
 }
 
-// The tissue moves as Phi w. `wrench`: on the handle, of all that is not inertia, damping or a chosen contact.
+// The tissue moves as Phi w. `wrench`: on the handle, without inertia, damping and the chosen contacts.
 void describe_tissue(const ToolBody& tool, double T, const Vector6& wrench, CondensedContacts& out) {
   const StepSplit split{T, tool.damping()};
   const auto [alpha, beta] = split.damping;

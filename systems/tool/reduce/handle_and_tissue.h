@@ -1,5 +1,5 @@
-// The tool itself at the end of a finished step. Takes the tool and its contacts' forces; gives the handle's motion and
-// mass, the wrench on it, and the tissue that follows it: how heavy, damped and stiff it is to the handle.
+// The tool at the end of a finished step. Input: the tool and its contacts' forces. Output: the handle's motion and
+// mass, the wrench on it, and the effective mass, damping and stiffness of the tissue that follows it.
 #pragma once
 
 #include "systems/tool/reduce/tool_contacts.h"

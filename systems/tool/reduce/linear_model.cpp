@@ -8,8 +8,8 @@
 namespace pliant {
 namespace {
 
-// What holds: every touching contact along its right rows R (sticking: all three; sliding: the normal), by forces along
-// its left columns D (sliding: on the cone).
+// The active constraints: every touching contact along its right rows R (sticking: all three; sliding: the normal),
+// with forces along its left columns D (sliding: on the cone).
 struct ActiveSet {
   std::vector<int> rows;  // of R, among the contacts' rows
   Eigen::MatrixXd D;      // contacts' rows x rows of R
@@ -38,8 +38,8 @@ ActiveSet active_set(const CondensedContacts& c) {
   return out;
 }
 
-// What holds answers to the handle, per unit of w: impulses phi along D so that R stands still, and psi along R^T as
-// the transposed problem has it; they are the same unless a contact slips.
+// Response of the active set to the handle, per unit of w: impulses phi along D that keep R at zero velocity, and psi
+// along R^T from the transposed problem. They are equal unless a contact slips.
 struct Answer {
   Eigen::MatrixXd phi, psi;  // rows of R x 6: -(R W D)^-1 R J, -(R W D)^-T D^T J
   Eigen::MatrixXd DJ;        // D^T J
@@ -54,9 +54,9 @@ Answer answer(const ActiveSet& active, const CondensedContacts& c, const Eigen::
     for (Eigen::Index k = 0; k < active.size(); ++k) RWD(k, l) = column[active.rows[static_cast<std::size_t>(k)]];
     RJ.row(l) = J.row(active.rows[static_cast<std::size_t>(l)]);
   }
-  // Redundant contacts share their force; a ridge below what counts keeps the solve regular.
+  // Redundant contacts share their force; a small ridge keeps the matrix regular.
   RWD.diagonal().array() += 1e-9 * RWD.diagonal().cwiseAbs().maxCoeff();
-  // Where nothing gives way, as much as keeps the stiffness a number.
+  // Contacts without compliance: a minimum that keeps the stiffness finite.
   for (Eigen::Index k = 0; k < active.size(); ++k)
     if (c.stiff[static_cast<std::size_t>(active.rows[static_cast<std::size_t>(k)] / 3)]) RWD(k, k) += kRigidCompliance;
   Answer out;
@@ -66,8 +66,7 @@ Answer answer(const ActiveSet& active, const CondensedContacts& c, const Eigen::
   return out;
 }
 
-// How the modes move when the handle does and what holds answers, rates per unit of w: by phi on the right, psi on the
-// left.
+// Rates of the modes per unit of w, from the handle and the active set's response: phi on the right, psi on the left.
 struct ModeRates {
   Eigen::MatrixXd left, right;  // modes x 6
 };
@@ -83,8 +82,7 @@ ModeRates mode_rates(const ActiveSet& active, const Answer& answer, const Conden
           share.asDiagonal() * (from_modes.transpose() * (active.D * answer.phi))};
 }
 
-// A bilinear form of tissue and modes, seen by the handle: the tissue's own, the modes' (diagonal), and between the
-// two.
+// A bilinear form of tissue and modes, seen by the handle: the tissue's, the modes' (diagonal), and the cross terms.
 Matrix6 coupled(const ModeRates& rates, const Matrix6& of_tissue, const Rows6& between, const Vector& of_modes) {
   const Eigen::Index modes = rates.right.rows();
   const auto border = between.topRows(modes);

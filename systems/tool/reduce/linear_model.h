@@ -1,6 +1,6 @@
-// The wrench on the handle as a linear function of its motion: the set of touching contacts stays as the step left it
-// (methods.md 2.6). Takes the condensed contacts, their Delassus operator and what the tool's tissue does by itself;
-// gives mass, damping, stiffness and force.
+// The wrench on the handle as a linear function of its motion, with the set of touching contacts frozen at the step's
+// end (methods.md 2.6). Input: the condensed contacts, their Delassus operator and the tissue's response. Output: mass,
+// damping, stiffness and force.
 #pragma once
 
 #include "systems/soft/body/tool_body.h"
@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-// `model`: everything but `linear` is filled. `W` [1/kg]: of its contacts, the handle held (condense_bodies).
+// `model`: all but `linear` is filled. `W` [1/kg]: of its contacts, the handle fixed (condense_bodies).
 LinearModel linear_model(const ToolBody& tool, const HandleModel& model, const Eigen::MatrixXd& W);
 
 }  // namespace pliant

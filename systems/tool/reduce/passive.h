@@ -1,4 +1,4 @@
-// The nearest matrix that cannot give out energy.
+// The nearest passive matrix.
 #pragma once
 
 #include <Eigen/Eigenvalues>

@@ -1,14 +1,13 @@
-// What one soft step says about a tool's handle, as a HandleModel (methods.md 2.6, 2.8): the linear model over the
-// active set, and tissue, objects and contacts condensed for the touch tick. Pure arithmetic on a finished step; its
-// parts, in order of the data: reduce/tool_contacts.h, handle_and_tissue.h, body_answers.h, condense_bodies.h and
-// linear_model.h.
+// Reduces one soft step to a tool's HandleModel (methods.md 2.6, 2.8): the linear model over the active set, and
+// tissue, objects and contacts condensed for the touch tick. Pure arithmetic on a finished step. Its parts, in order of
+// the data: reduce/tool_contacts.h, handle_and_tissue.h, body_answers.h, condense_bodies.h and linear_model.h.
 #pragma once
 
 #include "systems/tool/reduce/tool_contacts.h"
 
 namespace pliant {
 
-// `tool`: index of a ToolBody with a handle. `tick` [s]: of the touch clock. Fills all of `out` but `step` and
+// `tool`: index of a ToolBody with a handle. `tick` [s]: of the touch clock. Fills all of `out` except `step` and
 // `time`.
 void reduce_tool(const FinishedStep& step, std::uint32_t tool, double tick, HandleModel& out);
 

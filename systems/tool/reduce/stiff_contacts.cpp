@@ -6,15 +6,15 @@
 namespace pliant {
 namespace {
 
-// [1] of a unit push of the handle: what several contacts share, each has a part of.
+// [1] threshold of a contact's share of a unit push of the handle; several contacts divide it between them.
 constexpr double kStiffShare = 0.1;
 
 }  // namespace
 
-// A handle that nothing but an inertia of 1 / kRigidCompliance at every contact would lead pushes with
-//   (W + kRigidCompliance)^-1 J v;
-// the inertia's share of it, kRigidCompliance (W + kRigidCompliance)^-1 J, is 1 where nothing gives way, and next to
-// nothing where tissue does.
+// A handle driven only by an inertia of 1 / kRigidCompliance at every contact pushes with
+//   (W + kRigidCompliance)^-1 J v.
+// The inertia's share of it, kRigidCompliance (W + kRigidCompliance)^-1 J, is 1 where nothing is compliant, and close
+// to zero where tissue is.
 void mark_stiff(const Eigen::MatrixXd& W, CondensedContacts& out) {
   const Eigen::Index rows = 3 * out.count;
   Eigen::MatrixXd sum = W;

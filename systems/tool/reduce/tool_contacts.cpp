@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kNotReached = 0xffffffff;
 
-// How many bodies away from the tool; what cannot move passes nothing on.
+// Distance from the tool, in bodies; immovable bodies transmit nothing.
 std::vector<std::uint32_t> distances(const FinishedStep& step, std::uint32_t tool) {
   std::vector<std::uint32_t> distance(step.bodies.size(), kNotReached);
   distance[tool] = 0;
@@ -26,19 +26,19 @@ std::vector<std::uint32_t> distances(const FinishedStep& step, std::uint32_t too
   return distance;
 }
 
-// [m] An edge of the finer collision mesh: what is between its vertices says nothing of how a surface gives way.
+// [m] An edge of the finer collision mesh: the surface's compliance is not resolved between its vertices.
 double farthest(const FinishedStep& step, const ContactPoint& p) {
   return static_cast<double>(
       std::min(step.bodies[p.body_a]->collision_mesh->mean_edge, step.bodies[p.body_b]->collision_mesh->mean_edge));
 }
 
-// A P1 surface gives way at the contact by its own law.
+// A P1 surface yields at the contact by its law.
 bool yields(const FinishedStep& step, Eigen::Index row) {
   const Eigen::MatrixXd& compliance = step.delassus.compliance;
   return compliance.rows() > row && compliance(row, row) > 0.0;
 }
 
-// An open contact whose features part before the step ends: its plane stands where nothing is.
+// An open contact whose features separate before the step ends: its plane is no longer valid.
 bool passed_by(const FinishedStep& step, std::size_t i) {
   const ContactPoint& p = step.contacts[i];
   return !p.predicted && !(p.impulse.x > 0.0) && p.depth == 0.0 && !yields(step, 3 * static_cast<Eigen::Index>(i));
@@ -60,7 +60,7 @@ std::vector<int> contacts_of(const FinishedStep& step, std::uint32_t tool, int m
     if (nearest != kNotReached && !passed_by(step, i))
       order.push_back({nearest, length(c.impulse), c.gap, static_cast<int>(i)});
   }
-  // What carries force first, wherever it is: what is left out of that could not answer.
+  // Loaded contacts first, wherever they are: contacts that are left out cannot respond.
   std::stable_sort(order.begin(), order.end(), [](const Place& i, const Place& j) {
     return std::make_tuple(!(i.impulse > 0.0), i.distance, -i.impulse, i.gap) <
            std::make_tuple(!(j.impulse > 0.0), j.distance, -j.impulse, j.gap);
@@ -107,7 +107,7 @@ void set_solution(const ToolContacts& contacts, int i, dvec3 impulse, dvec3 velo
   const FinishedStep& step = contacts.step();
   const ContactPoint& p = contacts[i];
   for (int k = 0; k < 3; ++k) out.force[3 * i + k] = impulse[k] / step.T;
-  // T u is left of a gap that was open; of a penetration, besides, what is not undone.
+  // Remaining gap T u; for a penetration, minus the part that is not corrected.
   const bool inside = p.depth > 0.0 && !yields(step, 3 * contacts.in_step(i));
   double left = step.T * dot(leaning_axes(p.lean)[0], velocity);
   if (inside) left -= (1.0 - step.beta) * p.depth;

@@ -1,6 +1,6 @@
-// Which contacts of a finished soft step matter to a tool. Takes the step and the tool's place among its bodies; gives
-// the chosen contacts, at most kMaxCondensed, and what the step said about each of them: force, gap, friction, and how
-// it moves with the handle.
+// Selects the contacts of a finished soft step that matter to a tool. Input: the step and the tool's body index.
+// Output: the chosen contacts, at most kMaxCondensed, each with the step's force, gap and friction, and its motion with
+// the handle.
 #pragma once
 
 #include <memory>
@@ -19,14 +19,14 @@ struct FinishedStep {
   const Delassus& delassus;
   const ContactProblem& problem;
   double T = 0.0;
-  double beta = 0.0;  // [1] share of a penetration that is undone in a step
+  double beta = 0.0;  // [1] share of a penetration that is corrected in a step
 };
 
-// Into step.contacts, at most `most`. Those that push come first: the tool's own, then those of what it touches, and so
-// on, the strongest first; then those that only are near, closest to penetrating first.
+// Indices into step.contacts, at most `most`. Loaded contacts come first: the tool's, then those of bodies that it
+// touches, and so on, the strongest first. Unloaded ones follow, smallest gap first.
 std::vector<int> contacts_of(const FinishedStep& step, std::uint32_t tool, int most);
 
-// The chosen contacts are counted from 0; contact i has rows 3 i to 3 i + 2: normal, first tangent, second tangent.
+// The chosen contacts are numbered from 0; contact i has rows 3 i to 3 i + 2: normal, first tangent, second tangent.
 class ToolContacts {
  public:
   // `tool`: index of a ToolBody with a handle. `step` outlives it.
@@ -44,9 +44,9 @@ class ToolContacts {
   bool chosen(std::size_t in_step) const;
   // The body is the tool, or on a side of a chosen contact.
   bool takes_part(std::uint32_t body) const;
-  // out (3 x columns of x) += J x of contact i, of the sides that are body number `body`.
+  // out (3 x columns of x) += J x of contact i, for its sides on body number `body`.
   void gather(std::uint32_t body, int i, const Rows& x, Eigen::Ref<Rows> out) const;
-  // The same with J's change per slip along tangent `k` (0, 1) [1/m], by differences over two edges of the finer
+  // The same with J's derivative by slip along tangent `k` (0, 1) [1/m], by differences over two edges of the finer
   // collision_mesh.
   void gather_slip(std::uint32_t body, int i, int k, const Rows& x, Eigen::Ref<Rows> out) const;
 
@@ -56,8 +56,8 @@ class ToolContacts {
   std::vector<int> chosen_;
 };
 
-// Force, gap and push of contact i by a solution of the step: impulse [N s] and velocity [m/s] along the contact's
-// axes, as ContactProblem has them.
+// Sets force, gap and push of contact i from a solution of the step: impulse [N s] and velocity [m/s] along the
+// contact's axes, as in ContactProblem.
 void set_solution(const ToolContacts& contacts, int i, dvec3 impulse, dvec3 velocity, CondensedContacts& out);
 
 // Fills count, from_handle, force, gap, push and friction; flexibility [m/N] becomes that of yielding surfaces alone.

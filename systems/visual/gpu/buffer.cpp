@@ -8,7 +8,7 @@ Buffer::Buffer(const void* data, std::size_t size, GLbitfield flags) : size_(siz
   GLuint id = 0;
   glCreateBuffers(1, &id);
   object_ = Object<DestroyBuffer>(id);
-  // OpenGL knows no buffer of nothing: keep a few bytes, so that an empty mesh needs no special case anywhere.
+  // OpenGL has no empty buffers: a few bytes are allocated, so that an empty mesh needs no special case.
   const std::size_t at_least_some = size ? size : 16;
   glNamedBufferStorage(id, static_cast<GLsizeiptr>(at_least_some), size ? data : nullptr, flags);
 }

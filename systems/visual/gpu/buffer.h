@@ -1,4 +1,4 @@
-// Memory on the GPU, and how vertices are read out of it.
+// Memory on the GPU, and the layout in which vertices are read from it.
 #pragma once
 
 #include <algorithm>
@@ -13,20 +13,20 @@ struct DestroyBuffer {
   static void destroy(GLuint id) { glDeleteBuffers(1, &id); }
 };
 
-// A run of bytes of fixed size, for vertices, indices, constants or storage alike.
+// A block of bytes of fixed size, for vertices, indices, constants or storage.
 class Buffer {
  public:
   Buffer() = default;
-  // Takes the bytes once; nothing may be written later.
+  // Initialised once; read-only afterwards.
   static Buffer fixed(const void* data, std::size_t size);
-  // To be written as often as wanted; `data` may be null (undefined contents).
+  // Writable any number of times; `data` may be null (undefined contents).
   static Buffer writable(const void* data, std::size_t size);
   template <class T>
   static Buffer fixed(std::span<const T> items) {
     return fixed(items.data(), items.size_bytes());
   }
 
-  // Replaces bytes [offset, offset + size); returns `size`, so that callers can add up what travelled.
+  // Replaces bytes [offset, offset + size); returns `size`, for summing up uploads.
   std::size_t write(std::size_t offset, const void* data, std::size_t size);
   void clear();  // all bytes zero
   std::size_t size() const { return size_; }
@@ -38,10 +38,10 @@ class Buffer {
   std::size_t size_ = 0;  // [bytes]
 };
 
-// A buffer whose contents are replaced as a whole, as large as the largest has been.
+// A buffer whose contents are replaced as a whole; it has the largest size needed so far.
 class GrowingBuffer {
  public:
-  // Returns the bytes that travelled.
+  // Returns the bytes uploaded.
   template <class T>
   std::size_t write(std::span<const T> items) {
     if (items.size_bytes() > buffer_.size() || buffer_.size() == 0)
@@ -58,7 +58,7 @@ struct DestroyVertexArray {
   static void destroy(GLuint id) { glDeleteVertexArrays(1, &id); }
 };
 
-// Which buffer and offset each attribute of a vertex shader comes from.
+// Buffer and offset of each attribute of a vertex shader.
 class VertexArray {
  public:
   static VertexArray make();

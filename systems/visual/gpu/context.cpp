@@ -8,8 +8,8 @@
 namespace pliant {
 namespace {
 
-// Every display that may carry a context, best first: GPUs, then Mesa without any surface (which finds a GPU's driver
-// too, or draws on the processor).
+// Every display that may provide a context, best first: GPUs, then Mesa without a surface (which also finds a GPU's
+// driver, or renders on the CPU).
 std::vector<EGLDisplay> displays() {
   std::vector<EGLDisplay> found;
   if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") &&
@@ -67,7 +67,7 @@ Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create() {
                "GPU's own driver"};
 }
 
-// The display stays initialised: EGL hands the same one to everybody in the process, who may still be using it.
+// The display stays initialised: EGL returns the same one to all users in the process.
 HeadlessContext::~HeadlessContext() {
   if (eglGetCurrentContext() == context_) eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);

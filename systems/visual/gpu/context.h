@@ -10,10 +10,10 @@ namespace pliant {
 
 class HeadlessContext {
  public:
-  // Made current on the calling thread. The error says what is missing and which package brings it.
+  // Made current on the calling thread. The error names the missing part and the package that provides it.
   static Result<std::unique_ptr<HeadlessContext>> create();
   ~HeadlessContext();
-  // For a program with several: OpenGL calls of this thread go to this one from now on.
+  // For programs with several contexts: OpenGL calls of this thread go to this one from now on.
   void make_current();
   const std::string& renderer_name() const { return renderer_name_; }
 

@@ -1,4 +1,4 @@
-// A square of depths that shaders compare with: what a lamp sees.
+// A square depth map for comparison in shaders: a lamp's view.
 #pragma once
 
 #include "systems/visual/gpu/framebuffer.h"
@@ -10,7 +10,7 @@ class DepthMap {
  public:
   DepthMap() = default;
   explicit DepthMap(int size);  // [pixels] an edge
-  // What is drawn from now on lands here.
+  // Redirects drawing to this map.
   void begin() const;
   void bind(GLuint unit) const { glBindTextureUnit(unit, texture_.id()); }
   int size() const { return size_; }

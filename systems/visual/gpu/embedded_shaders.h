@@ -1,4 +1,4 @@
-// The files of shaders/ as they were when this was built (cmake/embed_shaders.cmake).
+// The files of shaders/ at build time (cmake/embed_shaders.cmake).
 #pragma once
 
 namespace pliant::gpu {

@@ -1,4 +1,4 @@
-// A place in the GPU's work, to be asked whether it has come that far.
+// A point in the GPU's command stream; can be queried or waited for.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -10,7 +10,7 @@ namespace pliant::gpu {
 class Fence {
  public:
   Fence() = default;
-  // After everything that was asked of the GPU until now.
+  // After all commands issued so far.
   static Fence here() {
     Fence fence;
     fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);

@@ -40,7 +40,7 @@ void Framebuffer::resolve_into(const Framebuffer& target) const {
 }
 
 void Framebuffer::copy_into(GLuint target) const {
-  glDisable(GL_FRAMEBUFFER_SRGB);  // bytes are encoded already: a window's plane must not encode them again
+  glDisable(GL_FRAMEBUFFER_SRGB);  // bytes are encoded already: the window's framebuffer must not encode them again
   blit(id(), target, width_, height_);
 }
 

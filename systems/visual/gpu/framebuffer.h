@@ -1,4 +1,4 @@
-// What is drawn into: a colour and a depth plane of one size.
+// A render target: a colour and a depth plane of one size.
 #pragma once
 
 #include <cstdint>

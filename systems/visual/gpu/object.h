@@ -1,4 +1,4 @@
-// One OpenGL name, owned: move-only, deleted with its owner. The context it was made in must be current then.
+// Owner of one OpenGL name: move-only, deletes it on destruction. Its context must then be current.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -7,7 +7,7 @@
 
 namespace pliant::gpu {
 
-// `Destroy` says how the name is given back: a struct with `static void destroy(GLuint)`.
+// `Destroy` deletes the name: a struct with `static void destroy(GLuint)`.
 template <class Destroy>
 class Object {
  public:

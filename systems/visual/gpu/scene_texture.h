@@ -1,4 +1,4 @@
-// A picture that shaders of another picture look into: linear colour with half floats, and depth.
+// A picture that shaders of another picture sample: linear colour in half floats, and depth.
 #pragma once
 
 #include "systems/visual/gpu/framebuffer.h"
@@ -11,7 +11,7 @@ class SceneTexture {
   SceneTexture() = default;
   SceneTexture(int width, int height);  // [pixels]
   bool has_size(int width, int height) const { return width == width_ && height == height_; }
-  // What is drawn from now on lands here, over nothing: alpha 0, as far away as can be.
+  // Redirects drawing to this picture, cleared to alpha 0 and the largest depth.
   void begin() const;
   void bind(GLuint color_unit, GLuint depth_unit) const {
     glBindTextureUnit(color_unit, color_.id());

@@ -27,7 +27,7 @@ std::optional<std::string> read_text(const std::string& name) {
   return std::nullopt;
 }
 
-// Where they are looked for.
+// Where shaders are searched.
 std::string place() {
   const std::filesystem::path folder = shader_folder();
   return folder.empty() ? "among those that are compiled in" : "in '" + folder.string() + "'";
@@ -43,7 +43,7 @@ std::optional<std::string> included_by(std::string_view line) {
   return std::string(line.substr(open + 1, close - open - 1));
 }
 
-// Appends `text` as file number files.size(), depth first. A file already in is skipped, which also ends cycles.
+// Appends `text` as file number files.size(), depth first. A file already included is skipped, which also ends cycles.
 Status append(ShaderSource& source, const std::string& name, const std::string& text) {
   const std::size_t number = source.files.size();
   source.files.push_back(name);

@@ -34,7 +34,7 @@ void Staging::finish() {
   copied_[part_] = Fence::here();
   part_ = (part_ + 1) % kParts;
   used_ = 0;
-  // Two pictures ago: nearly always over.
+  // From two pictures ago: almost always completed.
   if (copied_[part_].set()) copied_[part_].wait();
 }
 

@@ -1,5 +1,5 @@
-// Bytes on their way to the GPU: memory that both sides see all the time (GL_MAP_PERSISTENT), in three parts, so that
-// the processor writes one while the GPU still copies out of the others. No call waits for the driver's own copies.
+// Upload buffer: memory mapped for CPU and GPU (GL_MAP_PERSISTENT), in three parts. The CPU writes one part while the
+// GPU still copies from the others. No call waits for the driver's copies.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@ class Staging {
  public:
   Staging() = default;
   explicit Staging(std::size_t part_size);  // [bytes]
-  // Sends bytes [offset, offset + size) to `target`, in several parts where one is too small. Returns `size`.
+  // Sends bytes [offset, offset + size) to `target`, in several pieces if larger than a part. Returns `size`.
   std::size_t send(const Buffer& target, std::size_t offset, const void* data, std::size_t size);
-  // Ends the part that was written: call once after everything that one picture needs.
+  // Ends the current part: call once after all uploads of a picture.
   void finish();
 
  private:
@@ -24,7 +24,7 @@ class Staging {
   Object<DestroyBuffer> buffer_;  // unmapped as it is deleted
   std::byte* mapped_ = nullptr;
   std::size_t part_size_ = 0, part_ = 0, used_ = 0;
-  std::array<Fence, kParts> copied_;  // when the GPU has taken a part
+  std::array<Fence, kParts> copied_;  // signalled when the GPU has copied a part
 };
 
 }  // namespace pliant::gpu

@@ -11,7 +11,7 @@ namespace pliant::gpu {
 
 namespace {
 
-// Down to one pixel.
+// Number of mip levels down to one pixel.
 int all_levels(int width, int height) {
   return std::bit_width(static_cast<unsigned>(std::max(width, height)));
 }

@@ -1,4 +1,4 @@
-// Pictures on the GPU.
+// Textures on the GPU.
 #pragma once
 
 #include <cstddef>
@@ -20,18 +20,18 @@ enum class Meaning {
   kData    // numbers: normals, roughness
 };
 
-// A texture with its mipmaps. Rows lie as in the file: v = 0 is the top row, as glTF has it.
+// A texture with its mipmaps. Rows as in the file: v = 0 is the top row, as in glTF.
 class Texture {
  public:
   Texture() = default;
-  // Fails where the picture's size and its bytes do not agree, or the GPU cannot hold it.
+  // Fails if the image's size and its bytes do not agree, or the GPU's limit is exceeded.
   static Result<Texture> from_image(const Image& image, Meaning meaning);
-  // A cube map in linear RGB, half floats: level by level, face by face (+X -X +Y -Y +Z -Z), `face` pixels an edge in
-  // level 0 and half as many in each that follows.
+  // A cube map in linear RGB, half floats: level by level, face by face (+X -X +Y -Y +Z -Z). `face` pixels an edge in
+  // level 0 and half as many in each following level.
   static Texture from_cube(std::span<const std::uint16_t> rgb, int face, int levels);
-  // Pairs of numbers, `size` x `size`, row by row; interpolated in between, the border's values beyond.
+  // Pairs of numbers, `size` x `size`, row by row; interpolated, clamped to the border.
   static Texture from_table(std::span<const vec2> values, int size);
-  // One pixel, for materials without a picture.
+  // One pixel, for materials without an image.
   static Texture constant(std::uint8_t r, std::uint8_t g, std::uint8_t b);
 
   void bind(GLuint unit) const { glBindTextureUnit(unit, object_.id()); }
