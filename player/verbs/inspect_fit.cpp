@@ -13,6 +13,7 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
+constexpr double kUsualBudget = 0.1;   // [1] of a mesh without extensions, which can have none
 constexpr std::size_t kMostRows = 12;  // a table with more candidates leaves out those that buy nothing
 
 OrderedJson describe(const ModelChoice& choice) {
@@ -32,7 +33,9 @@ OrderedJson describe(const ModelChoice& choice) {
 }  // namespace
 
 Result<OrderedJson> describe_fit(Level& level, double error) {
-  if (!level.has_pliant()) make_touchable(level);
+  const bool bare = !level.has_pliant();
+  if (bare) make_touchable(level);
+  if (bare && !(error > 0.0)) error = kUsualBudget;
   if (error > 0.0)
     if (const Status set = set_error_budget(level, error); !set) return set.error();
   const auto choices = choose_models(level);

@@ -21,7 +21,8 @@ void add_inspect(CLI::App& app, int& status) {
   verb->add_option("file", options->file, "level, mesh, tetrahedra or EXR panorama")->required()->check(named());
   verb->add_flag("--json", options->json, "as JSON");
   CLI::Option* fit = verb->add_flag("--fit", options->fit, "which models error budgets choose, and the evidence");
-  verb->add_option("--error", options->error, "with --fit: error budget of every surface and soft body")
+  verb->add_option("--error", options->error,
+                   "with --fit: error budget of every surface and soft body; of a bare mesh 0.1 by default")
       ->check(within(kErrorBudget.min, kErrorBudget.max))
       ->needs(fit);
   add_unit(verb, options->unit, "what one unit of a bare mesh is (m)");
