@@ -29,7 +29,7 @@ if(PLIANT_COMMAND)
   file(RELATIVE_PATH libraries /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
   set_target_properties(pliant PROPERTIES INSTALL_RPATH "$<$<BOOL:${BUILD_SHARED_LIBS}>:$ORIGIN/${libraries}>")
   install(TARGETS pliant RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(DIRECTORY content/levels content/environments DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant/content OPTIONAL)
+  install(DIRECTORY content/levels content/environments content/samples DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant/content OPTIONAL)
   # Who sits at the machine may open its devices. udev looks in this folder whatever the prefix is: a package's is /usr.
   install(FILES devices/70-pliant.rules DESTINATION lib/udev/rules.d)
 endif()
