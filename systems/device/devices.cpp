@@ -37,8 +37,9 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   const bool posed = tool.sensing || device.status != DeviceStatus::kReady;  // Ready without a pose: no pose at all
   const bool known = posed && tool.device_wrench.allFinite();
   const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
-  soften(world, tool.entity, device, tool.force_safety);
   SafetyLimits limits = force_limits(device), turning = torque_limits(device, handle);
+  limits.touched = soften(world, tool.entity, device, tool.force_safety);
+  turning.touched = tool.force_safety.share * handle.rotation[0];
   limits.weight = tool.force_safety.share * tool.weight;
   turning.weight = cross(tool.sensed.pose.rotation * tool.balance, limits.weight);
   limits.jumped = turning.jumped = jumps(tool.force_safety, device, limits, device.position, tick.dt) ||
@@ -109,8 +110,8 @@ void write_devices(World& world, Tick tick) {
   for (ProbeState& state : world.touch->probes) {
     const Probe& probe = world.registry.get<Probe>(state.entity);
     HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
-    soften(world, state.entity, device, state.safety);
     SafetyLimits limits = force_limits(device);
+    limits.touched = soften(world, state.entity, device, state.safety);
     limits.carried = surface_displacement(world, state.entity, tick.elapsed());
     const ToolTouchState* const among_bodies = find_tool(world, state.entity);
     const dvec3 pressed = with_own(

@@ -17,8 +17,9 @@ namespace pliant {
 // coupling.
 double felt_stiffness(const World& world, Entity effector);
 
-// Writes state.share for this tick. Before the force goes into the safety layer.
-void soften(const World& world, Entity effector, const HapticDevice& device, SafetyState& state);
+// Writes state.share for this tick. Before the force goes into the safety layer. [N/m] of the hand's metres: how
+// steeply the share grows, at most (SafetyLimits::touched).
+double soften(const World& world, Entity effector, const HapticDevice& device, SafetyState& state);
 
 // Of a probe or tool that is prepared; null of others. Its force's.
 SafetyState* safety_of(World& world, Entity hand);

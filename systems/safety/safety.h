@@ -7,6 +7,9 @@
 // may give back what it took, and kPassivityShare of the most that the hand had stored beside. What would go beyond is
 // taken out by damping: only the component along the motion is reduced, and early enough that the slew limit suffices.
 // Setting the force to zero instead lost: in the middle of a contact that is a jump, and the hand feels a hole.
+// Where the account is spent (a surface that stiffens under a hand, a gate that opened in contact) the force is that of
+// a spring, kSpentSpring as stiff as what is touched, which holds what is left of it, and it comes back as that spring
+// is pressed. Damping alone switched it with the sign of the last step for as long as the hand rested there.
 //
 // A tool that nothing carries hangs in the hand: what is wanted of a device that comes back to it is never small. As
 // its weight is known beforehand, the gate also opens on what is wanted beside it; then the weight comes in from zero
@@ -22,7 +25,8 @@
 // set low may not hold a hand, nor keep it from a lowered max_force.
 //
 // A tick that comes late has not had the time of those that it missed: its force may rise by one tick's slew, and after
-// kEasedFrom what rose meanwhile comes in over kEase, from the force that left last.
+// kEasedFrom what rose meanwhile comes in over kEase, from what the device still has: the force that left last, and
+// after kForceHolds none. What is let go has had the time: it falls by as much as in the ticks that were missed.
 //
 // A surface that a prescribed motion carries may push a hand, as an engine would: passivity and the limit on stiffness
 // hold for the hand's motion against that surface. Clamp and slew bound what the engine can do.
@@ -42,6 +46,9 @@ inline constexpr double kStaleAfter = 0.010;       // [s] a pose older than this
 inline constexpr double kPassivityReserve = 1.05;  // [1] the next step is assumed this much longer than the last
 inline constexpr double kPassivityShare = 1e-3;    // [1] of the largest stored energy, which the hand may get beside
 inline constexpr double kPassivityFloor = 1e-12;   // [J] what rounding may add
+inline constexpr double kSpentSpring = 1.5;        // [1] of what is touched: the spring of a spent account
+inline constexpr double kUsualSpring = 2000.0;     // [N/m] where that stiffness is not known; softer: lets go earlier
+inline constexpr double kUsualTurnSpring = 5.0;    // [N m/rad] the same of what turns
 inline constexpr double kCountedShare = 0.01;      // [1] of the wanted force: less missing is not counted
 inline constexpr double kCountedForce = 1e-3;      // [N] less missing is not counted
 inline constexpr double kSlowHand = 0.01;          // [m/s] a slower hand is damped in proportion to its speed
@@ -53,7 +60,10 @@ inline constexpr double kFastestTurn = 200.0;  // [rad/s] the same of what turns
 inline constexpr double kLeastFall = 1000.0;  // [N/s] force that is no longer wanted falls as fast as this at least
 
 inline constexpr double kEasedFrom = 0.0105;  // [s] without a tick, then what rose meanwhile comes in slowly,
+inline constexpr double kForceHolds = 0.020;  // [s] that devices and their drivers' threads go on with a force
 inline constexpr double kEase = 0.015;        // [s] in this time
+
+inline constexpr double kRaise = 0.2;  // [s] in which a limit that is raised comes in
 
 inline constexpr double kFarthest = 1e6;  // [m] a pose farther from the origin is a device's error
 
@@ -108,6 +118,8 @@ struct SafetyState {
   double added_share = 0.0;  // [1] of it that may have come in, once the gate is open
   dvec3 own{0};              // [N] as much of it as is wanted now
   dvec3 wanted{0};           // [N] last tick's beside the weight, clamped to the device's limit
+  double most = 0.0;         // [N] last tick's limit; 0: there was none
+  double kept_back = 0.0;    // [N] of it, while the account is spent
   double work = 0.0;         // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx
   double stored = 0.0;       // [J] the largest that -work has been
   bool ticked = false;       // `ticked_at` means something
@@ -138,6 +150,8 @@ struct SafetyLimits {
   double fall = kLeastFall;       // [N/s] force that is no longer wanted falls so fast where `slew` is lower
   double scale = 1.0;             // [1] world metres per metre of the hand
   double own_rise = 0.0;          // [N] change of the program's own part in this tick: no answer to displacement
+  double touched = 0.0;           // [N/m] of the hand's metres: how stiff what is felt is at most; 0: not known
+  double spring = kUsualSpring;   // [N/m] of a spent account where `touched` is not known
 };
 
 // `pressed` [N] with the program's own part (SafetyState::added). The gate judges what is touched: while it is closed
