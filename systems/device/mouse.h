@@ -23,7 +23,8 @@ struct MouseSample {
 };
 
 // One mouse. While it presses, its probe runs straight from pose to pose, each in the time since the pose before: at
-// most a frame late, where that is no faster than kMouseFastest.
+// most a frame late, where that is no faster than kMouseFastest. Ticks that are skipped are no reason to wait: the way
+// began before them.
 struct MouseInput {
   explicit MouseInput(dvec3 start) : from(start), position(start), to(start) {}
 
@@ -32,7 +33,8 @@ struct MouseInput {
   bool heard = false;
   bool free = true;          // the newest pose hovers
   double heard_at = 0.0;     // [s] when the newest pose came
-  double lasts = 1e-3;       // [s] how long the way to it takes
+  double began_at = 0.0;     // [s] when the way to it began
+  double lasts = 1e-3;       // [s] how long that takes
   dvec3 from, position, to;  // [m] world
 };
 

@@ -130,8 +130,8 @@ double missed_before(SafetyState& state, double now, double dt) {
 
 // After `missed` [s]: the law went on, and the way that the hand has gone, `dx`, is counted as if its force had been
 // there, so that it owes nothing for the rise; it is counted here alone. What `force` has risen by, from what the
-// device still has, comes in over kEase.
-void ease_in(SafetyState& state, dvec3 force, dvec3 weight, dvec3& dx, double missed, double dt) {
+// device still has, comes in over `ease` [s].
+void ease_in(SafetyState& state, dvec3 force, dvec3 weight, dvec3& dx, double missed, double ease, double dt) {
   if (missed < kEasedFrom) return;
   state.work += 0.5 * dot(state.wanted + force - weight, dx);
   state.stored = std::max(state.stored, -state.work);
@@ -140,7 +140,7 @@ void ease_in(SafetyState& state, dvec3 force, dvec3 weight, dvec3& dx, double mi
   const double size = length(force), has = length(state.force);
   if (!(size > has)) return;
   state.eased = has / size;
-  state.easing = (1.0 - state.eased) / kEase;
+  state.easing = (1.0 - state.eased) / ease;
 }
 
 // Counts a difference of `missing` [N] from what was wanted, `size` [N].
@@ -245,7 +245,7 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
     } else {
       count(state.tally, SafetyLimit::kGated, length(felt), length(felt));
     }
-    if (missed > 0.0) ease_in(state, force, weight, dx, missed, dt);
+    if (missed > 0.0) ease_in(state, force, weight, dx, missed, limits.ease, dt);
     if (state.eased < 1.0) {
       count(state.tally, SafetyLimit::kSlewed, (1.0 - state.eased) * length(force), length(force));
       force *= state.eased;

@@ -25,8 +25,9 @@
 // set low may not hold a hand, nor keep it from a lowered max_force.
 //
 // A tick that comes late has not had the time of those that it missed: its force may rise by one tick's slew, and after
-// kEasedFrom what rose meanwhile comes in over kEase, from what the device still has: the force that left last, and
-// after kForceHolds none. What is let go has had the time: it falls by as much as in the ticks that were missed.
+// kEasedFrom what rose meanwhile comes in over kEase (of a tool, kToolEase), from what the device still has: the force
+// that left last, and after kForceHolds none. What is let go has had the time: it falls by as much as in the ticks that
+// were missed.
 //
 // A surface that a prescribed motion carries may push a hand, as an engine would: passivity and the limit on stiffness
 // hold for the hand's motion against that surface. Clamp and slew bound what the engine can do.
@@ -61,6 +62,7 @@ inline constexpr double kLeastFall = 1000.0;  // [N/s] force that is no longer w
 
 inline constexpr double kEasedFrom = 0.0105;  // [s] without a tick, then what rose meanwhile comes in slowly,
 inline constexpr double kForceHolds = 0.020;  // [s] that devices and their drivers' threads go on with a force
+inline constexpr double kToolEase = 0.06;     // [s] of a tool: until the soft clock has seen where it went
 inline constexpr double kEase = 0.015;        // [s] in this time
 
 inline constexpr double kRaise = 0.2;  // [s] in which a limit that is raised comes in
@@ -150,6 +152,7 @@ struct SafetyLimits {
   double fall = kLeastFall;       // [N/s] force that is no longer wanted falls so fast where `slew` is lower
   double scale = 1.0;             // [1] world metres per metre of the hand
   double own_rise = 0.0;          // [N] change of the program's own part in this tick: no answer to displacement
+  double ease = kEase;            // [s] in which it comes back after a stall
   double touched = 0.0;           // [N/m] of the hand's metres: how stiff what is felt is at most; 0: not known
   double spring = kUsualSpring;   // [N/m] of a spent account where `touched` is not known
 };
