@@ -61,6 +61,9 @@ bool Driver::write_model(const DeviceModel&, const DeviceWrench&) {
 bool Driver::safe_line(SafeLine&) const {
   return false;
 }
+std::string Driver::node() const {
+  return {};
+}
 bool Driver::gone() const {
   return false;
 }

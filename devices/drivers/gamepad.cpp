@@ -119,6 +119,10 @@ class Gamepad final : public Driver {
     sent_ = output;
     sent_at_ = now;
   }
+  bool safe_line(SafeLine& line) const override {
+    return line_ && !gone_ && can_.renders_force && line_->safe_line(line);
+  }
+  std::string node() const override { return line_ ? line_->node() : std::string(); }
   bool gone() const override { return gone_; }
   void close() override {
     if (line_) write({});

@@ -83,6 +83,8 @@ class GamepadLine {
   virtual Status whole_state(GamepadState& state) = 0;
   // At once; the newest holds.
   virtual Status render(const GamepadOutput& output) = 0;
+  virtual bool safe_line(SafeLine&) const { return false; }  // Driver::safe_line, Driver::node
+  virtual std::string node() const { return {}; }
 };
 using GamepadOpener = std::function<Result<std::unique_ptr<GamepadLine>>(const std::string& id)>;
 

@@ -152,6 +152,7 @@ Status Haply::open(const std::string& id) {
   has_grip_ = state->has_grip;
   port_ = std::move(*port);
   refused_ = restarts_ = 0;
+  safe_file_.keep(port_->file());
   thread_.start([this] { run(); });
   return Done{};
 }
@@ -183,6 +184,7 @@ bool Haply::talk(PacketPort& port) {
 void Haply::run() {
   while (!talk(*port_)) {
     port_.reset();
+    safe_file_.lose();
     while (!port_ && !thread_.stopping()) {
       DeviceThread::sleep(kHaplyRetry);
       auto port = opener_(wanted_);
@@ -190,6 +192,7 @@ void Haply::run() {
       std::uint8_t inventory[64];  // is not needed again, and cut off
       if (const auto got = (*port)->receive(inventory, 1.0); !got || *got == 0) continue;
       port_ = std::move(*port);
+      safe_file_.keep(port_->file());
       ++restarts_;
     }
     if (!port_) return;
@@ -206,6 +209,15 @@ void Haply::write(const DeviceWrench& wrench) {
 void Haply::close() {
   thread_.stop();
   port_.reset();
+  safe_file_.close();
+}
+
+bool Haply::safe_line(SafeLine& line) const {
+  if (safe_file_.number() < 0) return false;
+  const std::string command = haply_command(wanted_, dvec3(0), false);
+  line.size = web_socket_frame({reinterpret_cast<const std::uint8_t*>(command.data()), command.size()}, line.bytes);
+  line.descriptor = safe_file_.number();
+  return line.size > 0;
 }
 
 std::vector<DeviceInfo> list_haply() {

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "devices/drivers/device_thread.h"
+#include "devices/drivers/safe_file.h"
 #include "devices/ports/packet_port.h"
 
 namespace pliant {
@@ -38,6 +39,7 @@ class Haply final : public Driver {
   bool read(DeviceSample& sample) override;
   void write(const DeviceWrench& wrench) override;
   void close() override;
+  bool safe_line(SafeLine& line) const override;  // a message of zero force
 
   std::uint64_t refused() const { return refused_; }    // messages that were not understood
   std::uint64_t restarts() const { return restarts_; }  // times that the service was lost and found again
@@ -49,6 +51,7 @@ class Haply final : public Driver {
   PortOpener opener_;
   std::string wanted_;  // the device's identifier
   std::unique_ptr<PacketPort> port_;
+  SafeFile safe_file_;
   bool has_grip_ = false;
   std::atomic<std::uint64_t> refused_{0}, restarts_{0};
   DeviceThread thread_;

@@ -115,7 +115,7 @@ class Polhem final : public Driver {
   }
   // The report of no currents.
   bool safe_line(SafeLine& line) const override {
-    if (!port_ || gone_ || port_->file() < 0 || length_ > line.bytes.size()) return false;
+    if (!port_ || gone_ || port_->file() < 0) return false;
     std::array<std::uint8_t, kPolhemOutput> report;
     polhem_drive(dvec3(0), report);
     std::copy_n(report.begin(), length_, line.bytes.begin());
@@ -123,6 +123,7 @@ class Polhem final : public Driver {
     line.descriptor = port_->file();
     return true;
   }
+  std::string node() const override { return port_ ? port_->node() : std::string(); }
   // One that was said to be parked when it was opened, or whose encoders were said to be right, is not so any more.
   bool gone() const override { return gone_ && by_button_; }
   void close() override {

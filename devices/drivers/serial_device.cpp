@@ -85,7 +85,7 @@ Status SerialDevice::open(const std::string& id) {
           .latency = 2e-3};
   port_ = std::move(*port);
   too_short_ = sums_ = forms_ = numbers_ = 0;
-  keep_line();
+  safe_file_.keep(port_->file());
   thread_.start([this] { run(); });
   return Done{};
 }
@@ -126,43 +126,29 @@ bool SerialDevice::talk() {
 void SerialDevice::run() {
   while (!talk()) {
     port_.reset();
-    // A lost line is not kept open: a device that is plugged in again would get another name.
-    if (const int none = safe_file_ >= 0 ? ::open("/dev/null", O_WRONLY | O_CLOEXEC) : -1; none >= 0) {
-      (void)::dup3(none, safe_file_, O_CLOEXEC);
-      ::close(none);
-    }
+    safe_file_.lose();
     while (!port_ && !thread_.stopping()) {
       DeviceThread::sleep(kSerialRetry);
       auto port = opener_(id_);
       if (port && ask(**port, [this] { return thread_.stopping(); })) port_ = std::move(*port);
     }
     if (!port_) return;
-    keep_line();
+    safe_file_.keep(port_->file());
   }
 }
 
 void SerialDevice::close() {
   thread_.stop();
   port_.reset();
-  if (safe_file_ >= 0) ::close(safe_file_);
-  safe_file_ = -1;
-}
-
-void SerialDevice::keep_line() {
-  const int file = port_->file();
-  if (file < 0) return;
-  if (safe_file_ < 0)
-    safe_file_ = ::fcntl(file, F_DUPFD_CLOEXEC, 3);
-  else
-    (void)::dup3(file, safe_file_, O_CLOEXEC);
+  safe_file_.close();
 }
 
 // A line of zero force; the end of line before it ends what was cut off.
 bool SerialDevice::safe_line(SafeLine& line) const {
-  if (safe_file_ < 0) return false;
+  if (safe_file_.number() < 0) return false;
   SerialText text;
   const std::size_t length = serial_force(0, dvec3(0), text);
-  line.descriptor = safe_file_;
+  line.descriptor = safe_file_.number();
   line.size = length + 1;
   line.bytes[0] = '\n';
   std::copy_n(text.begin(), length, line.bytes.begin() + 1);

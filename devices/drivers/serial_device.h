@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "devices/drivers/device_thread.h"
+#include "devices/drivers/safe_file.h"
 #include "devices/drivers/serial_line.h"
 #include "devices/ports/packet_port.h"
 #include "pliant/device_state.h"
@@ -38,16 +39,13 @@ class SerialDevice final : public Driver, public CountsDropped {
   void run();
   bool talk();
   void count(SerialFault fault);
-  void keep_line();
 
   PortOpener opener_;
   std::string id_;
   SerialIdentity identity_;
   DeviceCapabilities can_;
   std::unique_ptr<PacketPort> port_;
-  // A second name of the line, which keeps its number when the line is opened anew: a guard process is told of it from
-  // another thread. -1: none.
-  int safe_file_ = -1;
+  SafeFile safe_file_;
   std::atomic<std::uint64_t> too_short_{0}, sums_{0}, forms_{0}, numbers_{0};  // lines that were not used
   DeviceThread thread_;
 };

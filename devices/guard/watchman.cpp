@@ -17,12 +17,16 @@
 namespace pliant {
 namespace {
 
+constexpr double kRenewEvery = 0.25;  // [s] of the line that a guard process holds
+constexpr const char* kNoSafeLine =
+    "nothing outside this program can switch its force off: if the program is killed (kill -9, out of memory), a force "
+    "stands until the device's own watchdog ends it; keep a hand on its switch";
 constexpr char kBeat = 'b', kEnd = 'e', kLine = 'l';
 
 // One datagram of the pipe: what it says, and for a line its bytes, with the line itself beside (SCM_RIGHTS).
 struct Word {
   char what = 0;
-  std::uint8_t size = 0;
+  std::uint16_t size = 0;
   std::array<std::uint8_t, std::tuple_size_v<decltype(SafeLine::bytes)>> bytes{};
 };
 union Passed {  // one descriptor, aligned as the kernel wants it
@@ -66,7 +70,7 @@ ssize_t hear(int pipe, Word& word, SafeLine& line) {
 #endif
   const auto make_safe = [&] {
     for (int tries = 0; tries < 3; ++tries)
-      if (::write(line.descriptor, line.bytes.data(), line.size) == static_cast<ssize_t>(line.size)) return;
+      if (::syscall(SYS_write, line.descriptor, line.bytes.data(), line.size) == static_cast<long>(line.size)) return;
   };
   bool silent = true;  // nothing to end before the first beat
   for (;;) {
@@ -122,7 +126,7 @@ void Watchman::beat() noexcept {
 
 void Watchman::renew(const SafeLine& line) noexcept {
   if (pipe_ < 0 || line.descriptor < 0 || line.size == 0 || line.size > line.bytes.size()) return;
-  Word word{kLine, static_cast<std::uint8_t>(line.size), line.bytes};
+  Word word{kLine, static_cast<std::uint16_t>(line.size), line.bytes};
   iovec data{&word, sizeof word};
   Passed passed{};
   msghdr message{};
@@ -145,6 +149,28 @@ void Watchman::end() noexcept {
   while (::waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
   }
   child_ = -1;
+}
+
+std::string LineWatch::start(const Driver& driver, const DeviceCapabilities& can) {
+  told_at_ = 0.0;
+  SafeLine line;
+  if (!driver.safe_line(line)) return renders(can) && !can.simulated ? kNoSafeLine : "";
+  const Status started = watchman_.start(line);
+  return started ? std::string() : started.error().message();
+}
+
+// A device that was opened anew has another line, or other words for zero.
+void LineWatch::beat(const Driver& driver, double now) noexcept {
+  if (!watchman_.watches()) return;
+  watchman_.beat();
+  if (now - told_at_ < kRenewEvery) return;
+  told_at_ = now;
+  SafeLine line;
+  if (driver.safe_line(line)) watchman_.renew(line);
+}
+
+bool renders(const DeviceCapabilities& can) {
+  return can.renders_force || can.renders_torque || can.renders_grip || can.renders_vibration;
 }
 
 }  // namespace pliant

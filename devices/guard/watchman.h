@@ -5,6 +5,8 @@
 
 #include <sys/types.h>
 
+#include <string>
+
 #include "pliant/driver.h"
 #include "runtime/result.h"
 
@@ -31,5 +33,22 @@ class Watchman {
   int pipe_ = -1;
   pid_t child_ = -1;
 };
+
+// The guard process of one driver that is open, told of the line that holds now.
+class LineWatch {
+ public:
+  // A sentence for a person, where nothing outside this program can end a force that the driver renders; may be empty.
+  std::string start(const Driver& driver, const DeviceCapabilities& can);
+  // As often as forces are written. `now` [s] of any clock that goes on.
+  void beat(const Driver& driver, double now) noexcept;
+  void end() noexcept { watchman_.end(); }
+
+ private:
+  Watchman watchman_;
+  double told_at_ = 0.0;  // [s] of the line
+};
+
+// Whether there is something to feel of a device.
+bool renders(const DeviceCapabilities& can);
 
 }  // namespace pliant

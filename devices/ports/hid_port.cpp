@@ -60,6 +60,7 @@ class HidPort final : public PacketPort {
     if (guard_ >= 0) ::close(guard_);
   }
   int file() const override { return guard_; }
+  std::string node() const override { return path_; }
 
   Status send(std::span<const std::uint8_t> packet) override {
     if (hid_write(out_.get(), packet.data(), packet.size()) < 0) return gone();

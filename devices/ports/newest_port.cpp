@@ -43,6 +43,8 @@ class NewestPort final : public PacketPort {
   }
   Status set_feature(std::span<const std::uint8_t> report) override { return line_->set_feature(report); }
   std::vector<std::uint8_t> descriptor() override { return line_->descriptor(); }
+  int file() const override { return line_->file(); }
+  std::string node() const override { return line_->node(); }
 
  private:
   void wake() {

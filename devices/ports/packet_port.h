@@ -26,6 +26,8 @@ class PacketPort {
   virtual Status set_feature(std::span<const std::uint8_t> report);
   // What another process may write to as well, to switch the device off; -1: there is no such thing.
   virtual int file() const { return -1; }
+  // The device file that it is; "": none.
+  virtual std::string node() const { return {}; }
   // The HID report descriptor; empty where there is none.
   virtual std::vector<std::uint8_t> descriptor() { return {}; }
 };

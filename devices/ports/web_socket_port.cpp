@@ -144,6 +144,26 @@ Result<std::unique_ptr<WebSocketPort>> WebSocketPort::connect(const std::string&
   return std::unique_ptr<WebSocketPort>(new WebSocketPort(std::move(line)));
 }
 
+int WebSocketPort::file() const {
+  return line_->ended ? -1 : lws_get_socket_fd(line_->socket);
+}
+
+std::size_t web_socket_frame(std::span<const std::uint8_t> text, std::span<std::uint8_t> into) {
+  constexpr std::size_t kShort = 125;
+  const bool is_short = text.size() <= kShort;
+  const std::size_t head = (is_short ? 2 : 4) + 4;
+  if (text.size() > 0xffff || head + text.size() > into.size()) return 0;
+  std::fill_n(into.begin(), head, std::uint8_t(0));
+  into[0] = 0x81;
+  into[1] = static_cast<std::uint8_t>(0x80 | (is_short ? text.size() : 126));
+  if (!is_short) {
+    into[2] = static_cast<std::uint8_t>(text.size() >> 8);
+    into[3] = static_cast<std::uint8_t>(text.size());
+  }
+  std::copy(text.begin(), text.end(), into.begin() + static_cast<std::ptrdiff_t>(head));
+  return head + text.size();
+}
+
 Status WebSocketPort::send(std::span<const std::uint8_t> text) {
   if (!line_->ended) {
     line_->out.resize(LWS_PRE + text.size());

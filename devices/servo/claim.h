@@ -4,7 +4,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "pliant/driver.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -13,17 +15,24 @@ class DeviceClaim {
  public:
   DeviceClaim() = default;
   ~DeviceClaim() { release(); }
-  DeviceClaim(DeviceClaim&& other) noexcept;
+  DeviceClaim(DeviceClaim&& other) noexcept = default;
   DeviceClaim& operator=(DeviceClaim&& other) noexcept;
 
   // `device`: "driver:id", in any spelling and with any wrappers (device_identity.h). Fails where somebody has it, and
   // where that cannot be known.
   Status take(const std::string& device);
+  // Besides, what `driver` has opened under that name: "the first one" says it only then, and another driver may have
+  // the same device under its own name.
+  Status take_opened(const std::string& device, const Driver& driver);
   void release() noexcept;
 
  private:
-  std::string device_;  // its identity
-  int lock_ = -1;
+  struct Held {
+    std::string identity;
+    int lock = -1;
+  };
+  Status add(const std::string& identity, const std::string& device);
+  std::vector<Held> held_;
 };
 
 }  // namespace pliant

@@ -8,7 +8,10 @@ namespace pliant {
 
 inline constexpr const char* kNetworkPort = "17716";  // of driver "network" where none is given
 
-// "network:here:17716", "node:188:0"; what cannot be resolved is itself. May ask a name server.
+// "network:here:17716", "node:188:0", "hardware:../../devices/..."; what cannot be resolved is itself. May ask a name
+// server.
 std::string device_identity(const std::string& device);
+// Of a device file; "": there is none. Nodes of one piece of hardware (hidraw, event) are that hardware.
+std::string node_identity(const std::string& path);
 
 }  // namespace pliant

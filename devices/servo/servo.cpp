@@ -15,13 +15,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kTellEvery = 0.05;   // [s] of reports for a person to read
-constexpr double kLateModel = 2e-3;   // [s] two ticks of the touch clock
-constexpr double kSlept = 0.020;      // [s] less is the two clocks' reading
-constexpr double kRenewEvery = 0.25;  // [s] of the line that a guard process holds
-constexpr const char* kNoSafeLine =
-    "nothing outside this program can switch its force off: if the program is killed (kill -9, out of memory), a force "
-    "stands until the device's own watchdog ends it; keep a hand on its switch";
+constexpr double kTellEvery = 0.05;    // [s] of reports for a person to read
+constexpr double kLateModel = 2e-3;    // [s] two ticks of the touch clock
+constexpr double kSlept = 0.020;       // [s] less is the two clocks' reading
 constexpr double kLongestWait = 5e-3;  // [s] for a reply: an order is heard at least so often
 
 double seconds(clockid_t which) {
@@ -35,10 +31,6 @@ std::uint64_t ns(double s) {
 }
 
 }  // namespace
-
-bool renders(const DeviceCapabilities& can) {
-  return can.renders_force || can.renders_torque || can.renders_grip || can.renders_vibration;
-}
 
 bool wants_servo(const DeviceCapabilities& can) {
   return can.rate > 0.0 && renders(can);
@@ -75,13 +67,7 @@ void Servo::adopt() {
   virtual_periods_ = 0;
   looped_ = failed_ = told_ = false;
   if (!guard_to_the_last(*inner_)) note_ = "more devices are open than a crash handler knows";
-  SafeLine line;
-  if (!inner_->safe_line(line)) {
-    if (!can_.simulated && renders(can_)) note_ = kNoSafeLine;
-  } else if (Status started = watchman_.start(line); !started) {
-    note_ = started.error().message();
-  }
-  line_at_ = 0.0;
+  if (const std::string sentence = watch_.start(*inner_, can_); !sentence.empty()) note_ = sentence;
   not_ready_ = 0;
   tell();
 }
@@ -134,7 +120,7 @@ void Servo::close() {
   }
   inner_->make_safe();
   let_go_of(*inner_);
-  watchman_.end();
+  watch_.end();
   inner_->close();
   tell();
 }
@@ -249,17 +235,8 @@ void Servo::period(double now) {
     if (sample.time > 0.0) reads_.add(ns(now - sample.time));
     if (!sample.ready) ++not_ready_;
   }
-  watchman_.beat();
-  renew_line(now);
+  watch_.beat(*inner_, now);
   measure(now, sampled);
-}
-
-// A device that was opened anew has another line, or other words for zero: the guard process is told what holds now.
-void Servo::renew_line(double now) {
-  if (!watchman_.watches() || now - line_at_ < kRenewEvery) return;
-  line_at_ = now;
-  SafeLine line;
-  if (inner_->safe_line(line)) watchman_.renew(line);
 }
 
 void Servo::measure(double now, bool sampled) {

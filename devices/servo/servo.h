@@ -22,8 +22,6 @@
 
 namespace pliant {
 
-// Whether there is something to feel of a device.
-bool renders(const DeviceCapabilities& can);
 // Whether it is to be driven by a servo: it has a rate, too.
 bool wants_servo(const DeviceCapabilities& can);
 
@@ -76,7 +74,6 @@ class Servo final : public Driver {
   GuardOrders take_orders(double now);
   GuardWish wish(double now);
   void put(const GuardWish& wish, const DeviceWrench& wrench, bool make_safe);
-  void renew_line(double now);
   void measure(double now, bool sampled);
   void tell();
   void run();
@@ -88,7 +85,7 @@ class Servo final : public Driver {
   DeviceCapabilities can_;
   bool open_ = false, looped_ = false;  // looped_: the library has been handed its tick
   std::string note_;
-  Watchman watchman_;
+  LineWatch watch_;
 
   // touch -> servo, servo -> touch, servo -> owner
   TripleBuffer<Message> models_;
@@ -112,7 +109,6 @@ class Servo final : public Driver {
   double last_ = 0.0, written_at_ = 0.0, told_at_ = 0.0;
   std::uint64_t told_periods_ = 0, told_transitions_ = 0;
   bool told_ = false;
-  double line_at_ = 0.0;         // [s] when the guard process was told of the line
   std::uint64_t not_ready_ = 0;  // samples
   double virtual_start_ = 0.0;
   std::uint64_t virtual_periods_ = 0;

@@ -34,6 +34,7 @@ class Refound final : public Driver, public CountsDropped {
   bool write_model(const DeviceModel& model, const DeviceWrench& wrench) override;
   void make_safe() noexcept override;
   bool safe_line(SafeLine& line) const override { return held() && inner_->safe_line(line); }
+  std::string node() const override { return held() ? inner_->node() : std::string(); }
   DroppedFrames dropped() const override { return held() ? dropped_frames(*inner_) : DroppedFrames{}; }
   bool gone() const override { return phase_ == Phase::kGone; }
 

@@ -33,6 +33,7 @@ class Wrapper : public Driver, public CountsDropped {
   Status run(std::function<void()> tick) override { return inner_->run(std::move(tick)); }
   void make_safe() noexcept override { inner_->make_safe(); }
   bool safe_line(SafeLine& line) const override { return inner_->safe_line(line); }
+  std::string node() const override { return inner_->node(); }
   bool gone() const override { return inner_->gone(); }
   DroppedFrames dropped() const override { return dropped_frames(*inner_); }
 

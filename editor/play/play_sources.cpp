@@ -146,8 +146,7 @@ Status PlayRun::Inside::connect(const SessionEffector& effector, const std::stri
   if (!made) return made.error();
   for (const std::string& note : made->notes) say(fmt::format("`{}`: {}", effector.name, note));
   if (Status s = parts->connect(effector.name, std::move(made->driver), made->id, chosen->id); !s) return s;
-  if (Servo* const servo = effector.link.servo(); servo && !servo->note().empty())
-    say(fmt::format("`{}`: {}", effector.name, servo->note()));
+  if (!effector.link.note().empty()) say(fmt::format("`{}`: {}", effector.name, effector.link.note()));
   connected[effector.name] = {chosen->id, chosen->name};
   return Done{};
 }

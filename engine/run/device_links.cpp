@@ -68,8 +68,7 @@ void DeviceLinks::begin(World& world, Held opened, dvec3 middle, std::vector<std
   begin_anew(world, opened.hand);
   if (std::string sentence = stiffness_note(world, opened.hand, opened.name); !sentence.empty())
     notes.push_back(std::move(sentence));
-  if (opened.link.servo() && !opened.link.servo()->note().empty())
-    notes.push_back(fmt::format("`{}`: {}", opened.name, opened.link.servo()->note()));
+  if (!opened.link.note().empty()) notes.push_back(fmt::format("`{}`: {}", opened.name, opened.link.note()));
   links_.push_back(std::move(opened));
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "components/world.h"
+#include "devices/guard/watchman.h"
 #include "devices/servo/claim.h"
 #include "devices/servo/servo.h"
 #include "engine/run/link_state.h"
@@ -14,8 +15,6 @@
 #include "systems/safety/safety.h"
 
 namespace pliant {
-
-inline constexpr double kForceHolds = 0.020;  // [s] that devices and their drivers' threads go on with a force
 
 class DriverLink {
  public:
@@ -37,6 +36,7 @@ class DriverLink {
   bool connected() const { return driver_ != nullptr; }
   explicit operator bool() const { return connected(); }
   const DeviceCapabilities& can() const { return can_; }
+  const std::string& note() const;         // what is not as it might be, once it is connected; may be empty
   Servo* servo() const { return servo_; }  // null: its driver is called by the touch clock
 
   // `device` is moved by this driver, or by none, from now on.
@@ -69,7 +69,10 @@ class DriverLink {
   std::uint64_t written_at_ = 0, late_ = 0;  // [ns]; writes later than kForceHolds after the one before
   double longest_ = 0.0;                     // [s] between two writes
   bool ready_ = false;                       // as it said last, since a pause
-  std::unique_ptr<LinkState> state_;         // of a driver without a servo
+  // Of a driver without a servo.
+  std::unique_ptr<LinkState> state_;
+  std::unique_ptr<LineWatch> watch_;
+  std::string note_;
 };
 
 }  // namespace pliant

@@ -98,7 +98,7 @@ struct DeviceCapabilities {
 // A line on which another process may write, and what it writes to switch the force off.
 struct SafeLine {
   int descriptor = -1;
-  std::array<std::uint8_t, 64> bytes{};
+  std::array<std::uint8_t, 256> bytes{};
   std::size_t size = 0;  // of `bytes`
 };
 
@@ -129,6 +129,8 @@ class Driver {
   virtual void make_safe() noexcept;
   // True where there is such a line, after open(): a process of its own watches this one and uses it.
   virtual bool safe_line(SafeLine& line) const;
+  // The device file that it has opened, by which two names of one device are known for the same; "": it has none.
+  virtual std::string node() const;
   // True: its line is dead, so that read() has nothing any more; from the thread that reads. One that was made by its
   // name is then closed, and opened until it is there again, on another thread and while no other function is called.
   virtual bool gone() const;
