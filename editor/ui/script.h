@@ -54,7 +54,8 @@ class Script {
   };
   // Appends the events of the next frame. The error names the line.
   Status next(const Surroundings& at, std::vector<InputEvent>& events);
-  bool done() const { return steps_.empty() && frames_.empty(); }
+  bool done() const;                   // and what it did last has been answered
+  Error ended(std::string why) const;  // at its last line
 
  private:
   struct Step {
@@ -73,7 +74,9 @@ class Script {
   std::deque<std::vector<InputEvent>> frames_;  // of the step under way
   double until_ = 0.0, began_ = -1.0;           // [s]
   int rest_ = 0;                                // frames since the last event
+  std::size_t line_ = 0;                        // of the last step that was begun
   bool at_once_ = false;                        // steps gather in one frame
+  std::string awaited_;                         // by the step before; "": it was no `await`
 };
 
 // "Ctrl+Shift+S" -> modifiers and key as GLFW numbers it; false: not understood.
