@@ -124,6 +124,7 @@ Status App::run() {
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
       at.figures = [this](const std::string& name) { say_figures(name); };
+      at.felt = [this](const std::string& name) { return write_felt(fs::path(options_.out) / name); };
       at.slow = [this](double seconds) { slow_ = std::clamp(seconds, 0.0, 2.0); };
       at.has_said = [this](const std::string& text) {
         return std::any_of(editor.said.begin(), editor.said.end(),

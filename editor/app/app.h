@@ -89,6 +89,7 @@ class App {
   bool ask_for_devices();
   void begin_play();
   void draw_play_buttons();
+  Status write_felt(const std::filesystem::path& file) const;  // of the last run, a row a tick
   void draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high);
   bool touch(const ViewportInput& in);  // the mouse in a level that is played; true: it is taken
   bool as_played() const;               // the picture is the renderer's

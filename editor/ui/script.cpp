@@ -153,10 +153,10 @@ Result<Script> Script::load(const std::filesystem::path& file) {
     std::getline(words >> std::ws, step.rest);
     std::istringstream rest(step.rest);
     for (std::string word; rest >> word;) step.words.push_back(word);
-    constexpr const char* kVerbs[] = {"click",     "drag",    "press", "move",       "release", "wheel",
-                                      "key",       "type",    "set",   "wait",       "await",   "expect",
-                                      "expect-no", "say",     "hear",  "screenshot", "drop",    "figures",
-                                      "close",     "at-once", "now",   "apart",      "slow"};
+    constexpr const char* kVerbs[] = {"click",     "drag",  "press",   "move",       "release", "wheel",
+                                      "key",       "type",  "set",     "wait",       "await",   "expect",
+                                      "expect-no", "say",   "hear",    "screenshot", "drop",    "figures",
+                                      "felt",      "close", "at-once", "now",        "apart",   "slow"};
     if (std::find(std::begin(kVerbs), std::end(kVerbs), step.verb) == std::end(kVerbs))
       return Error{fmt::format("{}:{}", script.file_, row),
                    "'" + step.verb + "' is no step; write, say, `click Inspector/stiffness`"};
@@ -360,6 +360,10 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   if (step.verb == "figures") {
     now.figures(step.rest);
     return Done{};
+  }
+  if (step.verb == "felt") {
+    const Status written = now.felt(step.rest);
+    return written ? written : wrong(written.error().message());
   }
   if (step.verb == "screenshot") {
     now.screenshot(step.rest);

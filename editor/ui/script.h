@@ -24,6 +24,9 @@
 //   hear TEXT                                                until the console's text holds it
 //   say TEXT                                                 an error unless the console's text holds it
 //   screenshot FILE.png                                      into the folder of --out
+//   felt FILE.csv                                         writes what each probe and tool felt in the run that is
+//   played
+//                                                            or was played last, a row a tick, into the folder of --out
 //   figures NAME                                             prints how long frames took since the last of these
 //   drop FILE [| FILE...]
 //   close
@@ -50,6 +53,7 @@ class Script {
     std::function<void(const std::string&)> screenshot;  // of the next frame
     std::function<bool(const std::string&)> has_said;
     std::function<void(const std::string&)> figures;
+    std::function<Status(const std::string&)> felt;
     std::function<void(double)> slow;  // [s] each frame from now on takes at least
   };
   // Appends the events of the next frame. The error names the line.

@@ -9,7 +9,8 @@
 namespace pliant {
 
 // Before bodies are made: TetMesh::start, and where the mesh is the shape under its weight, its nodes without. A body
-// that cannot have what it asks for begins as modelled and falls; TetReport::findings of its tetrahedra say so.
+// that cannot keep its shape begins at rest in its sag, one that has no rest falls; TetReport::findings of its
+// tetrahedra say so.
 void begin_under_gravity(World& world);
 
 // For whoever looks at a level before it runs: what sags far, turns over or finds no rest is said in
