@@ -99,11 +99,7 @@ Status App::run() {
   if (!options_.file.empty() && (find_recovery(options_.file, state_folder()) || lock_holder(options_.file))) {
     files_->open(options_.file, options_.unit);  // asks which, or who has it
   } else if (!options_.file.empty()) {
-    auto document = Document::open(options_.file, options_.unit);
-    if (!document) return document.error();
-    editor.take(*std::move(document));
-    settings.used(options_.file);
-    (void)settings.save();  // the next start knows it, whatever becomes of this one
+    files_->load(options_.file, options_.unit, false, [this](const Error& why) { not_opened_ = why; });
   }
   window_.show("Pliant");
   std::uint64_t before = now_ns();
@@ -128,6 +124,7 @@ Status App::run() {
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
       at.figures = [this](const std::string& name) { say_figures(name); };
+      at.felt = [this](const std::string& name) { return write_felt(fs::path(options_.out) / name); };
       at.slow = [this](double seconds) { slow_ = std::clamp(seconds, 0.0, 2.0); };
       at.has_said = [this](const std::string& text) {
         return std::any_of(editor.said.begin(), editor.said.end(),
@@ -138,7 +135,15 @@ Status App::run() {
         take_screenshot(fs::path(options_.out) / "failed.png");
         return s;
       }
-      if (script_->done() && settled()) script_.reset();
+      if (script_->done() && settled()) {
+        if (wants_out_) {  // nobody is there to answer
+          take_screenshot(fs::path(options_.out) / "failed.png");
+          return script_->ended(
+              "closes a level with changes that are in no file, and answers no question; end with "
+              "`click Unsaved/Discard` or `click Unsaved/Save`");
+        }
+        script_.reset();
+      }
     }
     if (std::exchange(look_changed_, false)) {
       set_look();
@@ -146,6 +151,7 @@ Status App::run() {
     }
     frame(events, static_cast<double>(now - before) * 1e-9);
     before = now;
+    if (not_opened_) return *not_opened_;
     window_.present();
   }
   files_->close_in_order();
@@ -228,6 +234,7 @@ bool App::save() {
 }
 
 void App::close() {
+  wants_out_ = true;
   leave_document([this] { closing_ = true; });
 }
 
@@ -353,6 +360,7 @@ void App::frame(std::span<const InputEvent> arrived, double dt) {
     }
   draw_banners();
   draw_toasts();
+  draw_opening();
   ask_to_leave();
   draw_question();
   wanted_tabs_.clear();
@@ -798,6 +806,7 @@ void App::ask_to_leave() {
   ImGui::SameLine();
   if (ui::button("Cancel", "Esc", true, 110) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
     after_leaving_ = nullptr;
+    wants_out_ = false;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();

@@ -89,6 +89,7 @@ class App {
   bool ask_for_devices();
   void begin_play();
   void draw_play_buttons();
+  Status write_felt(const std::filesystem::path& file) const;  // of the last run, a row a tick
   void draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high);
   bool touch(const ViewportInput& in);  // the mouse in a level that is played; true: it is taken
   bool as_played() const;               // the picture is the renderer's
@@ -97,6 +98,7 @@ class App {
   // `shown` [point]: the size as it is drawn, which may be less than what is wished for; a drag goes on from it.
   void splitter(const char* name, double& place, double shown, bool vertical, ImVec2 low, ImVec2 high, double sign);
   void order_picture();
+  void draw_opening();  // what takes long to open can be given up
   void ask_to_leave();
   void draw_question();
   void draw_banners();
@@ -144,6 +146,9 @@ class App {
   std::optional<std::uint64_t> selects_;  // the question whose answer is selected
   bool select_adds_ = false;
   bool closing_ = false, dirty_picture_ = true;
+  bool wants_out_ = false;               // it was asked to close, and may still have a question
+  bool opening_shown_ = false;           // its dialog was there in the frame before
+  std::optional<Error> not_opened_;      // why the file that it was started with is not there
   std::function<void()> after_leaving_;  // what waits for an answer about unsaved changes
   std::deque<Question> questions_;
   bool look_changed_ = false;

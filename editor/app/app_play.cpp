@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "content/files/file_io.h"
 #include "editor/app/app.h"
 #include "editor/play/run_findings.h"
 #include "editor/ui/widgets.h"
@@ -60,6 +61,16 @@ void App::begin_play() {
 
 void App::step_play(double seconds) {
   play_.step(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(seconds * play_.status().rate))));
+}
+
+Status App::write_felt(const std::filesystem::path& file) const {
+  std::string rows = "tick,time_s,probe,force_N,depth_m\n";
+  for (const PlayTrace& trace : play_.traces())
+    for (const PlaySample& each : trace.samples)
+      rows += fmt::format("{},{:.9g},{},{:.9g},{:.9g}\n", each.tick, each.time, trace.name, each.force, each.depth);
+  std::error_code ignored;
+  if (!file.parent_path().empty()) std::filesystem::create_directories(file.parent_path(), ignored);
+  return write_file(file, std::span(reinterpret_cast<const std::uint8_t*>(rows.data()), rows.size()));
 }
 
 void App::draw_play_buttons() {

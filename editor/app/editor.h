@@ -97,6 +97,16 @@ class Editor {
   std::shared_ptr<const PaintSurface> surface_of(NodeId id);
   // The same at once, where it takes that long; null: it cannot be made.
   std::shared_ptr<const PaintSurface> surface_now(NodeId id);
+  // The surface as it stands when the level begins: of a soft body that sags on its pins, at rest
+  // (document/resting_mesh.h); of all else that of above.
+  struct Ground {
+    std::shared_ptr<const PaintSurface> surface;  // null: not ready yet, or it cannot be made
+    bool ready = false;
+    double sag = 0.0;  // [m] the farthest that it is from where it is drawn
+    bool held = true, falls = false;
+  };
+  Ground ground_of(NodeId id);               // begins to prepare it
+  Ground ground_now(NodeId id);              // at once, where it takes that long
   const std::unique_ptr<Painting> painting;  // the brush, and what is done with it (editor/tools/painting.h)
 
   // --- Clipboard
@@ -132,6 +142,18 @@ class Editor {
     bool failed = false;
   };
   std::vector<std::shared_ptr<Surface>> surfaces_;
+  // Of a soft body, and all that it rests by.
+  struct Resting {
+    std::shared_ptr<const DocumentNode> node;
+    std::shared_ptr<const DocumentMesh> mesh;
+    dmat4 to_world{1};
+    dvec3 gravity{0};
+    std::vector<PaintLayer> pinned;
+    Ground ground;
+  };
+  bool rests_by_itself(NodeId id) const;  // a soft body that gravity may move
+  std::shared_ptr<Resting> resting_of(NodeId id);
+  std::vector<std::shared_ptr<Resting>> resting_;
 };
 
 }  // namespace pliant

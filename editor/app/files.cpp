@@ -156,11 +156,12 @@ void Files::follow_lock() {
   if (lock_->took_over()) app_.editor.say(file.filename().string() + " was left open by an editor that runs no more");
 }
 
-void Files::load(const fs::path& file, double unit, bool read_only) {
+void Files::load(const fs::path& file, double unit, bool read_only, std::function<void(const Error&)> failed) {
   app_.editor.jobs.start(
-      "open", "Opening " + file.filename().string(), [this, file, unit, read_only](const Jobs::Stop&) {
+      kOpenJob, "Opening " + file.filename().string(), [this, file, unit, read_only, failed](const Jobs::Stop&) {
         auto document = std::make_shared<Result<Document>>(Document::open(file, unit));
-        return [this, document, file, read_only](Editor& to) {
+        return [this, document, file, read_only, failed](Editor& to) {
+          if (!*document && failed) return failed(document->error());
           if (!*document) return to.say(document->error().message(), Severity::kError);
           to.take(std::move(**document));
           next_read_only_ = read_only;
@@ -171,8 +172,15 @@ void Files::load(const fs::path& file, double unit, bool read_only) {
       });
 }
 
+void Files::give_up_opening() {
+  const std::optional<Jobs::Progress> opening = app_.editor.jobs.progress(kOpenJob);
+  if (!opening) return;
+  app_.editor.jobs.cancel(kOpenJob);
+  app_.editor.say("Given up: " + opening->what);
+}
+
 void Files::recover(const RecoveryCopy& copy) {
-  app_.editor.jobs.start("open", "Recovering " + copy.title, [this, copy](const Jobs::Stop&) {
+  app_.editor.jobs.start(kOpenJob, "Recovering " + copy.title, [this, copy](const Jobs::Stop&) {
     auto document = std::make_shared<Result<Document>>(Document::recover(copy.copy, copy.file, copy.folder));
     return [this, document, copy](Editor& to) {
       if (!*document) return to.say(document->error().message(), Severity::kError);
@@ -260,7 +268,7 @@ void Files::revert() {
 void Files::reload(const std::string& what) {
   const fs::path file = app_.editor.document.file();
   const std::uint64_t document = app_.editor.documents;
-  app_.editor.jobs.start("open", "Reading " + file.filename().string(), [file, document, what](const Jobs::Stop&) {
+  app_.editor.jobs.start(kOpenJob, "Reading " + file.filename().string(), [file, document, what](const Jobs::Stop&) {
     const FileStamp stamp = stamp_of(file);
     auto level = std::make_shared<Result<Level>>(load_level(file));
     return [level, stamp, file, document, what](Editor& to) {
@@ -288,7 +296,8 @@ void Files::save_what_can_be() {
 void Files::watch() {
   Editor& editor = app_.editor;
   constexpr double kEvery = 1.0;  // [s]
-  if (editor.now - watched_ < kEvery || asking_ || editor.jobs.running("watch") || editor.jobs.running("open")) return;
+  if (editor.now - watched_ < kEvery || asking_ || editor.jobs.running("watch") || editor.jobs.running(kOpenJob))
+    return;
   watched_ = editor.now;
   const fs::path folder = editor.document.folder(), file = editor.document.file();
   Watches all;

@@ -27,6 +27,11 @@ class Files {
   void ask_open(const std::filesystem::path& folder = {});  // empty: where one is likely to look
   // Asks first where something is not saved, and where there are changes of a run that ended before they were saved.
   void open(const std::filesystem::path& file, double unit = 1.0);
+  // In the background, without a question. `failed`: hears why it cannot be opened; empty: the console says it.
+  void load(const std::filesystem::path& file, double unit, bool read_only = false,
+            std::function<void(const Error&)> failed = {});
+  void give_up_opening();  // the level stays as it is
+  static constexpr const char* kOpenJob = "open";
   void recover(const RecoveryCopy& copy);
   bool save();  // false: asks for a name, or failed
   void save_as(std::function<void()> then = {});
@@ -46,7 +51,6 @@ class Files {
   void given_up() { then_ = nullptr; }
 
  private:
-  void load(const std::filesystem::path& file, double unit, bool read_only = false);
   void ask_who_has(const std::filesystem::path& file, std::function<void(bool read_only)> then);
   void follow_lock();
   void write(const std::filesystem::path& file, bool copy, const std::function<void()>& then);

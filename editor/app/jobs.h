@@ -4,6 +4,8 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -20,8 +22,8 @@ class Jobs {
     using std::atomic<bool>::atomic;
     std::stop_source source;
   };
-  // Called on a thread; must end soon after `stop` is set. What it returns is called on the interface's thread unless
-  // the job was cancelled; it may be empty.
+  // Called on a thread; must end soon after `stop` is set. Long work (runtime/long_work.h) is watched: it ends by
+  // itself then. What it returns is called on the interface's thread unless the job was cancelled; it may be empty.
   using Work = std::function<std::function<void(Editor&)>(const Stop& stop)>;
 
   ~Jobs();  // stops all and waits
@@ -34,6 +36,12 @@ class Jobs {
   bool idle() const;                       // nothing that a user would wait for
   bool none() const { return jobs_.empty(); }
   std::vector<std::string> under_way() const;  // what each does, for the status line
+  struct Progress {
+    std::string what, doing;
+    double share = 0.0;    // [1] of the whole, as far as it is known
+    double seconds = 0.0;  // [s] since it began
+  };
+  std::optional<Progress> progress(const std::string& key) const;  // of the one that runs
   // On the interface's thread, once a frame.
   void deliver(Editor& editor);
   std::function<void()> wake;  // called when a job is done, on its thread
@@ -47,6 +55,10 @@ class Jobs {
       stop.source.request_stop();
     }
     std::atomic<bool> done{false};
+    std::uint64_t began = 0;   // [ns]
+    mutable std::mutex mutex;  // of the two below
+    std::string doing;
+    double share = 0.0;
     std::function<void(Editor&)> result;
     std::thread thread;
   };

@@ -23,7 +23,7 @@ std::string file_of(const State& state, const std::string& name) {
 std::vector<PathSurface> surfaces_of_paths(Editor& editor) {
   std::vector<PathSurface> all;
   for (const NodeId id : path_grounds(editor.state()))
-    if (auto surface = editor.surface_now(id))
+    if (auto surface = editor.ground_now(id).surface)
       all.push_back({std::move(surface), dvec3(editor.state().to_world(id)[3])});
   return all;
 }

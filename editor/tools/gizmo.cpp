@@ -16,7 +16,7 @@ bool GizmoTool::use(Editor& editor, const ViewportInput& in) {
   if (!busy) {
     hovered_ = GizmoPart::kNone;
     if (editor.selected.empty()) return false;
-    const Grip grip = grip_of(editor.state(), editor.selected, editor.active(), pivot, settings_.local_axes);
+    const GizmoGrip grip = grip_of(editor.state(), editor.selected, editor.active(), pivot, settings_.local_axes);
     if (in.over && !grip.held.empty() && !in.held) hovered_ = pick(picture_of(in), grip, {in.x, in.y});
     if (in.pressed && !in.alt) {
       hovered_ = pick(picture_of(in), grip, {in.x, in.y});
@@ -75,7 +75,7 @@ void GizmoTool::show(Editor& editor) {
 void GizmoTool::finish(Editor& editor, bool keep) {
   const auto stays = [&] {
     const std::vector<Placing> to = any_ ? placings(amounts_) : std::vector<Placing>{};
-    return std::equal(to.begin(), to.end(), grip_.held.begin(), [](const Placing& a, const Grip::Held& b) {
+    return std::equal(to.begin(), to.end(), grip_.held.begin(), [](const Placing& a, const GizmoGrip::Held& b) {
       return a.local.translation == b.local.translation && a.local.rotation == b.local.rotation &&
              a.local.scale == b.local.scale;
     });
@@ -118,9 +118,9 @@ void GizmoTool::overlay(Editor& editor, const ViewportInput& in, ImDrawList& lis
   if (editor.selected.empty()) return;
   const GizmoPicture picture = picture_of(in);
   const bool busy = dragging_ || typing_;
-  const Grip grip = grip_of(editor.state(), editor.selected, editor.active(), pivot, settings_.local_axes);
+  const GizmoGrip grip = grip_of(editor.state(), editor.selected, editor.active(), pivot, settings_.local_axes);
   if (grip.held.empty()) return;
-  Grip shown = grip;
+  GizmoGrip shown = grip;
   if (busy) {
     shown.axes = grip_.axes;
     // What is held keeps its middle in sight: bounds change a little while it turns.

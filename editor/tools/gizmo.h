@@ -29,8 +29,8 @@ class GizmoTool : public ViewTool {
   virtual dvec3 typed_amounts(GizmoPart part, double value) = 0;
   virtual std::vector<Placing> placings(dvec3 amounts) const = 0;
   virtual std::string readout(dvec3 amounts) const = 0;
-  virtual GizmoPart pick(const GizmoPicture& picture, const Grip& grip, dvec2 mouse) const = 0;
-  virtual void draw(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, ImDrawList& list,
+  virtual GizmoPart pick(const GizmoPicture& picture, const GizmoGrip& grip, dvec2 mouse) const = 0;
+  virtual void draw(const GizmoPicture& picture, const GizmoGrip& grip, ImVec2 corner, ImDrawList& list,
                     GizmoPart bright) const = 0;
   virtual bool lengths() const { return false; }  // what is typed is a length
   virtual void begun(Editor&) {}
@@ -39,7 +39,7 @@ class GizmoTool : public ViewTool {
   virtual void more_options(Editor&) {}
 
   Settings& settings_;
-  Grip grip_;                          // while something is held: as it was before
+  GizmoGrip grip_;                     // while something is held: as it was before
   GizmoPart part_ = GizmoPart::kNone;  // that is held
   dvec2 from_{0}, last_{0};            // [pixel] where the drag began, and the mouse in the frame before
 
@@ -63,13 +63,13 @@ class GizmoTool : public ViewTool {
 namespace gizmo {
 inline constexpr float kLength = 92, kPlaneNear = 26, kPlaneFar = 42, kCenter = 9, kReach = 8, kRing = 84;
 // [m] of one point at the grip's pivot; nothing: it is behind the eye.
-std::optional<double> unit(const GizmoPicture& picture, const Grip& grip);
+std::optional<double> unit(const GizmoPicture& picture, const GizmoGrip& grip);
 ImU32 color_of(GizmoPart part, bool bright, float alpha = 1.0f);
 // [1] 0 where an axis points at the eye, or a plane is edge-on: such a part is not drawn.
-float clarity(const GizmoPicture& picture, const Grip& grip, GizmoPart part);
+float clarity(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part);
 // Axes, planes and the middle, as Move and Scale have them.
-GizmoPart pick_arrows(const GizmoPicture& picture, const Grip& grip, dvec2 mouse);
-void draw_arrows(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, ImDrawList& list, GizmoPart bright,
+GizmoPart pick_arrows(const GizmoPicture& picture, const GizmoGrip& grip, dvec2 mouse);
+void draw_arrows(const GizmoPicture& picture, const GizmoGrip& grip, ImVec2 corner, ImDrawList& list, GizmoPart bright,
                  bool boxes);
 void letter(ImDrawList& list, ImVec2 at, int axis, ImU32 color);
 }  // namespace gizmo

@@ -45,14 +45,14 @@ dvec3 solved(const dmat3& m, dvec3 v) {
   return x;
 }
 
-void carry(const Grip::Held& held, dvec3 to, LocalTransform& local) {
+void carry(const GizmoGrip::Held& held, dvec3 to, LocalTransform& local) {
   local.translation = vec3(dvec3(held.local.translation) + solved(linear(held.parent), to - held.place));
 }
 
 }  // namespace
 
-Grip grip_of(const State& state, std::span<const NodeId> ids, NodeId active, Pivot pivot, bool local) {
-  Grip grip;
+GizmoGrip grip_of(const State& state, std::span<const NodeId> ids, NodeId active, Pivot pivot, bool local) {
+  GizmoGrip grip;
   grip.local = local;
   const std::vector<dmat4> frames = world_frames(state);
   std::unordered_map<NodeId, std::size_t> place;
@@ -106,7 +106,8 @@ std::optional<dvec3> on_plane(const ViewRay& ray, dvec3 origin, dvec3 normal) {
   return ray.from + away * ray.along;
 }
 
-std::optional<dvec3> moved_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to) {
+std::optional<dvec3> moved_by(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, dvec2 from,
+                              dvec2 to) {
   const ViewRay first = picture.ray(from.x, from.y), now = picture.ray(to.x, to.y);
   dvec3 by(0);
   if (is_axis(part)) {
@@ -151,7 +152,8 @@ double turned_by(const GizmoPicture& picture, dvec3 pivot, dvec3 axis, dvec2 fro
   return length(way) > 1e-6 ? dot(to - from, glm::normalize(way)) / radius_pixels : 0.0;
 }
 
-std::optional<dvec3> scaled_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to) {
+std::optional<dvec3> scaled_by(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, dvec2 from,
+                               dvec2 to) {
   dvec3 factors(1);
   if (part == GizmoPart::kFree) return dvec3(std::exp(((to.x - from.x) - (to.y - from.y)) / kFreeScale));
   const ViewRay first = picture.ray(from.x, from.y), now = picture.ray(to.x, to.y);
@@ -171,19 +173,19 @@ std::optional<dvec3> scaled_by(const GizmoPicture& picture, const Grip& grip, Gi
   return factors;
 }
 
-std::vector<Placing> moved(const Grip& grip, dvec3 by) {
+std::vector<Placing> moved(const GizmoGrip& grip, dvec3 by) {
   std::vector<Placing> out;
-  for (const Grip::Held& held : grip.held) {
+  for (const GizmoGrip::Held& held : grip.held) {
     out.push_back({held.id, held.local});
     carry(held, held.place + by, out.back().local);
   }
   return out;
 }
 
-std::vector<Placing> turned(const Grip& grip, dvec3 axis, double angle) {
+std::vector<Placing> turned(const GizmoGrip& grip, dvec3 axis, double angle) {
   const dmat3 turn = glm::mat3_cast(glm::angleAxis(angle, glm::normalize(axis)));
   std::vector<Placing> out;
-  for (const Grip::Held& held : grip.held) {
+  for (const GizmoGrip::Held& held : grip.held) {
     out.push_back({held.id, held.local});
     LocalTransform& local = out.back().local;
     carry(held, grip.pivot + turn * (held.place - grip.pivot), local);
@@ -199,13 +201,13 @@ std::vector<Placing> turned(const Grip& grip, dvec3 axis, double angle) {
   return out;
 }
 
-std::vector<Placing> scaled(const Grip& grip, dvec3 factors) {
+std::vector<Placing> scaled(const GizmoGrip& grip, dvec3 factors) {
   dmat3 stretch(1);
   const dmat3 back = glm::inverse(grip.axes);
   for (int i = 0; i < 3; ++i) stretch[i] = grip.axes[i] * factors[i];
   stretch = stretch * back;
   std::vector<Placing> out;
-  for (const Grip::Held& held : grip.held) {
+  for (const GizmoGrip::Held& held : grip.held) {
     out.push_back({held.id, held.local});
     LocalTransform& local = out.back().local;
     carry(held, grip.pivot + stretch * (held.place - grip.pivot), local);

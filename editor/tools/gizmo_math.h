@@ -36,7 +36,7 @@ inline int axis_of(GizmoPart part) {
 }
 
 // What is held: the topmost nodes of a selection, and about what they move.
-struct Grip {
+struct GizmoGrip {
   struct Held {
     NodeId id;
     LocalTransform local;
@@ -53,7 +53,7 @@ enum class Pivot : std::uint8_t {
   kMiddle,  // the middle of their bounds
 };
 // `local`: along the axes of `active`, else the world's. Nothing to hold: no `held`.
-Grip grip_of(const State& state, std::span<const NodeId> ids, NodeId active, Pivot pivot, bool local);
+GizmoGrip grip_of(const State& state, std::span<const NodeId> ids, NodeId active, Pivot pivot, bool local);
 
 // [m] of a pixel at a place; nothing: it is behind the eye.
 std::optional<double> metres_of_pixel(const GizmoPicture& picture, dvec3 place);
@@ -63,16 +63,17 @@ std::optional<double> along_line(const ViewRay& ray, dvec3 origin, dvec3 along);
 std::optional<dvec3> on_plane(const ViewRay& ray, dvec3 origin, dvec3 normal);
 
 // How far the hand has gone between two pixels, along the grip's axes [m].
-std::optional<dvec3> moved_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to);
+std::optional<dvec3> moved_by(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, dvec2 from, dvec2 to);
 // By what angle about `axis` the hand has turned between two pixels [rad]; of a large turn, add small ones.
 double turned_by(const GizmoPicture& picture, dvec3 pivot, dvec3 axis, dvec2 from, dvec2 to, double radius_pixels);
 // By what factor along each of the grip's axes it has scaled.
-std::optional<dvec3> scaled_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to);
+std::optional<dvec3> scaled_by(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, dvec2 from,
+                               dvec2 to);
 
 // Where the nodes stand then.
-std::vector<Placing> moved(const Grip& grip, dvec3 by);                   // `by` [m] world
-std::vector<Placing> turned(const Grip& grip, dvec3 axis, double angle);  // `axis` world
-std::vector<Placing> scaled(const Grip& grip, dvec3 factors);             // along the grip's axes
+std::vector<Placing> moved(const GizmoGrip& grip, dvec3 by);                   // `by` [m] world
+std::vector<Placing> turned(const GizmoGrip& grip, dvec3 axis, double angle);  // `axis` world
+std::vector<Placing> scaled(const GizmoGrip& grip, dvec3 factors);             // along the grip's axes
 
 double snapped(double value, double step);  // to a multiple; step 0: as it is
 

@@ -46,7 +46,7 @@ class TurnTool : public GizmoTool {
     const std::string about = is_axis(part_) ? std::string(1, "xyz"[axis_of(part_)]) + "  " : "";
     return fmt::format("{}{:.4g}\u00b0", about, glm::degrees(by.x));
   }
-  GizmoPart pick(const GizmoPicture& picture, const Grip& grip, dvec2 mouse) const override {
+  GizmoPart pick(const GizmoPicture& picture, const GizmoGrip& grip, dvec2 mouse) const override {
     GizmoPart found = GizmoPart::kNone;
     double nearest = static_cast<double>(ui::px(gizmo::kReach));
     for (const GizmoPart part : {GizmoPart::kX, GizmoPart::kY, GizmoPart::kZ, GizmoPart::kFree}) {
@@ -62,7 +62,7 @@ class TurnTool : public GizmoTool {
     }
     return found;
   }
-  void draw(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, ImDrawList& list,
+  void draw(const GizmoPicture& picture, const GizmoGrip& grip, ImVec2 corner, ImDrawList& list,
             GizmoPart bright) const override {
     for (const bool behind : {true, false})
       for (const GizmoPart part : {GizmoPart::kFree, GizmoPart::kX, GizmoPart::kY, GizmoPart::kZ}) {
@@ -101,13 +101,13 @@ class TurnTool : public GizmoTool {
   const char* snap_unit() const override { return "\u00b0"; }
 
  private:
-  static dvec3 axis(const GizmoPicture& picture, const Grip& grip, GizmoPart part) {
+  static dvec3 axis(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part) {
     if (is_axis(part)) return grip.axes[axis_of(part)];
     return picture.orthographic > 0.0 ? -picture.forward() : glm::normalize(picture.view.eye - grip.pivot);
   }
   // Pieces of a ring in pixels, and whether each is on the eye's side.
   template <class Visit>
-  static void each_piece(const GizmoPicture& picture, const Grip& grip, GizmoPart part, Visit visit) {
+  static void each_piece(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, Visit visit) {
     const auto size = gizmo::unit(picture, grip);
     if (!size) return;
     const dvec3 n = axis(picture, grip, part);

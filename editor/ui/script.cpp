@@ -153,10 +153,10 @@ Result<Script> Script::load(const std::filesystem::path& file) {
     std::getline(words >> std::ws, step.rest);
     std::istringstream rest(step.rest);
     for (std::string word; rest >> word;) step.words.push_back(word);
-    constexpr const char* kVerbs[] = {"click",     "drag",    "press", "move",       "release", "wheel",
-                                      "key",       "type",    "set",   "wait",       "await",   "expect",
-                                      "expect-no", "say",     "hear",  "screenshot", "drop",    "figures",
-                                      "close",     "at-once", "now",   "apart",      "slow"};
+    constexpr const char* kVerbs[] = {"click",     "drag",  "press",   "move",       "release", "wheel",
+                                      "key",       "type",  "set",     "wait",       "await",   "expect",
+                                      "expect-no", "say",   "hear",    "screenshot", "drop",    "figures",
+                                      "felt",      "close", "at-once", "now",        "apart",   "slow"};
     if (std::find(std::begin(kVerbs), std::end(kVerbs), step.verb) == std::end(kVerbs))
       return Error{fmt::format("{}:{}", script.file_, row),
                    "'" + step.verb + "' is no step; write, say, `click Inspector/stiffness`"};
@@ -361,6 +361,10 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     now.figures(step.rest);
     return Done{};
   }
+  if (step.verb == "felt") {
+    const Status written = now.felt(step.rest);
+    return written ? written : wrong(written.error().message());
+  }
   if (step.verb == "screenshot") {
     now.screenshot(step.rest);
     frames_.push_back({});
@@ -396,17 +400,22 @@ Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {
     rest_ = 0;
     return Done{};
   }
-  if (steps_.empty()) return Done{};
+  if (steps_.empty()) {
+    ++rest_;
+    return Done{};
+  }
   const std::string& verb = steps_.front().verb;
   const bool in_parts = verb == "move" || verb == "release";  // of a press: the hand does not wait
   if (++rest_ < kRestFrames) return Done{};
-  if (!now.under_way.empty() && !in_parts && verb != "wait" && verb != "await" && verb != "hear") {
+  const bool gives_up = awaited_.starts_with("Opening/");  // what is under way
+  if (!now.under_way.empty() && !in_parts && !gives_up && verb != "wait" && verb != "await" && verb != "hear") {
     if (until_ == 0.0) until_ = now.now + kScriptPatience;
     if (now.now < until_) return Done{};
     return Error{fmt::format("{}:{}", file_, steps_.front().line),
                  "the editor did not come to rest within 60 s: " + now.under_way + " is under way"};
   }
   until_ = 0.0;
+  line_ = steps_.front().line;
   if (const std::string both = shared_identity(); !both.empty())
     return Error{fmt::format("{}:{}", file_, steps_.front().line), both};
   bool waits = false;
@@ -414,6 +423,7 @@ Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {
   if (waits) return Done{};
   began_ = -1.0;
   const bool gathered = steps_.front().verb == "now";
+  if (verb != "screenshot") awaited_ = verb == "await" ? steps_.front().rest : "";
   steps_.pop_front();
   if (gathered) {
     std::vector<InputEvent> all;
@@ -421,6 +431,14 @@ Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {
     frames_.assign(1, std::move(all));
   }
   return Done{};
+}
+
+bool Script::done() const {
+  return steps_.empty() && frames_.empty() && rest_ > kRestFrames;
+}
+
+Error Script::ended(std::string why) const {
+  return {fmt::format("{}:{}", file_, line_), std::move(why)};
 }
 
 }  // namespace pliant::ui

@@ -76,6 +76,8 @@ bool section(const char* label, bool open_at_first = true);  // a header that fo
 void label(const char* text, const char* hint_text = nullptr);
 void dim(const char* text);  // wrapped, in the colour of what matters less
 void title(const char* text);
+// As much of a text as a box of `wide` by `high` pixels holds, wrapped; an ellipsis stands for the rest.
+std::string fitted(const std::string& text, const ImFont& font, float wide, float high);
 void gap(float points = kSpace);
 // The next widget, labelled so, stands beside the last one, or below where there is no room up to rows_end_at().
 void beside(float gap_points, const char* next, float more_points = 0);

@@ -27,7 +27,9 @@ inline constexpr InterruptWords kAllOrNothing{"ending; press Ctrl-C again to qui
 class Interrupt {
  public:
   explicit Interrupt(InterruptWords words = {});
-  ~Interrupt();  // signals do what they did before
+  // Signals do what they did before. After one of them has ended the run they do nothing any more: the process is about
+  // to end, with the status of that run; a third Ctrl-C still ends it at once.
+  ~Interrupt();
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 

@@ -39,9 +39,14 @@ void begin_body(const SoftBody& body, dvec3 gravity, TetMesh& tets) {
     return say("is not pinned, so it falls whatever `under_gravity` says; pin it");
   if (body.under_gravity == UnderGravity::kModelled) {
     Unloaded unloaded = find_unloaded(tets, body, gravity);
-    if (!unloaded.found) return say(sag_doubt(body, {.held = true}, &unloaded));
-    tets.start = std::move(tets.nodes);
-    tets.nodes = std::move(unloaded.nodes);
+    if (unloaded.found) {
+      tets.start = std::move(tets.nodes);
+      tets.nodes = std::move(unloaded.nodes);
+      return;
+    }
+    say(sag_doubt(body, {.held = true}, &unloaded));
+    Equilibrium rest = find_equilibrium(tets, body, gravity);
+    if (rest.converged) tets.start = std::move(rest.nodes);
     return;
   }
   Equilibrium rest = find_equilibrium(tets, body, gravity);
