@@ -1,4 +1,4 @@
-// A Level that did not come from glTF, as glTF. What load_level reads of the result is the Level again, bit for bit.
+// Writes a Level that was not loaded from glTF as glTF. load_level reads back the same Level, bit for bit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,12 +66,12 @@ class Builder {
       out.json["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
       out.buffers.push_back(std::move(bytes_));
     }
-    out.images.resize(model_.images.size());  // which lie in the buffer
+    out.images.resize(model_.images.size());  // stored in the buffer
     out.model = std::move(model_);
     return out;
   }
 
-  // Pictures are textures by the same numbers.
+  // Texture i uses picture i.
   void images(std::size_t first = 0) {
     for (std::size_t i = first; i < level_.images.size(); ++i) {
       const Image& image = level_.images[i];
@@ -103,7 +103,7 @@ class Builder {
     if (m.height_texture >= 0)
       out.extras = tinygltf::Value(tinygltf::Value::Object{{"height_texture", texture_value(m.height_texture)},
                                                            {"height_scale", value(m.height_scale)}});
-    // glTF's factor ends at 1; what is brighter is scaled by a power of two, which loses no bit.
+    // glTF limits the factor to 1. Brighter values are scaled by a power of two, which is exact.
     float strength = 1.0f;
     while (std::max({m.emissive.x, m.emissive.y, m.emissive.z}) > strength) strength *= 2.0f;
     out.emissiveFactor = numbers(m.emissive / strength);
@@ -126,7 +126,7 @@ class Builder {
     model_.materials.push_back(std::move(out));
   }
 
-  // Nothing to say: no extension.
+  // All values are defaults: no extension.
   void extend(tinygltf::ExtensionMap& extensions, const char* name, tinygltf::Value::Object members) {
     if (members.empty()) return;
     extensions[name] = tinygltf::Value(std::move(members));
