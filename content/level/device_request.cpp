@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMostAlternatives = 8, kMostWrappers = 8, kLongestWord = 40, kLongestShown = 80;
 
 constexpr std::array<std::string_view, 4> kKinds{"any-force", "any-pose", "any", "mouse"};
-// Drivers of hardware that is plugged in, or of a maker's service: their first device.
+// Drivers of directly connected hardware or of a vendor's service; they open their first device.
 constexpr std::array<std::string_view, 9> kHardware{"spacemouse", "dualsense", "dualshock4",     "gamepad", "polhem",
                                                     "falcon",     "haply",     "forcedimension", "touch"};
 constexpr std::array<std::string_view, 15> kSimulatedKeys{
@@ -44,7 +44,7 @@ std::vector<std::string_view> parts_of(std::string_view text, char mark) {
   }
 }
 
-// Words and numbers with their units: nothing that a path, an address or a shell needs beyond them.
+// Only words and numbers with units: excludes the characters that paths, addresses and shells need.
 bool plain(std::string_view word) {
   const auto harmless = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
