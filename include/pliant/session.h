@@ -1,4 +1,4 @@
-// A scene that is touched: its clocks, its probes' sources, and what they feel.
+// A running scene: its clocks, the sources of its probes, and the resulting forces.
 //
 //   pliant::Scene scene;
 //   scene.add_surface("tissue", mesh);
@@ -9,15 +9,14 @@
 //   session->step();
 //   double newton = pliant::length(session->reading("finger").value().force);
 //
-// Two ways to run. Lockstep: step() runs ticks on the caller's thread in virtual time; the same input gives the same
-// bits. Real time: start() runs the touch clock (1 kHz) and, where a scene has bodies, the soft clock on threads of
-// their own until stop(). One thread owns a Session and calls all of its functions; in real time they exchange data
-// with the clocks and never make them wait. Whatever ends a run, the last force that leaves for a device is zero.
+// There are two modes. Lockstep: step() runs ticks on the caller's thread in virtual time; results are bitwise
+// reproducible. Real time: start() runs the touch clock (1 kHz) and, if the scene has bodies, the soft clock on
+// separate threads until stop(). One thread owns a Session and calls all of its functions; in real time they exchange
+// data with the clocks without blocking them. The last force written to a device is always zero.
 //
-// Misuse is an Error with a sentence: an unknown name, two sources for one probe, step() while the clocks run. No
-// function throws. What is returned is a copy; notes() and objects() refer into the session until the next call of a
-// function that is not const. A session that was moved from may only be destroyed or assigned to. World frame: metres,
-// right-handed, Y up.
+// Misuse returns an Error: an unknown name, two sources for one probe, step() while the clocks run. No function throws.
+// Return values are copies; notes() and objects() return references that are valid until the next non-const call. A
+// moved-from session may only be destroyed or assigned to. World frame: metres, right-handed, Y up.
 #pragma once
 
 #include <cstdint>
@@ -42,35 +41,35 @@ struct ContactReading {
   double depth = 0.0;  // [m] below the undeformed surface
   bool sliding = false;
   std::uint32_t object = 0;  // into Session::objects()
-  // Of the object, as Session::triangles numbers them: where `position` lies, and the corner that is nearest to it.
+  // Of the object, numbered as in Session::triangles: the triangle that contains `position`, and its corner nearest to
+  // it.
   std::uint32_t triangle = 0xffffffff, vertex = 0xffffffff;
 };
 
-// One of the two that touch.
+// One side of a contact.
 struct ContactSide {
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::uint32_t object = kNone;    // into Session::objects(); kNone: a probe
   std::uint32_t effector = kNone;  // into Session::effectors(); kNone: neither a probe nor a tool
-  // Of the object, as Session::triangles numbers them: where it is touched, and the corner that is nearest; kNone: of a
-  // probe.
+  // Of the object, numbered as in Session::triangles: the touched triangle, and its nearest corner; kNone: of a probe.
   std::uint32_t triangle = kNone, vertex = kNone;
 };
 
-// Where soft and rigid bodies, tools and probes among them, press on each other and on surfaces.
+// A contact between soft or rigid bodies (including tools and probes), or between one and a surface.
 struct BodyContact {
   dvec3 position{0};  // [m] world
   dvec3 normal{0};    // [1] world, unit, towards the body that `force` is on
   dvec3 force{0};     // [N] world, on `a`, with friction; its reaction is on `b`
   bool sliding = false;
-  double depth = 0.0;  // [m] of `a` in `b` along the normal, at the step's begin; below 0: they are still so far apart
-  ContactSide a, b;    // the same object twice: it folds onto itself
+  double depth = 0.0;  // [m] of `a` in `b` along the normal, at the start of the step; below 0: distance
+  ContactSide a, b;    // the same object twice: self-contact
 };
-// What tissue and contacts did to a tool's handle in a soft step.
+// The wrench of tissue and contacts on a tool's handle in a soft step.
 struct HandleReading {
   std::string tool;
   dvec3 position{0};  // [m] world
   dquat rotation{1, 0, 0, 0};
-  dvec3 force{0}, torque{0};  // [N], [N m] world, about its middle
+  dvec3 force{0}, torque{0};  // [N], [N m] world, about its centre
 };
 
 // One probe or tool after a tick.
@@ -81,44 +80,44 @@ struct Reading {
   double time = 0.0;   // [s]
   bool ready = false;  // its device's state is known; false: the force is zero
   bool touching = false;
-  dvec3 position{0};             // [m] world: of a probe; of a tool's device
-  dvec3 force{0};                // [N] world, on the hand that holds it, as sent
-  dvec3 torque{0};               // [N m] world, on the hand that holds it, as sent; of tools
+  dvec3 position{0};             // [m] world: of a probe; for a tool, of its device
+  dvec3 force{0};                // [N] world, on the hand, as sent
+  dvec3 torque{0};               // [N m] world, on the hand, as sent; only tools
   double depth = 0.0;            // [m] below the undeformed surface, of the strongest contact
   dvec3 normal{0};               // [1] world, of the strongest contact
   std::uint32_t object = kNone;  // into Session::objects(): of the strongest contact
-  std::uint32_t contacts = 0;    // of a probe with deformable surfaces: how many `contact` holds
+  std::uint32_t contacts = 0;    // number of a probe's contacts with deformable surfaces: entries of `contact`
   std::array<ContactReading, kMostContacts> contact;
 };
 
-// What a run was like so far.
+// Statistics of a run so far.
 struct SessionFigures {
   std::uint64_t ticks = 0;
   double p50_us = 0.0, p99_us = 0.0, max_us = 0.0;  // of a tick
-  std::uint64_t overruns = 0;                       // in real time: ticks that could not begin in time
+  std::uint64_t overruns = 0;                       // in real time: ticks that started late
   std::uint64_t soft_steps = 0;
 };
 
-// The surface of an object as it is drawn. Vertices of the collision mesh are split where shading needs it.
+// The drawn surface of an object. Vertices of the collision mesh are split where shading needs it.
 struct Geometry {
   std::vector<vec3> position;        // [m] P0, at rest, object frame
-  std::vector<vec3> normal;          // [1] N0 of the collision mesh: the height acts along it
+  std::vector<vec3> normal;          // [1] N0 of the collision mesh; the height displaces along it
   std::vector<vec3> shading_normal;  // [1]
   std::vector<vec2> uv;
-  std::vector<std::uint32_t> stream_vertex;  // of each: its place in the stream
-  std::vector<std::uint32_t> index;          // three a triangle
+  std::vector<std::uint32_t> stream_vertex;  // per vertex: its index in the stream
+  std::vector<std::uint32_t> index;          // three per triangle
 };
 
 class Session {
  public:
-  // Prepares everything a tick will need. The scene is copied. Of a large scene this takes seconds: `progress` is told,
-  // on this thread, and may end it with an Error.
+  // Copies the scene and allocates everything a tick needs. For a large scene this takes seconds: `progress` is called
+  // on this thread and may cancel with an Error.
   static Result<Session> open(const Scene& scene, const OpenProgress& progress = {});
   Session(Session&&) noexcept;
   Session& operator=(Session&&) noexcept;
   ~Session();  // stop()
 
-  // What was read or made differently than one might expect.
+  // Unexpected conversions and defaults.
   const std::vector<std::string>& notes() const& PLIANT_LIFETIMEBOUND;
   std::vector<std::string> notes() &&;
   std::vector<std::string> effectors() const;  // probes, then tools
@@ -126,35 +125,35 @@ class Session {
   const std::vector<std::string>& objects() const& PLIANT_LIFETIMEBOUND;
   std::vector<std::string> objects() &&;
 
-  // --- What moves a probe or tool. Each has one source: a second one is an error until release().
-  // Where it is from now on. In real time it goes there in the time since it was last set (at most 0.1 s), so
-  // that a program may set it once a picture; after 0.25 s without a new pose it counts as lost.
+  // --- The source of a probe or tool. Each has one; a second one is an error until release(). Sets the target pose. In
+  // real time, the motion towards it takes the time since the last call (at most 0.1 s), so one call per frame
+  // suffices. After 0.25 s without a new pose the source counts as lost.
   Status move(const std::string& effector, dvec3 position, dquat rotation = {1, 0, 0, 0});
   Status follow(const std::string& effector, Path path);
-  Status orbit(const std::string& effector);  // a path over the scene's surfaces; not while the clocks run
-  // "NAME" or "NAME:ID" of a registered driver; or a driver of one's own.
+  Status orbit(const std::string& effector);  // a generated path over the scene's surfaces; not while the clocks run
+  // "NAME" or "NAME:ID" of a registered driver; or a custom driver.
   Status connect(const std::string& effector, const std::string& driver);
   Status connect(const std::string& effector, std::unique_ptr<Driver> driver, const std::string& id = {});
-  Status release(const std::string& effector);  // nobody moves it: no force
+  Status release(const std::string& effector);  // removes the source: no force
 
-  // --- What stands between the session and a hand (pliant/device_state.h). Drivers that say a rate and render anything
-  // have a servo each. In real time it runs on a thread of its own; in lockstep in step(), in virtual time, the same
-  // periods for the same ticks, and a device that is run by its answers or by its maker's library is refused. How the
-  // next driver that is connected to it is guarded.
+  // --- Safety of devices (pliant/device_state.h). Drivers with a rate that render anything have their own servo. In
+  // real time it runs on its own thread. In lockstep it runs in step(), in virtual time, with the same periods for the
+  // same ticks; devices with kReply or kCallback are rejected there. Safety parameters for the next driver connected to
+  // this effector.
   Status guard(const std::string& effector, const GuardParameters& parameters);
   Result<DeviceReport> device_state(const std::string& effector) const;
-  Status arm(const std::string& effector);     // after a trip, or where it does not arm itself
-  Status disarm(const std::string& effector);  // until it is armed
-  // No device gives force until it is armed. From any thread, while no other connects, releases or restarts.
+  Status arm(const std::string& effector);     // after a trip, or with manual arming
+  Status disarm(const std::string& effector);  // until armed again
+  // Disarms all devices. From any thread, unless another one connects, releases or restarts.
   void emergency_stop();
 
   // --- Time
-  Status step(std::uint64_t ticks = 1);  // what a driver was written last it keeps until the next
+  Status step(std::uint64_t ticks = 1);  // a driver keeps its last written force until the next call
   Status start();
-  Status pause(bool paused);  // devices are let go, in a tick of their own; they come back through the gate
-  Status stop();              // the error says what ended a clock before stop()
+  Status pause(bool paused);  // devices ramp down in a separate tick, and return through the gate
+  Status stop();              // the error tells what ended a clock before stop()
   bool running() const;
-  // As it was opened, at time 0; sources and parameters stay as they are. Where it fails, only restart() works.
+  // Back to the initial state at time 0; keeps sources and parameters. After an error only restart() works.
   Status restart();
   double time() const;  // [s]
 
