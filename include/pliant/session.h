@@ -158,105 +158,104 @@ class Session {
   double time() const;  // [s]
 
   // --- Recordings: the pose of every probe and tool at every tick
-  // From the next tick on; before the clocks start. A file that is there is refused, unless it is a recording and
-  // `replace` is set. The file appears whole with end_recording(), restart() or the session's end; without a tick it is
-  // not written, which is an error of the first two.
+  // Starts at the next tick; call before the clocks start. An existing file is an error, unless it is a recording and
+  // `replace` is set. The file is written atomically by end_recording(), restart() or the session's end. Without a tick
+  // nothing is written, which is an error of the first two.
   Status record(const std::filesystem::path& file, bool replace = false);
   Status end_recording();
-  // Every source is the recording from now on, in lockstep; its settings hold. A recording of a lockstep run gives the
-  // same bits in the same scene; one of real time gives the same poses, while its bodies' steps may fall elsewhere.
-  // notes() say where scene or settings differ. step() fails behind its last tick. Not after a tick has run.
+  // Makes the recording the source of every effector, in lockstep, with its settings. A recording of a lockstep run
+  // reproduces the same bits in the same scene. One of a real-time run reproduces the poses, but its soft steps may
+  // fall on other ticks. notes() report differences of scene or settings. step() fails after its last tick. Call before
+  // the first tick.
   Status replay(const std::filesystem::path& file);
 
-  // --- Parameters, between ticks: keys of a surface, a body, a probe, a tool or its device by the level format's names
-  // (docs/embedding.md says which are live, and why the others are not). An error says whether the name, the key or the
-  // type of the value is wrong. `word`: of keys that are words, such as `shape`; `values`: of those that are pairs.
+  // --- Parameters, set between ticks: keys of a surface, body, probe, tool or its device by the level format's names
+  // (docs/embedding.md lists the live ones). The error tells whether the name, the key or the type of the value is
+  // wrong. `word`: for keys with words, such as `shape`; `values`: for keys with pairs.
   Status set(const std::string& object, const std::string& key, double value);
   Status set(const std::string& object, const std::string& key, const std::string& word);
   Status set(const std::string& object, const std::string& key, const std::vector<double>& values);
   Result<double> get(const std::string& object, const std::string& key) const;
 
-  // --- What is felt and seen
+  // --- Results
   Result<Reading> reading(const std::string& effector) const;
   SessionFigures figures() const;
-  // Whatever kept a force from what the law says so far, or was left out: forces that were clipped, withheld, gated or
-  // slewed, poses that were no numbers, contacts that were dropped, each in a sentence with its cure. Not while the
-  // clocks run.
+  // All deviations from the force law so far, one sentence each with its remedy: clipped, withheld, gated or
+  // slew-limited forces, invalid poses, dropped contacts. Not while the clocks run.
   Result<std::vector<std::string>> findings() const;
-  // Of the newest soft step: at most 512 contacts, of probes among bodies too; every tool's handle. Empty in a scene
-  // without bodies. A surface is felt by probes without these: Reading::contact.
+  // Of the newest soft step: at most 512 contacts, including those of probes with bodies; and every tool's handle.
+  // Empty in a scene without bodies. Contacts of probes with surfaces are in Reading::contact.
   Status body_contacts(std::vector<BodyContact>& out);
   Status handles(std::vector<HandleReading>& out);
-  // Deformed vertices, world frame [m], in the order in which the object's MeshData or file has them. One that no
-  // triangle uses is at the object's origin.
+  // Deformed vertices, world frame [m], in the order of the object's MeshData or file. An unused vertex is at the
+  // object's origin.
   Status vertices(const std::string& object, std::vector<vec3>& out);
-  // The force on each of these vertices, world frame [N]: that of the contacts of probes (Reading::kMostContacts each),
-  // by their barycentric coordinates. Of deformable surfaces.
+  // The force on each of these vertices, world frame [N]: from the contacts of probes (Reading::kMostContacts each),
+  // distributed by barycentric coordinates. Only deformable surfaces.
   Status vertex_forces(const std::string& object, std::vector<vec3>& out);
-  // What a renderer of one's own draws: geometry once, the stream (nx, ny, nz, h) every frame, to_world every frame.
-  // position = P0 + h N0, normal = N0 + (nx, ny, nz), object frame (P1). Of deformable surfaces; of a soft or rigid
-  // body only the rest shape, whose `stream_vertex` counts the body's own vertices (Session::vertices).
+  // For a custom renderer: geometry once; the stream (nx, ny, nz, h) and to_world every frame. position = P0 + h N0,
+  // normal = N0 + (nx, ny, nz), object frame (P1). For deformable surfaces. For a soft or rigid body it is only the
+  // rest shape, and `stream_vertex` indexes the body's own vertices (Session::vertices).
   Result<Geometry> geometry(const std::string& object) const;
   Status stream(const std::string& object, std::vector<vec4>& out);
   Result<mat4> to_world(const std::string& object);
 
-  // --- Forces of the program's own, constant until they change; zero takes them away. From the next tick, or of bodies
-  // the next soft step, on, in lockstep and in real time; recordings hold them. They hold beyond restart().
-  // On the hand that holds a probe or tool, beside what it touches: [N], [N m] world, a torque on tools alone. It goes
-  // through the same safety: clipped, slewed, withheld where the hand would get more energy than it gave. While the
-  // gate is closed it is nothing; behind it, it comes in over half a second.
+  // --- External forces, constant until changed; zero removes them. They apply from the next tick on (bodies: the next
+  // soft step), in lockstep and in real time. They are recorded, and kept by restart().
+  // On the hand that holds a probe or tool, in addition to its contact force: [N], [N m] world; torques only for tools.
+  // The same safety applies: clipped, slew-limited, withheld on a passivity violation. It is zero while the gate is
+  // closed, and fades in over half a second after it opens.
   Status set_hand_force(const std::string& effector, dvec3 force, dvec3 torque = dvec3(0));
-  // On a soft or rigid body that moves and no hand holds: at its centre of mass [N], and a torque [N m], world; a soft
-  // body's nodes take them by their mass. At a vertex of its own (Session::vertices), that goes with it: [N] world.
+  // On a moving soft or rigid body without a handle: a force [N] at its centre of mass and a torque [N m], world;
+  // distributed by mass over a soft body's nodes. Or a force [N], world, on one vertex (Session::vertices), which moves
+  // with it.
   Status set_body_force(const std::string& body, dvec3 force, dvec3 torque = dvec3(0));
   Status set_point_force(const std::string& body, std::uint32_t vertex, dvec3 force);
-  // The same as impulses, once, in the next soft step: [N s], [N m s].
+  // The same as impulses, applied once in the next soft step: [N s], [N m s].
   Status push(const std::string& body, dvec3 impulse, dvec3 angular_impulse = dvec3(0));
   Status push_at(const std::string& body, std::uint32_t vertex, dvec3 impulse);
 
-  // --- Objects, between ticks, in lockstep and in real time; recordings hold what is done. Not of tools, which a hand
-  // holds.
-  // To another place of its frame, at rest: a rigid body; a soft one, undeformed; a surface that no bodies may press
-  // and no motion carries, whose contacts end. [m] world. restart() puts it back to where the scene has it.
+  // --- Objects, changed between ticks, in lockstep and in real time; changes are recorded. Not for tools.
+  // Moves the object's frame, at rest: a rigid body; a soft one, undeformed; a surface without motion that bodies
+  // cannot press, whose contacts end. [m] world. restart() restores its pose in the scene.
   Status place(const std::string& object, dvec3 position, dquat rotation = {1, 0, 0, 0});
-  // Out of the world: nothing meets it, what pressed it lets go, and it stands still where it is (it is drawn on). Back
-  // into it: at rest, where it was, whatever has come there. Everything else goes on as it is. Beyond restart().
+  // Takes the object out of the simulation: its contacts end, and it stays where it is (and is still drawn). Putting it
+  // back: at rest, at the same place, whatever is there now. Other objects are unaffected. Kept by restart().
   Status take_out(const std::string& object);
   Status put_back(const std::string& object);
   Result<bool> is_out(const std::string& object) const;
-  // The objects of another scene, no probes or tools, named otherwise than those that are there. In lockstep:
-  // everything there goes on where it is, as after restore_state(), whose time it takes and whose limits it has. For
-  // real time, open a session with them and take them out before start(). To be rid of one, take it out.
+  // Adds the objects of another scene (no probes or tools), with names not yet in use. In lockstep: the run continues
+  // as after restore_state(), with the same duration and limits. For real time, open a session with the objects and
+  // take them out before start(). To remove one, take it out.
   Status add(const Scene& more);
 
-  // --- States, of lockstep runs: to go back to, in this session or in another one of the same scene.
-  // A state is what the session was given since its time 0 - poses, forces, pushes, parameters - up to the next tick;
-  // some 70 bytes a tick for each probe that moves. Not of a run in real time, nor of a replay.
+  // --- States of lockstep runs, to return to in this session or another one of the same scene.
+  // A state contains all inputs since time 0 (poses, forces, pushes, parameters) up to the next tick: some 70 bytes per
+  // tick for each moving probe. Not for real-time runs or replays.
   Result<std::vector<std::uint8_t>> save_state() const;
-  // From here on every tick has the bits that it would have had there, given the same poses. What was given is run
-  // again in a new world, without a word to any driver: it takes as long as those ticks take to run, and restart()
-  // beside. A pose that was set and a path that is followed go on; a device of a driver comes back through its gate, as
-  // after any jump. Not while something is recorded. Bytes are checked; they may come from anywhere. Where it fails
-  // before it began, nothing has changed.
+  // Restores a state: given the same poses, all further ticks are bitwise identical. The inputs are run again in a new
+  // world without calling any driver, which takes the time of those ticks plus that of restart(). Set poses and
+  // followed paths continue; a driver's device returns through its gate, as after any jump. Not while recording. The
+  // bytes may be untrusted: they are checked. If it fails before it has started, nothing has changed.
   Status restore_state(const std::vector<std::uint8_t>& state);
 
-  // --- Geometry, as the program or the file has given it, of every kind of object; in real time of the newest state
-  // that the clocks have shown. Answers come from a tree that follows the vertices; they are those of trying every
-  // triangle of triangles() at vertices().
-  // Three vertices of vertices() a triangle, in the order of the object's own triangles, counter-clockwise seen from
-  // outside: one that is given the other way round is turned.
+  // --- Geometry as given by the program or file, of every kind of object; in real time, of the newest published state.
+  // Queries use a tree that follows the vertices; results equal a test of every triangle of triangles() at vertices().
+  // Three indices into vertices() per triangle, in the object's order, counter-clockwise from outside: triangles with
+  // wrong winding are turned.
   Status triangles(const std::string& object, std::vector<std::uint32_t>& out) const;
-  // The nearest point to `point`; nothing is found beyond `within`.
+  // The nearest point to `point`, at most `within` away.
   Result<QueryHit> closest_point(dvec3 point, const QueryOptions& options = {});
-  // The first point that a ray meets, from either side. `direction` [1] need not be of unit length.
+  // The first intersection of a ray, from either side. `direction` [1] need not be normalised.
   Result<QueryHit> ray(dvec3 from, dvec3 direction, const QueryOptions& options = {});
-  // Of all vertices that a triangle uses. `within` is not asked.
+  // Of all vertices used by a triangle. Ignores `within`.
   Result<Bounds> bounds(const QueryOptions& options = {});
 
-  // --- Every tick's readings, in lockstep and in real time. The last `ticks` of each probe and tool wait to be taken
-  // from the next tick on; what finds no room is lost. 0: none. Not while the clocks run. It holds beyond restart().
+  // --- The readings of every tick, in lockstep and in real time
+  // Buffers the last `ticks` readings of each probe and tool from the next tick on; older ones are lost. 0: none. Not
+  // while the clocks run. Kept by restart().
   Status keep_readings(std::size_t ticks);
-  // Those that wait, oldest first; says how many were lost since the last call.
+  // Takes the buffered readings, oldest first; returns how many were lost since the last call.
   Result<std::uint64_t> take_readings(const std::string& effector, std::vector<Reading>& out);
 
   struct Parts;  // engine/session_parts.h; not part of the public interface
