@@ -12,11 +12,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kFullGrip = 4.0;    // [N] that makes the trigger resist fully; what it then renders is not published
-constexpr double kLostAfter = 0.05;  // [s] a controller reports every 1 to 15 ms, moved or not
-constexpr double kSendEvery = 0.01;  // [s] motors are slower
-constexpr int kMostReports = 64;     // in one tick
-constexpr std::uint16_t kNewRumble = 0x0215;  // firmware from which the motors have another flag
+constexpr double kFullGrip = 4.0;    // [N] for full resistance of the trigger; the actual force is not published
+constexpr double kLostAfter = 0.05;  // [s] a controller reports every 1 to 15 ms, also at rest
+constexpr double kSendEvery = 0.01;  // [s] motors respond more slowly
+constexpr int kMostReports = 64;     // per tick
+constexpr std::uint16_t kNewRumble = 0x0215;  // firmware from which the motors use another flag
 
 const HidMatch kDualSense[] = {{0x054c, {0x0ce6, 0x0df2}, 1, 5}};
 const HidMatch kDualShock[] = {{0x054c, {0x05c4, 0x09cc, 0x0ba0}, 1, 5}};
@@ -104,7 +104,7 @@ class SonyPad final : public Driver {
     if (model_ == SonyModel::kDualSense && wrench.grip > 0.0)
       output.resistance =
           static_cast<std::uint8_t>(std::ceil(kMostResistance * std::min(wrench.grip / kFullGrip, 1.0)));
-    // Nothing leaves at once, everything else when its time has come.
+    // Zero output is sent at once, everything else at the next send time.
     if (output == sent_ || (output != SonyOutput{} && now - sent_at_ < kSendEvery)) return;
     std::array<std::uint8_t, kLongestSonyOutput> report;
     const std::size_t length = model_ == SonyModel::kDualSense
@@ -127,8 +127,8 @@ class SonyPad final : public Driver {
  private:
   const char* name() const { return model_ == SonyModel::kDualSense ? "dualsense" : "dualshock4"; }
 
-  // Which line it is, how its sensors are calibrated, and how old its firmware is. By Bluetooth the first of these
-  // feature reports makes the controller send its whole input.
+  // Reads connection type, sensor calibration and firmware version. Over Bluetooth the first of these feature reports
+  // makes the controller send its full input.
   void learn_line() {
     const bool sense = model_ == SonyModel::kDualSense;
     const Result<HidLayout> layout = parse_hid_descriptor(port_->descriptor());
@@ -153,7 +153,7 @@ class SonyPad final : public Driver {
 
   void take(const SonyInput& input, double now) {
     const bool sense = model_ == SonyModel::kDualSense;
-    if (heard_ && input.sequence == input_.sequence && input.time == input_.time) return;  // the same again
+    if (heard_ && input.sequence == input_.sequence && input.time == input_.time) return;  // a repeated report
     const std::uint32_t ticks = sense ? input.time - input_.time : (input.time - input_.time) & 0xffff;
     const double dt = heard_ ? ticks * (sense ? 1e-6 / 3.0 : 16e-6 / 3.0) : 0.0;
     dvec3 turning, felt;

@@ -125,9 +125,9 @@ class Session {
   const std::vector<std::string>& objects() const& PLIANT_LIFETIMEBOUND;
   std::vector<std::string> objects() &&;
 
-  // --- The source of a probe or tool. Each has one; a second one is an error until release(). Sets the target pose. In
-  // real time, the motion towards it takes the time since the last call (at most 0.1 s), so one call per frame
-  // suffices. After 0.25 s without a new pose the source counts as lost.
+  // --- The source of a probe or tool. Each has one; a second one is an error until release().
+  // Sets the target pose. In real time, the motion towards it takes the time since the last call (at most 0.1 s), so
+  // one call per frame suffices. After 0.25 s without a new pose the source counts as lost.
   Status move(const std::string& effector, dvec3 position, dquat rotation = {1, 0, 0, 0});
   Status follow(const std::string& effector, Path path);
   Status orbit(const std::string& effector);  // a generated path over the scene's surfaces; not while the clocks run
@@ -138,8 +138,8 @@ class Session {
 
   // --- Safety of devices (pliant/device_state.h). Drivers with a rate that render anything have their own servo. In
   // real time it runs on its own thread. In lockstep it runs in step(), in virtual time, with the same periods for the
-  // same ticks; devices with kReply or kCallback are rejected there. Safety parameters for the next driver connected to
-  // this effector.
+  // same ticks; devices with kReply or kCallback are rejected there.
+  // Safety parameters for the next driver connected to this effector.
   Status guard(const std::string& effector, const GuardParameters& parameters);
   Result<DeviceReport> device_state(const std::string& effector) const;
   Status arm(const std::string& effector);     // after a trip, or with manual arming
