@@ -6,8 +6,8 @@
 //   any-pose                a device that senses position and rotation
 //   any                     any device. These three never select a simulated device, one announced over a port
 //                           (`network`), or one with implausible limits
-//   mouse                   the mouse of the window Text after "|" in an alternative is passed on with it
-//   (devices/wrappers).
+//   mouse                   the mouse of the window
+// Text after "|" in an alternative is passed on with it (devices/wrappers).
 #pragma once
 
 #include <span>

@@ -4,8 +4,9 @@
 //   mechanism=NAME   the build of the arm; required, because the device cannot report it and the force depends on it
 //   home=button      (default) pose unknown and force zero until the arm is parked and its button is pressed
 //   home=here        the arm is parked now
-//   home=kept        the encoders were set after power-up The device answers each report: the first zero report starts
-//   it, wait() returns with its answer. Its own watchdog switches the motors off 0.5 s after the last report.
+//   home=kept        the encoders were set after power-up
+// The device answers each report: the first zero report starts it, wait() returns with its answer. Its own watchdog
+// switches the motors off 0.5 s after the last report.
 #pragma once
 
 #include <array>

@@ -18,7 +18,7 @@ class WebSocketPort final : public PacketPort {
   Status send(std::span<const std::uint8_t> text) override;
   Result<std::size_t> receive(std::span<std::uint8_t> into, double seconds) override;
 
-  struct Line;  // its half that libwebsockets calls
+  struct Line;  // the part that libwebsockets calls
 
  private:
   explicit WebSocketPort(std::unique_ptr<Line> line);

@@ -40,7 +40,7 @@ bool mapped(const Address& a) {
   return std::equal(kMapped.begin(), kMapped.begin() + 12, a.begin());
 }
 
-// A loopback address, none in particular, or one of this machine's own: all reach the same ports.
+// A loopback address, the unspecified one, or one of this machine's own: all reach the same ports.
 bool is_here(const Address& a) {
   Address one{};
   if (a == one) return true;
@@ -78,7 +78,7 @@ std::string network_identity(const std::string& id) {
   return fmt::format("network:{}:{}", numbers, port);
 }
 
-// Of a device file by what is behind it. False: it is none.
+// Identity of a device file by its device number. False: not a device file.
 bool node_identity(const std::string& path, std::string& out) {
   struct stat file {};
   if (::stat(path.c_str(), &file) != 0) return false;
@@ -87,7 +87,7 @@ bool node_identity(const std::string& path, std::string& out) {
   return true;
 }
 
-// A serial number: the device file of the only HID device that has it.
+// Identity of a serial number: the device file of the only HID device that has it.
 bool hid_identity(const std::string& serial, std::string& out) {
   if (serial.empty()) return false;
   std::vector<fs::path> found;
@@ -109,13 +109,13 @@ std::string device_identity(const std::string& device) {
   const std::string id(colon == std::string::npos ? std::string_view()
                                                   : trimmed(std::string_view(words).substr(colon + 1)));
   if (driver == "network") return network_identity(id);
-  if (driver == "falcon" || driver == "simulated") return driver;  // its id is a file, or what it is to be like
+  if (driver == "falcon" || driver == "simulated") return driver;  // their id is a file or a configuration
   std::string identity;
   const std::size_t speed = driver == "serial" ? id.rfind('@') : std::string::npos;
   const std::string file = id.substr(0, std::min(speed, id.find_first_of(",?")));
   if (file.find('/') != std::string::npos && node_identity(file, identity)) return identity;
   if (hid_identity(file, identity)) return identity;
-  return driver + ":" + (file.empty() ? "0" : file);  // the first, which libraries count from 0
+  return driver + ":" + (file.empty() ? "0" : file);  // the first, as libraries count from 0
 }
 
 }  // namespace pliant
