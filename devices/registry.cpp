@@ -23,7 +23,7 @@ Registered& registered() {
   return all;
 }
 
-// Where either has no serial number, its kind decides.
+// If either has no serial number, vendor and product are compared.
 bool same_hardware(const std::string& a, const std::string& b) {
   constexpr std::size_t kKind = 10;  // of "054c:0ce6:"
   if (a.size() < kKind || b.size() < kKind || a.compare(0, kKind, b, 0, kKind) != 0) return false;
@@ -70,7 +70,7 @@ bool Driver::gone() const {
 void Driver::make_safe() noexcept {
   try {
     write({});
-  } catch (...) {  // its device's own watchdog ends the force
+  } catch (...) {  // the device's own watchdog removes the force
   }
 }
 

@@ -11,8 +11,8 @@ namespace pliant {
 
 namespace {
 
-constexpr double kBeyond = 0.02;  // [1] of the extent by which a pinned box is larger than the object, so that rounding
-                                  // leaves out no node of its surface
+constexpr double kBeyond = 0.02;  // [1] of the extent: margin of a pinned box, so that rounding excludes no surface
+                                  // node
 
 Status check_area(const Level& level, std::int32_t node) {
   const LevelNode& it = level.nodes[static_cast<std::size_t>(node)];

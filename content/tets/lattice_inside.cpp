@@ -10,12 +10,12 @@ namespace pliant {
 namespace {
 
 constexpr double kFarRadii = 2.3;  // [1] a cluster is a dipole from this many of its radii on
-constexpr int kHalvings = 24;      // of the way through a hole
+constexpr int kHalvings = 24;      // bisection steps across a hole
 
 struct Visit {
   std::uint32_t level, box;
 };
-// Each level leaves at most kTreeWidth - 1 siblings waiting; 32 levels hold any index.
+// Each level leaves at most kTreeWidth - 1 siblings on the stack; 32 levels hold any index.
 constexpr std::size_t kDeepest = 32 * kTreeWidth;
 
 }  // namespace
@@ -130,7 +130,7 @@ double Inside::crossing(dvec3 inside, dvec3 outside) const {
     }
     return 0.5 * (in + out);
   }
-  // Between hits the side is the same: of the stretches before the first hit (inside) to behind the last (outside).
+  // The side is constant between hits: bisect the intervals from the first (inside) to the last (outside).
   std::size_t first = 0, last = hits.size();
   while (last - first > 1) {
     const std::size_t middle = (first + last) / 2;

@@ -22,7 +22,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint16_t kShakesFor = 500;  // [ms] an effect plays: if we stop, so does it
+constexpr std::uint16_t kShakesFor = 500;  // [ms] duration of an effect: it ends if we stop renewing it
 
 std::string first_line(const std::string& path) {
   std::ifstream file(path);
@@ -31,7 +31,7 @@ std::string first_line(const std::string& path) {
   return line;
 }
 
-// sysfs writes a bitmap as words of hexadecimal, the highest first.
+// sysfs prints a bitmap as hexadecimal words, the highest first.
 class Bits {
  public:
   explicit Bits(const std::string& text) {
@@ -47,7 +47,7 @@ class Bits {
   std::vector<unsigned long> words_;
 };
 
-// Nothing where it is no gamepad.
+// Returns false if it is not a gamepad.
 bool read_traits(const std::string& folder, GamepadTraits& traits) {
   const Bits axes(first_line(folder + "/capabilities/abs")), keys(first_line(folder + "/capabilities/key")),
       effects(first_line(folder + "/capabilities/ff"));
@@ -139,7 +139,7 @@ class EvdevLine final : public GamepadLine {
     }
   }
 
-  // An effect with an id is changed while it plays.
+  // An effect with an id is updated while it plays.
   bool play(const GamepadOutput& output) {
     bool done = true;
     if (traits_.rumble && (output.strong || output.weak || rumble_.id >= 0)) {

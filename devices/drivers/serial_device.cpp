@@ -12,11 +12,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kSerialPeriod = 1e-3;  // [s] between two exchanges; the line may make it longer
-constexpr double kSerialAnswer = 0.02;  // [s] that a pose is waited for before the next force
-constexpr double kSerialRetry = 0.5;    // [s] between two tries to find it again
+constexpr double kSerialPeriod = 1e-3;  // [s] between two exchanges; the connection may make it longer
+constexpr double kSerialAnswer = 0.02;  // [s] wait for a pose before the next force
+constexpr double kSerialRetry = 0.5;    // [s] between two reconnection attempts
 constexpr int kSerialSilentUntilLost = 100;
-constexpr double kBoot = 4.0;  // [s] an Arduino starts anew when its line is opened
+constexpr double kBoot = 4.0;  // [s] an Arduino resets when its port is opened
 
 Result<std::unique_ptr<PacketPort>> open_line(const std::string& id) {
   const std::size_t at = id.rfind('@');
@@ -36,7 +36,7 @@ Status send(PacketPort& port, std::string_view text) {
   return port.send({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-// What arrives within `seconds`. The error: the line is gone.
+// Receives for up to `seconds`. Error: the connection is lost.
 Status hear(PacketPort& port, SerialLines& lines, double seconds) {
   std::uint8_t bytes[256];
   const auto got = port.receive(bytes, seconds);
@@ -79,7 +79,7 @@ Status SerialDevice::open(const std::string& id) {
   identity_ = std::move(*who);
   can_ = {.renders_force = identity_.axes > 0,
           .max_force = identity_.max_force,
-          .max_stiffness = 500.0,  // that such boards bear at these rates
+          .max_stiffness = 500.0,  // stable on such boards at these rates
           .senses_grip = true,
           .rate = 1.0 / kSerialPeriod,
           .latency = 2e-3};
@@ -90,7 +90,7 @@ Status SerialDevice::open(const std::string& id) {
   return Done{};
 }
 
-// Until close(), or until the line is lost: then false.
+// Runs until close(); returns false if the connection is lost.
 bool SerialDevice::talk() {
   SerialLines lines;
   unsigned number = 0;
@@ -98,7 +98,7 @@ bool SerialDevice::talk() {
   double due = DeviceThread::seconds();
   for (;;) {
     const bool last = thread_.stopping();
-    dvec3 force = silent > 0 ? dvec3(0) : thread_.wanted().force;  // whoever does not answer gets none
+    dvec3 force = silent > 0 ? dvec3(0) : thread_.wanted().force;  // zero force without answers
     for (int i = identity_.axes; i < 3; ++i) force[i] = 0.0;
     SerialText text;
     const std::size_t length = serial_force(++number, force, text);
@@ -143,7 +143,7 @@ void SerialDevice::close() {
   safe_file_.close();
 }
 
-// A line of zero force; the end of line before it ends what was cut off.
+// A line of zero force; the leading end of line terminates a truncated line.
 bool SerialDevice::safe_line(SafeLine& line) const {
   if (safe_file_.number() < 0) return false;
   SerialText text;

@@ -1,9 +1,8 @@
-// Driver "serial": a device of one's own on a serial line, such as an Arduino that reads encoders and drives motors
-// (Hapkit, Haplink, ...). Those two publish no protocol between their board and a computer, only sketches that print
-// numbers; so this one is ours (serial_line.h). "serial:/dev/ttyACM0" or "serial:/dev/ttyACM0@1000000"; 115200 baud
-// where none is said.
+// Driver "serial": a custom device on a serial port, such as an Arduino that reads encoders and drives motors (Hapkit,
+// Haplink, ...). Those two publish no protocol, only sketches that print numbers, so this protocol is ours
+// (serial_line.h). "serial:/dev/ttyACM0" or "serial:/dev/ttyACM0@1000000"; default 115200 baud.
 //
-// Each force line is answered by one pose line. A board that hears no force line for 20 ms must render nothing.
+// Each force line is answered by one pose line. Watchdog: a board without a force line for 20 ms must render zero.
 #pragma once
 
 #include <atomic>
@@ -50,7 +49,7 @@ class SerialDevice final : public Driver, public CountsDropped {
   DeviceThread thread_;
 };
 
-// Serial lines of USB that are plugged in; they are not asked who they are, for a question may move a printer.
+// USB serial ports that are plugged in. They are not queried, because a query may move a printer.
 std::vector<DeviceInfo> list_serial(const std::string& folder = "/dev");
 
 }  // namespace pliant

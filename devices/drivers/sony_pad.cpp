@@ -170,7 +170,7 @@ class SonyPad final : public Driver {
 
   void take(const SonyInput& input, double now) {
     const bool sense = model_ == SonyModel::kDualSense;
-    if (heard_ && input.sequence == input_.sequence && input.time == input_.time) return;  // the same again
+    if (heard_ && input.sequence == input_.sequence && input.time == input_.time) return;  // a repeated report
     const std::uint32_t ticks = sense ? input.time - input_.time : (input.time - input_.time) & 0xffff;
     const double dt = heard_ ? ticks * (sense ? 1e-6 / 3.0 : 16e-6 / 3.0) : 0.0;
     dvec3 turning, felt;

@@ -19,7 +19,7 @@ class WebSocketPort final : public PacketPort {
   Result<std::size_t> receive(std::span<std::uint8_t> into, double seconds) override;
   int file() const override;  // for whole frames of another process (web_socket_frame)
 
-  struct Line;  // its half that libwebsockets calls
+  struct Line;  // the part that libwebsockets calls
 
  private:
   explicit WebSocketPort(std::unique_ptr<Line> line);

@@ -27,7 +27,7 @@ std::set<std::string>& claims() {
   return taken;
 }
 
-// Of an identity that is longer than a name may be, its beginning and a sum (FNV-1a) of all of it.
+// Shortens a long identity to its beginning and a hash (FNV-1a) of all of it.
 std::string lock_name(const std::string& identity) {
   constexpr std::size_t kMost = 64;
   std::uint64_t sum = 0xcbf29ce484222325ull;
@@ -47,7 +47,7 @@ struct LockAddress {
   const sockaddr* raw() const { return reinterpret_cast<const sockaddr*>(&address); }
 };
 
-// " (process 1234)", or "" where the kernel does not tell.
+// " (process 1234)", or "" if the kernel does not provide it.
 std::string holder(const LockAddress& lock) {
   const int asking = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (asking < 0) return {};

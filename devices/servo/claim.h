@@ -1,6 +1,6 @@
-// One device, one writer: two that write to one motor are felt as neither's force. A claim holds within this program
-// and against every other program of this engine on this machine, whoever runs it: it is a name in the kernel (an
-// abstract socket), which needs no folder and no permission, and goes with the process that has it.
+// Exclusive access to a device: two writers to one motor would render neither's force. A claim holds within this
+// program and against every other program of this engine on this machine, whatever its user. It is a name in the kernel
+// (an abstract socket), needs no folder and no permission, and is released when the process ends.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ class DeviceClaim {
   DeviceClaim(DeviceClaim&& other) noexcept = default;
   DeviceClaim& operator=(DeviceClaim&& other) noexcept;
 
-  // `device`: "driver:id", in any spelling and with any wrappers (device_identity.h). Fails where somebody has it, and
-  // where that cannot be known.
+  // `device`: "driver:id", in any spelling and with any wrappers (device_identity.h). Error: it is claimed already, or
+  // the claim cannot be checked.
   Status take(const std::string& device);
   // Besides, what `driver` has opened under that name: "the first one" says it only then, and another driver may have
   // the same device under its own name.

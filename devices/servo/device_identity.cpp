@@ -40,7 +40,7 @@ bool mapped(const Address& a) {
   return std::equal(kMapped.begin(), kMapped.begin() + 12, a.begin());
 }
 
-// A loopback address, none in particular, or one of this machine's own: all reach the same ports.
+// A loopback address, the unspecified one, or one of this machine's own: all reach the same ports.
 bool is_here(const Address& a) {
   Address one{};
   if (a == one) return true;

@@ -72,7 +72,7 @@ void Servo::adopt() {
   tell();
 }
 
-// [s] Real time while a thread runs, else where advance() has come to.
+// [s] Real time while a thread runs, else the virtual time of advance().
 double Servo::clock() const {
   return running_ ? seconds(CLOCK_MONOTONIC) : virtual_now_.load();
 }
@@ -116,7 +116,7 @@ void Servo::close() {
   state_ = guard_.state();
   try {
     inner_->write({});
-  } catch (...) {  // made safe all the same
+  } catch (...) {  // made safe anyway
   }
   inner_->make_safe();
   let_go_of(*inner_);
@@ -143,7 +143,7 @@ void Servo::advance(double time) {
   }
 }
 
-// Whether the machine has slept since the last look: one clock goes on, the other does not.
+// Whether the machine was suspended since the last call: one clock continues, the other does not.
 bool Servo::slept() {
   if (!running_) return false;
   const double offset = seconds(CLOCK_BOOTTIME) - seconds(CLOCK_MONOTONIC);
@@ -185,8 +185,8 @@ GuardWish Servo::wish(double now) {
   return wish;
 }
 
-// After exit() or a crash nothing is written: the device has been made safe. A device that renders the model itself is
-// told one that keeps to what the guard lets leave now, however long it hears nothing more.
+// After exit() or a crash nothing is written: the device has been made safe. A device that renders the model itself
+// receives one that respects the guard's current limits even if no further frame arrives.
 void Servo::put(const GuardWish& wish, const DeviceWrench& wrench, bool make_safe) {
   if (all_made_safe()) return;
   try {
@@ -292,7 +292,7 @@ Status Servo::start() {
   if (!open_) return Error{"servo", "is not open; call open() first"};
   if (running_) return Done{};
   looked_ = false;
-  guard_ = Guard(can_, parameters_);  // another clock: nothing from before is known
+  guard_ = Guard(can_, parameters_);  // another clock: previous state is invalid
   models_.write() = {};
   models_.publish();
   running_ = true;
@@ -322,7 +322,7 @@ Status Servo::start() {
   return looping;
 }
 
-// Last of all on the thread that writes.
+// The last call on the thread that writes.
 void Servo::end_thread() {
   guard_.close(seconds(CLOCK_MONOTONIC));
   state_ = guard_.state();
@@ -334,7 +334,7 @@ void Servo::halt() noexcept {
   if (!running_.exchange(false)) return;
   if (thread_.joinable()) {
     thread_.join();
-  } else {  // the library's thread ends it in its next call; one that calls no more has stopped the device itself
+  } else {  // the library's thread ends it in its next call; if it calls no more, it has stopped the device itself
     for (int i = 0; i < 100 && !ended_; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
@@ -357,13 +357,13 @@ void Servo::run() {
       } catch (...) {
         failed_ = true;
       }
-      // A device that is gone may answer at once and for ever.
+      // A device that is gone may answer at once, repeatedly: avoid a busy loop.
       const double now = seconds(CLOCK_MONOTONIC);
       if (now - before < 0.1 * dt && now - last_ < 0.5 * dt) sleep_until(last_ + dt);
     } else {
       due += dt;
       const double now = seconds(CLOCK_MONOTONIC);
-      if (due < now) due = now;  // late: the deadline is missed and counted, not made up for
+      if (due < now) due = now;  // late: the missed deadline is counted, not made up for
       sleep_until(due);
     }
     period(seconds(CLOCK_MONOTONIC));

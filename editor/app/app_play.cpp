@@ -1,4 +1,4 @@
-// Playing in the program: its buttons, the mouse that touches, and what stands over the picture meanwhile.
+// Playing in the program: its buttons, the mouse that touches, and the overlay meanwhile.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ double App::orthographic() const {
   return editor.view.orthographic && !as_played() ? editor.camera.orthographic_height() : 0.0;
 }
 
-// What the level asks for beyond what a level may is opened only once it has been shown and allowed.
+// Devices beyond those that a level may request are opened only after the user has seen and allowed them.
 bool App::ask_for_devices() {
   const std::vector<LevelRequest> asked = play_.on() ? std::vector<LevelRequest>() : play_.asks();
   if (asked.empty()) return false;
@@ -53,7 +53,7 @@ void App::toggle_play() {
 
 void App::begin_play() {
   if (!play_.on()) {
-    take_tool("Select");  // the mouse touches
+    take_tool("Select");  // this tool lets the mouse touch
     show_panel("Plots");
   }
   play_.toggle();
@@ -106,8 +106,7 @@ void App::draw_play_buttons() {
     play_.restart();
 }
 
-// What is pressed is known once a picture has said what stands there: a surface, a tool, or neither, which turns the
-// view.
+// A press is classified after picking: a surface, a tool, or neither, which rotates the view.
 bool App::touch(const ViewportInput& in) {
   PlayHand* const hand = play_.hand();
   if (!hand || !play_.ready() || editor.tool != "Select") {
@@ -119,7 +118,7 @@ bool App::touch(const ViewportInput& in) {
     ++question_;
     dirty_picture_ |= in.dx != 0 || in.dy != 0 || hand_ != Hand::kNone || !play_.paused();
   }
-  const bool pulls = in.control && hand->over() == PlayHand::Over::kBody;  // else Ctrl drags a frame
+  const bool pulls = in.control && hand->over() == PlayHand::Over::kBody;  // otherwise Ctrl drags a frame
   if (in.pressed && !in.shift && (!in.control || pulls)) {
     hand_ = Hand::kAsked;
     hand_pulls_ = pulls;
@@ -149,7 +148,7 @@ bool App::touch(const ViewportInput& in) {
 
 void App::draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high) {
   const ui::Palette& p = ui::palette();
-  if (as_played()) {  // the renderer draws the level alone
+  if (as_played()) {  // the renderer draws only the level
     const int width = static_cast<int>(high.x - low.x), height = static_cast<int>(high.y - low.y);
     for (const ViewLine& line : lines_) {
       const auto from = on_picture(picture_.view, 0.0, width, height, dvec3(line.from)),
@@ -183,7 +182,7 @@ void App::draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high) {
   list.AddText(corner, ui::color(color), text.c_str());
   ImGui::PopFont();
   if (waits) return;
-  // What every hand feels, in words and numbers.
+  // The force on each hand, in words and numbers.
   float y = corner.y + size.y + ui::px(10);
   for (const PlayEffector& each : s.effectors) {
     if (!each.reading.touching) continue;

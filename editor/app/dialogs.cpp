@@ -50,7 +50,7 @@ void App::draw_question() {
     if (first ? ui::strong_button(answer.label.c_str(), answer.hint.c_str())
               : ui::button(answer.label.c_str(), answer.hint.c_str()))
       taken = &answer;
-    if (first && ImGui::IsWindowAppearing()) {  // Enter takes what is to be expected
+    if (first && ImGui::IsWindowAppearing()) {  // Enter selects the default
       ImGui::SetItemDefaultFocus();
       ui::lead_by_keyboard();
     }
@@ -103,7 +103,7 @@ void App::draw_banners() {
   float y = viewport_low_.y + ui::px(ui::kPad);
   for (const auto& each : panels_) {
     if (each->place() != Panel::Place::kBanner || !each->shown(editor)) continue;
-    // Where there is little room, beside the cross at the right.
+    // In a small viewport, beside the axis cross at the right.
     const bool narrow = viewport_high_.x - viewport_low_.x < ui::px(640);
     ImGui::SetNextWindowPos(
         {narrow ? viewport_low_.x + ui::px(ui::kPad) : 0.5f * (viewport_low_.x + viewport_high_.x), y},

@@ -129,7 +129,8 @@ Box Editor::scene_box() const {
 
 void Editor::frame_selected() {
   Box box = bounds_of(state(), selected);
-  if (!box.empty() && !(box.diagonal() > 0.0f)) {  // a place without a size: as much around it as tells where it is
+  if (!box.empty() && !(box.diagonal() > 0.0f)) {  // a box of zero size: enlarge it so that its surroundings are
+                                                   // visible
     const float whole = scene_box().diagonal(), half = whole > 0.0f ? 0.1f * whole : 0.05f;
     box.min -= half;
     box.max += half;
@@ -146,7 +147,7 @@ std::shared_ptr<const PaintSurface> Editor::surface_of(NodeId id) {
   for (const auto& each : surfaces_)
     if (each->mesh == mesh && each->frame == frame) {
       if (each->surface || each->failed || jobs.running(each->job)) return each->surface;
-      surfaces_.erase(std::find(surfaces_.begin(), surfaces_.end(), each));  // its job made way for another's
+      surfaces_.erase(std::find(surfaces_.begin(), surfaces_.end(), each));  // its job was replaced by another one
       break;
     }
   if (surfaces_.size() > 32) surfaces_.erase(surfaces_.begin());

@@ -1,4 +1,4 @@
-// The first page: what was not saved, files that were open before, and the levels that ship.
+// The start page: unsaved documents, recent files, and the shipped levels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ class StartPage : public Panel {
   }
 
  private:
-  static constexpr double kLook = 2.0;  // [s] between two looks at what is on disk
+  static constexpr double kLook = 2.0;  // [s] between two checks of the disk
   static constexpr const char* kFirstLevel = "glass_heart";
   struct Recent {
     std::string file;
@@ -97,7 +97,7 @@ class StartPage : public Panel {
     }
   }
 
-  // Nobody has opened anything here yet.
+  // Shown if no file has been opened yet.
   void first_steps() {
     if (!looked_for_) return;
     ui::dim("New here? Open an organ of your own, or drop its file on this window.");

@@ -128,7 +128,7 @@ void draw_arrows(const GizmoPicture& picture, const GizmoGrip& grip, ImVec2 corn
     list.AddQuad(at(corner, c[0]), at(corner, c[1]), at(corner, c[2]), at(corner, c[3]),
                  color_of(part, on, 0.9f * clear), ui::px(1));
   }
-  // The farthest first, so that the nearest lies over the others.
+  // Farthest first, so that the nearest is drawn on top.
   int order[3] = {0, 1, 2};
   const dvec3 forward = picture.forward();
   std::sort(order, order + 3, [&](int a, int b) { return dot(grip.axes[a], forward) > dot(grip.axes[b], forward); });

@@ -1,4 +1,4 @@
-// Keys of a path set by clicking on what it touches; dragged over the surface, deeper and shallower by the wheel.
+// Path keys set by clicking on a touched surface; dragged along it; depth by the wheel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kReach = 10.0;          // [point] from a key within which the mouse has it
-constexpr double kWheel = 0.0005;        // [m] of depth a click
-constexpr std::size_t kMostLabels = 20;  // with more keys their times hide each other
+constexpr double kReach = 10.0;          // [point] picking distance of a key
+constexpr double kWheel = 0.0005;        // [m] of depth per click
+constexpr std::size_t kMostLabels = 20;  // with more keys, their times would overlap
 constexpr std::size_t kMostLines = 400;  // of the curve that is drawn
 constexpr std::size_t kMostGhosts = 12, kMostGhostEdges = 700;
 constexpr double kSeenSag = 0.005;            // [1] of a body's size: what sags farther is drawn where it rests
@@ -229,7 +229,7 @@ class PathTool : public ViewTool {
   struct PlaceUnder {
     dvec3 point, normal;
   };
-  // On the nearest surface under the mouse that can be touched.
+  // On the nearest touchable surface under the mouse.
   static std::optional<PlaceUnder> place_under(Editor& editor, const ViewportInput& in) {
     const ViewRay ray = in.ray();
     std::optional<PlaceUnder> found;
@@ -237,7 +237,7 @@ class PathTool : public ViewTool {
     for (const NodeId id : path_grounds(editor.state())) {
       const auto surface = editor.ground_of(id).surface;
       if (!surface) continue;
-      // The surface frame is the world's, but for where the node stands.
+      // The surface frame equals the world frame except for the node's position.
       const dvec3 origin(editor.state().to_world(id)[3]);
       const SurfaceHit hit = surface->hit({ray.from - origin, ray.along});
       if (!hit.valid()) continue;
@@ -249,7 +249,7 @@ class PathTool : public ViewTool {
     return found;
   }
 
-  // Begins to prepare what is not: every surface that a click may meet.
+  // Starts preparing every surface that a click may hit.
   static bool prepared(Editor& editor) {
     bool ready = true;
     for (const NodeId id : path_grounds(editor.state())) ready = editor.ground_of(id).ready && ready;
@@ -274,7 +274,7 @@ class PathTool : public ViewTool {
     ScriptKeys next = keys;
     const double clear = path_clearance(editor, node);
     if (next.keys.empty()) next.along = true;
-    // Off the surface, heights are the middle's.
+    // Off the surface, heights refer to the centre.
     const double radius = next.along ? 0.0 : tip_of(editor.state(), node).value_or(PathTip{}).radius;
     PathKey key{0.0, place.point, place.normal, radius - editor.path_depth};
     if (next.keys.empty()) {  // it comes from the air

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kLeastSnapped = 1e-3;  // [1] a step never makes a node flat
+constexpr double kLeastSnapped = 1e-3;  // [1] snapping never flattens a node
 
 class ScaleTool : public GizmoTool {
  public:

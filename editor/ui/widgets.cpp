@@ -36,7 +36,7 @@ Scope::~Scope() {
 void end_widgets() {
   g_before.swap(g_now);
   g_now.clear();
-  // A tab has no place in the first frame of its bar.
+  // A tab has no position in the first frame of its bar.
   std::erase_if(g_before, [](const Place& each) { return each.low.x == each.high.x && each.low.y == each.high.y; });
 }
 
@@ -197,7 +197,7 @@ bool icon_button(const char* label, Icon icon, bool down, const char* hint_text,
 }
 
 bool checkbox(const char* label, bool& value, const char* hint_text) {
-  // An empty box is seen as one.
+  // An empty box needs a visible frame.
   ImVec4 back = palette().text;
   back.w = 0.16f;
   ImGui::PushStyleColor(ImGuiCol_FrameBg, back);
@@ -272,13 +272,13 @@ bool menu_item(const char* label, const char* shortcut, bool checked, bool enabl
 
 bool begin_menu(const char* label, bool enabled) {
   const bool open = ImGui::BeginMenu(label, enabled);
-  // An open menu's item is the popup's; its own place is what the cursor left behind.
+  // The current item of an open menu is the popup; restore the menu's own rectangle.
   known_as(label);
   return open;
 }
 
 bool section(const char* label, bool open_at_first) {
-  // Calm: the accent is for what is selected or active.
+  // Subdued: the accent is for selected or active items.
   ImVec4 back = palette().text;
   back.w = 0.05f;
   ImGui::PushStyleColor(ImGuiCol_Header, back);
