@@ -12,7 +12,6 @@
 #include "devices/wrappers/chain.h"
 #include "engine/run/sources.h"
 #include "engine/run/stiffness_note.h"
-#include "pliant/drivers.h"
 #include "systems/device/devices.h"
 #include "systems/device/hands.h"
 
@@ -46,10 +45,7 @@ bool does(const std::function<void()>& work, const std::function<bool()>& stop) 
 }
 
 void open_wish(Opening& opening, const std::string& wish, bool list) {
-  if (list) {
-    register_all_drivers();
-    opening.there = list_devices();
-  }
+  if (list) opening.there = list_devices();
   opening.chosen = choose_device(wish, opening.there);
   if (!opening.chosen || opening.chosen->id.empty()) return;
   const std::string& id = opening.chosen->id;
