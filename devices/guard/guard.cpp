@@ -10,9 +10,6 @@
 namespace pliant {
 namespace {
 
-constexpr double kUnitNear = 0.01;     // [1] tolerance of a rotation's unit length
-constexpr double kFarthestPose = 1e6;  // [m] limit for a device without a specified workspace
-
 bool finite(dvec3 v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -92,7 +89,7 @@ bool Guard::take_make_safe() {
 }
 
 bool Guard::fresh(double now) const {
-  const double holds = can_.rate > 0.0 ? std::max(kSampleHolds, 2.5 / can_.rate) : kSampleHolds;
+  const double holds = can_.rate > 0.0 ? std::max(kStaleAfter, 2.5 / can_.rate) : kStaleAfter;
   return placed_ && ready_ && now - sensed_at_ <= holds;
 }
 
@@ -100,20 +97,20 @@ bool Guard::fresh(double now) const {
 bool Guard::sound(const DeviceSample& sample, double now) {
   DeviceCause cause = DeviceCause::kNone;
   const double at = sample.time > 0.0 ? sample.time : now;
-  const double far = dot(can_.workspace, can_.workspace) > 0.0 ? kFarOut * length(can_.workspace) : kFarthestPose;
+  const double far = dot(can_.workspace, can_.workspace) > 0.0 ? kFarOut * length(can_.workspace) : kFarthest;
   const double unit = can_.senses_rotation ? glm::length(sample.rotation) : 1.0;
   if (!can_.senses_position) {
     cause = std::isfinite(sample.grip) && std::isfinite(at) ? DeviceCause::kNone : DeviceCause::kNotANumber;
-  } else if (!finite(sample.position) || !(std::abs(unit - 1.0) < kUnitNear) || !std::isfinite(at)) {
+  } else if (!finite(sample.position) || !(std::abs(unit - 1.0) < kUnitWithin) || !std::isfinite(at)) {
     cause = DeviceCause::kNotANumber;
-  } else if (at < sensed_at_ || at > now + kSampleHolds) {
+  } else if (at < sensed_at_ || at > now + kStaleAfter) {
     cause = DeviceCause::kTimeBack;
   } else if (length(sample.position) > far) {
     trip(DeviceCause::kOutside, now);
     return false;
   } else if (placed_) {
     const double since = std::max(at - sensed_at_, can_.rate > 0.0 ? 0.5 / can_.rate : 1e-4);
-    if (length(sample.position - position_) > kFastestSample * since) {
+    if (length(sample.position - position_) > kFastestHand * since) {
       placed_ = false;  // the next sample restarts from its pose
       cause = DeviceCause::kJumped;
     }
@@ -156,7 +153,7 @@ void Guard::sense(const DeviceSample* sample, double now, const GuardOrders& ord
     placed_ = false;
     sensed_at_ = std::min(sensed_at_, now);
   }
-  const double gap = can_.rate > 0.0 ? std::max(kSampleHolds, 2.5 / can_.rate) : kSampleHolds;
+  const double gap = can_.rate > 0.0 ? std::max(kStaleAfter, 2.5 / can_.rate) : kStaleAfter;
   if (orders.suspended)
     trip(DeviceCause::kSuspended, now);
   else if (dt_ > kLatchAfter)
@@ -197,7 +194,7 @@ void Guard::watch(double now) {
   const double still = now - changed_at_;
   if (still > kFrozenAfter + kFrozenFade && fade_ <= 0.0)
     lose(DeviceCause::kFrozen, now);
-  else if (still > kFrozenAfter && (fade_ < 1.0 || length(last_.force) > kGateForce))
+  else if (still > kFrozenAfter && (fade_ < 1.0 || length(last_.force) > kEngageForce))
     fade_ = std::max(0.0, fade_ - dt_ / kFrozenFade);
   else if (!(warnings_ & kDeviceBatteryLow))
     fade_ = parameters_.ramp > 0.0 ? std::min(1.0, fade_ + dt_ / parameters_.ramp) : 1.0;
@@ -250,7 +247,7 @@ void Guard::decide(const GuardWish& wish, const GuardOrders& orders, double now)
   if (state() != DeviceState::kArmed || !finite(wish.wrench) || (warnings_ & kDeviceBatteryLow)) return;
   if (parameters_.dead_man != 0) {
     if (held) to(DeviceState::kActive, DeviceCause::kDeadManHeld, now);
-  } else if (length(wish.wrench.force - wish.weight) < kGateForce && length(wish.wrench.torque) < kGateTorque) {
+  } else if (length(wish.wrench.force - wish.weight) < kEngageForce && length(wish.wrench.torque) < kGateTorque) {
     to(DeviceState::kActive, DeviceCause::kSmallForce, now);
   }
   if (state() == DeviceState::kActive) changed_at_ = now;
@@ -353,9 +350,9 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
   if (heard_) carried_ = dvec3(0);
   const EnergyAccount before = energy_;
   wrench.force =
-      push_.damp(before, wrench.force, weight, way, force_most, kGuardSlowHand * dt, wish.stiffness, kGuardSpring);
-  wrench.torque = twist_.damp(before, wrench.torque, dvec3(0), turn_, torque_most, kGuardSlowTurn * dt,
-                              wish.turning_stiffness, kGuardTurnSpring);
+      push_.damp(before, wrench.force, weight, way, force_most, kSlowHand * dt, wish.stiffness, kUsualSpring);
+  wrench.torque = twist_.damp(before, wrench.torque, dvec3(0), turn_, torque_most, kSlowTurn * dt,
+                              wish.turning_stiffness, kUsualTurnSpring);
   if (can_.resists_only && speed > 0.0) {
     const dvec3 along = (velocity_ - wish.velocity) / speed;
     wrench.force -= std::max(0.0, dot(wrench.force, along)) * along;
@@ -376,7 +373,7 @@ DeviceWrench Guard::release(const GuardWish& wish, double now, const GuardOrders
     return {};
   }
   const DeviceWrench wrench = limited(wish, dt_);
-  if (energy_.work > kMostGiven + kGuardShare * energy_.stored) {
+  if (energy_.work > kMostGiven + kPassivityShare * energy_.stored) {
     trip(DeviceCause::kGaveEnergy, now);
     return {};
   }

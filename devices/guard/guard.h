@@ -20,17 +20,14 @@
 namespace pliant {
 
 // Tunables, each with its unit, usual value and effect.
-inline constexpr double kSampleHolds = 0.010;    // [s] time-out of a pose; for slow devices 2.5 periods
 inline constexpr double kModelHolds = 0.010;     // [s] the same for a model
 inline constexpr double kLatchAfter = 0.100;     // [s] without either: the device trips
 inline constexpr double kUsualForce = 3.3;       // [N] default if no limit is specified
-inline constexpr double kGateForce = 0.2;        // [N] the gate opens below this
 inline constexpr double kGateTorque = 0.01;      // [N m] and this
 inline constexpr double kSettleTime = 0.05;      // [s] of fresh samples before a device arms itself
 inline constexpr double kFrozenAfter = 0.3;      // [s] of an identical pose under force, then the force fades out
 inline constexpr double kFrozenFade = 0.2;       // [s] duration of the fade
 inline constexpr double kFarOut = 2.0;           // [1] times the workspace's half diagonal: beyond it a pose is invalid
-inline constexpr double kFastestSample = 20.0;   // [m/s] faster is a jump
 inline constexpr double kRunawayGain = 0.05;     // [m/s] increase of speed against the force within about kRunawayTime
 inline constexpr double kRunawayTime = 0.010;    // [s]
 inline constexpr double kRunawayShare = 0.25;    // [1] share of the force limit above which runaway is tested

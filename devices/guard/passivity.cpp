@@ -33,12 +33,12 @@ dvec3 PassivityDamper::damp(const EnergyAccount& account, dvec3 wanted, dvec3 we
   const double way = length(moved);
   // If the hand enters or leaves a spring within a step, the trapezoidal rule has an error of up to |df| way / 8.
   const double sampling = 0.25 * length(change) * way;
-  const double budget = kGuardShare * account.stored + kGuardFloor + sampling - account.work - work_;
-  if (stiffness > 0.0) spring = kGuardSpringShare * stiffness;
+  const double budget = kPassivityShare * account.stored + kGuardFloor + sampling - account.work - work_;
+  if (stiffness > 0.0) spring = kSpentSpring * stiffness;
   if (const dvec3 kept = held_by_spring(wanted_, moved, budget, spring); held_ > 0.0) wanted = weight + kept;
   if (!(way > 0.0)) return wanted;
   const dvec3 along = moved / way, beside = wanted - weight;
-  const double step = kGuardReserve * way, size = length(wanted), total = dot(wanted, along);
+  const double step = kPassivityReserve * way, size = length(wanted), total = dot(wanted, along);
   double allowed = budget / step;
   if (budget <= 0.0) allowed = -std::min(-budget / step, size * std::min(1.0, way / slow));
   // The damping force must not raise the total above its limit.

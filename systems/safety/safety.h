@@ -36,28 +36,16 @@
 #include <array>
 #include <cstddef>
 
+#include "components/hand_limits.h"
 #include "components/haptic_device.h"
 
 namespace pliant {
 
 // Tunables of the safety layer. Unit, usual value, and what changing it does.
-inline constexpr double kEngageForce = 0.2;        // [N] the gate opens once the computed force has been below this
-inline constexpr double kWeightTime = 0.5;         // [s] in which a weight fades in, once the gate is open
-inline constexpr double kStaleAfter = 0.010;       // [s] a pose older than this counts as lost
-inline constexpr double kPassivityReserve = 1.05;  // [1] the next step is assumed this much longer than the last
-inline constexpr double kPassivityShare = 1e-3;    // [1] of the largest stored energy: what the hand may get in
-                                                   // addition
-inline constexpr double kPassivityFloor = 1e-12;   // [J] what rounding may add
-inline constexpr double kSpentSpring = 1.5;        // [1] of what is touched: the spring of a spent account
-inline constexpr double kUsualSpring = 2000.0;     // [N/m] where that stiffness is not known; softer: lets go earlier
-inline constexpr double kUsualTurnSpring = 5.0;    // [N m/rad] the same of what turns
-inline constexpr double kCountedShare = 0.01;      // [1] of the wanted force: less missing is not counted
-inline constexpr double kCountedForce = 1e-3;      // [N] less missing is not counted
-inline constexpr double kSlowHand = 0.01;          // [m/s] a slower hand is damped in proportion to its speed
-inline constexpr double kSlowTurn = 0.2;           // [rad/s] the same for rotation
-
-inline constexpr double kFastestHand = 20.0;   // [m/s] a faster motion is a jump, not a hand's
-inline constexpr double kFastestTurn = 200.0;  // [rad/s] the same for rotation
+inline constexpr double kWeightTime = 0.5;        // [s] in which a weight fades in, once the gate is open
+inline constexpr double kPassivityFloor = 1e-12;  // [J] what rounding may add
+inline constexpr double kCountedShare = 0.01;     // [1] of the wanted force: less missing is not counted
+inline constexpr double kCountedForce = 1e-3;     // [N] less missing is not counted
 
 inline constexpr double kLeastFall = 1000.0;  // [N/s] least rate at which force that is no longer wanted falls
 
@@ -67,11 +55,6 @@ inline constexpr double kToolEase = 0.06;     // [s] of a tool: until the soft c
 inline constexpr double kEase = 0.015;        // [s] in this time
 
 inline constexpr double kRaise = 0.2;  // [s] in which a limit that is raised comes in
-
-inline constexpr double kFarthest = 1e6;  // [m] a pose farther from the origin is a device's error
-
-// [1] Largest deviation of a rotation from unit length: within it, it is normalised; beyond, it is invalid.
-inline constexpr double kUnitWithin = 0.01;
 
 // A valid rotation: finite and of about unit length.
 bool plausible_rotation(dquat rotation);
