@@ -12,6 +12,7 @@
 
 #include "content/device_answers.h"
 #include "content/files/file_io.h"
+#include "content/level/soft_store.h"
 #include "editor/app/settings.h"
 #include "editor/ui/device_list.h"
 #include "engine/body_journal.h"
@@ -468,6 +469,7 @@ Outcome run_prepared(RunOptions options, Prepared& run, Shown* shown, const Inte
 
 int run(const RunOptions& options) {
   set_thread_count(options.threads);
+  set_soft_store(options.soft_store);
   if (Outcome wrong = check(options)) return fail(wrong->status, wrong->error);
   Shown shown;
   if (Outcome wrong = open_window(options, shown)) return fail(wrong->status, wrong->error);
