@@ -2,11 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <string>
 
+#include "content/level/file_hash.h"
 #include "content/level/level.h"
-#include "runtime/hash.h"
 
 namespace pliant {
 
@@ -14,10 +12,5 @@ namespace pliant {
 // of files that keys name. Not of an error budget, which is felt by what was chosen for it, in other keys; nor of
 // scripts of devices, whose poses a recording has. Never 0.
 std::uint64_t scene_hash(const Level& level);
-
-void add_text(Hash& hash, const std::string& text);
-// The bytes of the file that a key calls `name`, relative to the level's folder, and of TetGen's other one. Nothing
-// where no such file is there.
-void add_named_file(Hash& hash, const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace pliant

@@ -17,6 +17,7 @@
 #include "content/level/level_budget.h"
 #include "content/level/probe_shell.h"
 #include "content/level/script.h"
+#include "content/level/soft_store.h"
 #include "content/level/spawn_motion.h"
 #include "content/level/spawn_soft.h"
 #include "content/mesh/mesh_build.h"
@@ -205,7 +206,7 @@ class Spawner {
       if (Status s = count_triangles(n, budget_.of(node.mesh).triangles); !s) return s;
     const Pose pose = rigid_part(motions_.world[n]);
     progress_.say("preparing meshes, now `" + node.name + "`", share_of(n));
-    Result<SoftParts> parts = make_soft_parts(node, mesh, mat4(inverse(pose) * motions_.world[n]), folder_);
+    Result<SoftParts> parts = find_soft_parts(node, mesh, mat4(inverse(pose) * motions_.world[n]), folder_);
     if (!parts) return at(n, parts.error().message());
     tetrahedra_ += static_cast<double>(parts->tets.tets.size());
     if (Status s = within(n, LevelBudget::ask(limits::kTets, tetrahedra_)); !s) return s;

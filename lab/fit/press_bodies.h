@@ -35,8 +35,9 @@ class PressBodies {
   // Tetrahedra from a file, and walls, whose lattice may not be coarse anywhere, are one body for all places.
   bool is_one() const { return one_ != nullptr; }
 
-  // The body to press at this place, its cells this share [1] of cell(). One at a time where is_one().
-  Result<std::shared_ptr<TissuePress>> at(const PressPlace& place, double share = 1.0) const;
+  // The body to press at this place, its cells this share [1] of cell(). One at a time where is_one(); that one is for
+  // deep presses too.
+  Result<std::shared_ptr<TissuePress>> at(const PressPlace& place, PressKind kind, double share = 1.0) const;
 
  private:
   PressBodies() = default;

@@ -29,7 +29,8 @@ struct RunOptions {
   std::string input;              // file of events for the window
   bool force = false;             // replaces what an earlier run wrote
   std::string record, replay;
-  unsigned threads = 0;  // 0: as many as the machine has
+  unsigned threads = 0;    // 0: as many as the machine has
+  std::string soft_store;  // folder of soft bodies that a sweep's runs share; empty: none
 };
 
 }  // namespace pliant

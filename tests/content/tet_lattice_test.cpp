@@ -241,6 +241,35 @@ TEST(Inside, FarClustersAsDipolesAgreeWithTheSumOverEveryTriangle) {
   }
 }
 
+TEST(Inside, WhatIsLookedUpIsWhatTheWindingNumberSays) {
+  Primitive turned = torus(1.0f, 0.3f, 64, 24);
+  for (std::size_t i = 0; i < turned.index.size(); i += 3) std::swap(turned.index[i], turned.index[i + 1]);
+  Primitive beside = icosphere(3);
+  for (vec3& p : beside.position) p = 0.4f * p + vec3(1.1f, 0.2f, 0.1f);  // through the ring's wall
+  Primitive open = icosphere(3);
+  open.index.resize(open.index.size() - 300);
+  for (const std::vector<Primitive>& primitives : std::vector<std::vector<Primitive>>{
+           {torus(1.0f, 0.3f, 64, 24)}, {turned}, {torus(1.0f, 0.3f, 64, 24), beside}, {open}, {icosphere(0)}}) {
+    const Mesh surface = mesh_of(primitives);
+    const Inside inside(surface);
+    std::mt19937 random(11);
+    const dvec3 low(surface.box.min), size(surface.box.size());
+    std::uniform_real_distribution<double> share(-0.1, 1.1);
+    int in = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const dvec3 p = low + size * dvec3(share(random), share(random), share(random));
+      ASSERT_EQ(inside(p), inside.by_winding(p)) << p.x << ' ' << p.y << ' ' << p.z;
+      in += inside(p);
+    }
+    EXPECT_GT(in, 1000);
+    for (std::uint32_t v = 0; v < surface.vertex_count; ++v)  // right beside the surface
+      for (const double off : {-1e-3, 1e-3}) {
+        const dvec3 p = dvec3(surface.position(v)) + off * dvec3(surface.normal(v));
+        ASSERT_EQ(inside(p), inside.by_winding(p)) << v << ' ' << off;
+      }
+  }
+}
+
 // Lattices refined around a point.
 TEST(TetFocus, WhatIsBroughtOutwardComesBackInward) {
   const LatticeFocus focus{dvec3(1, 2, 3), 0.02, dmat3(1.0)};
