@@ -61,13 +61,13 @@ class FirstLevelWindowTest : public CommandTest, public ::testing::WithParamInte
 
   static std::string told(const Story& it) {
     const std::string tool = it.tool;
-    std::string story = std::string("click Start/Open organ…\nawait Files/Open\nclick Files/") + it.organ +
+    std::string story = std::string("click Start/Open organ…\nawait Files/Path\nclick Files/") + it.organ +
                         ".glb double\nawait Inspector/Search\nclick Viewport@0.5,0.5\nclick Tab/Tissue\n";
     story += it.soft ? "click Tissue/Soft body\nclick Tissue/Material/liver\nwheel Tissue/Material/liver -20\n" +
                            std::string(it.pins)
                      : "click Tissue/Surface\nclick Tissue/Material/liver\n";
     story += "click Tools/Paint\nwait 1\ndrag Viewport@0.48,0.5 to Viewport@0.52,0.5 in 0.3\n";
-    story += "click Tools/Select\nclick Tab/Tissue\nawait Tissue/Instruments/Rod\nwheel Tissue/Touch it with -20\n";
+    story += "click Tools/Select\nclick Tab/Tissue\nwait 1\nwheel Tissue/Touch it with -20\n";
     story += "click Tissue/Instruments/" + tool + "\n";
     story += "click Tab/Path\nclick Path/Set keys\nclick Viewport@0.49,0.49\nclick Viewport@0.53,0.46\n";
     story += "click Path/Leave\nscreenshot keys.png\nclick Play/Play\nawait Play/Pause\nwait 5\nscreenshot play.png\n";
