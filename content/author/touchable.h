@@ -12,9 +12,9 @@ namespace pliant {
 Status make_touchable_surface(Level& level, std::int32_t node, const DeformableParameters& parameters = {});
 Status make_soft(Level& level, std::int32_t node, const SoftBodyParameters& parameters = {});
 
-// Adds the part of the object on that side to the soft body's pinned box: `share` [1] of its extent. The box is
-// axis-aligned in the object frame, along the axis nearest to the side's direction. Error: no soft body, or a share
-// outside (0, 1].
+// Pins the part of the object on that side: `share` [1] of its extent there, along the axis of the object frame that is
+// nearest to the side's direction. The first side is the soft body's pinned box, others are painted on its mesh. Error:
+// no soft body, or a share that is not within (0, 1].
 Status pin(Level& level, std::int32_t node, Side side, double share = 0.15);
 // Removes the pinned box and the painted weights.
 void unpin(Level& level, std::int32_t node);

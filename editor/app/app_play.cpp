@@ -192,6 +192,7 @@ void App::draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high) {
     list.AddRectFilled({corner.x - ui::px(8), y - ui::px(3)}, {corner.x + wide.x + ui::px(8), y + wide.y + ui::px(3)},
                        ui::color(p.window, 0.95f), ui::px(4));
     list.AddText({corner.x, y}, ui::color(p.text), felt.c_str());
+    ui::known_at("Play/" + each.name + " touches", {corner.x, y}, {corner.x + wide.x, y + wide.y});
     y += wide.y + ui::px(8);
   }
   for (const RunFinding& each : run_findings(editor.state(), s, play_.traces())) {

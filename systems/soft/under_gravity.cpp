@@ -44,10 +44,12 @@ void begin_body(const SoftBody& body, dvec3 gravity, TetMesh& tets) {
       tets.nodes = std::move(unloaded.nodes);
       return;
     }
-    say(sag_doubt(body, {.held = true}, &unloaded));
     Equilibrium rest = find_equilibrium(tets, body, gravity);
     if (rest.converged) tets.start = std::move(rest.nodes);
-    return;
+    return say(sag_doubt(body, {.held = true}, &unloaded) +
+               (rest.converged
+                    ? fmt::format(" (it begins where it rests, {:.3g} mm from where it is drawn)", 1e3 * rest.most)
+                    : std::string(" (it falls)")));
   }
   Equilibrium rest = find_equilibrium(tets, body, gravity);
   if (rest.converged) tets.start = std::move(rest.nodes);

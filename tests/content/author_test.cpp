@@ -113,6 +113,33 @@ TEST(Author, TwoPinnedSidesHoldBothAndUnpinningHoldsNone) {
   ASSERT_TRUE(pin(level, 0, Side::kTop).ok());
   unpin(level, 0);
   EXPECT_TRUE(level.nodes[0].soft_body->pinned.empty());
+  // Vertices on either side, and only they, are in the box or painted; what is between two sides stays free.
+  const Side all[] = {Side::kBottom, Side::kTop, Side::kLeft, Side::kRight, Side::kFront, Side::kBack};
+  for (const Side first : all)
+    for (const Side second : all) {
+      Level both = ball();
+      ASSERT_TRUE(make_soft(both, 0).ok());
+      ASSERT_TRUE(pin(both, 0, first, 0.2).ok());
+      ASSERT_TRUE(pin(both, 0, second, 0.2).ok());
+      const ObjectFrame frame = object_frame(both, 0);
+      const Primitive& primitive = both.meshes[0].primitives[0];
+      const dvec3 middle = 0.5 * (dvec3(frame.box.min) + dvec3(frame.box.max)), half = 0.5 * dvec3(frame.box.size());
+      for (std::size_t i = 0; i < primitive.position.size(); ++i) {
+        const dvec3 local(frame.to_object * glm::dvec4(dvec3(primitive.position[i]), 1.0));
+        double farthest = -1.0;  // [1] of the way out to a side
+        for (const Side side : {first, second})
+          farthest = std::max(
+              farthest, dot((local - middle) / half, glm::conjugate(frame.pose.rotation) * direction_of(both, side)));
+        if (std::abs(farthest - 0.6) < 1e-4) continue;
+        const Box& box = both.nodes[0].soft_body->pinned;
+        const bool in_box =
+            glm::all(glm::greaterThanEqual(vec3(local), box.min)) && glm::all(glm::lessThanEqual(vec3(local), box.max));
+        const bool painted = !primitive.pinned.empty() && primitive.pinned[i] > 0.5f;
+        EXPECT_EQ(in_box || painted, farthest > 0.6) << word_of(first) << ' ' << word_of(second);
+      }
+      const Result<World> world = spawn(both);
+      ASSERT_TRUE(world.ok()) << word_of(first) << ' ' << word_of(second) << world.error().message();
+    }
 }
 
 TEST(Author, PickedVerticesArePinnedOfThisNodeAlone) {

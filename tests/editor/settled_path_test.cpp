@@ -16,7 +16,7 @@ namespace pliant::testing {
 namespace {
 
 // A slender body of 12 cm along x, grown to something at its left, that begins as `how` says.
-Level hung(UnderGravity how, double young = 12e3) {
+Level hung(UnderGravity how, double young) {
   Level level;
   LevelMesh mesh{"lobe", {pliant::test::icosphere(4)}};
   for (vec3& p : mesh.primitives[0].position) p = normalize(p) * vec3(0.06f, 0.014f, 0.02f);
@@ -41,8 +41,11 @@ class SettledPath : public CommandTest {};
 
 // As the world is made of it, each vertex where the body begins.
 TEST_F(SettledPath, ABodyRestsInTheEditorWhereItBeginsInARun) {
-  for (const UnderGravity how : {UnderGravity::kSettled, UnderGravity::kModelled}) {
-    const Level level = hung(how);
+  constexpr double kConverged = 1e-5;  // [m] of two ways to the same equilibrium
+  // The first keeps its shape, the last is too soft to.
+  for (const auto& [how, young] :
+       {std::pair{UnderGravity::kModelled, 80e3}, {UnderGravity::kSettled, 12e3}, {UnderGravity::kModelled, 12e3}}) {
+    const Level level = hung(how, young);
     const RestingMesh rest = resting_mesh(level, 0, folder);
     EXPECT_TRUE(rest.held);
     Result<World> world = spawn(level);
@@ -59,12 +62,13 @@ TEST_F(SettledPath, ABodyRestsInTheEditorWhereItBeginsInARun) {
         const Embedding& in = tets.embedding[touch.of_source[i]];
         dvec3 there(0);
         for (std::size_t k = 0; k < 4; ++k) there += in.weight[k] * tets.start[tets.tets[in.tet][k]];
-        EXPECT_LT(length(dvec3(to_world * glm::dvec4(dvec3(moved.position[i]), 1.0)) - pose.to_world(there)), 1e-6);
+        EXPECT_LT(length(dvec3(to_world * glm::dvec4(dvec3(moved.position[i]), 1.0)) - pose.to_world(there)),
+                  kConverged);
         most =
             std::max(most, static_cast<double>(length(moved.position[i] - level.meshes[0].primitives[0].position[i])));
       }
-      EXPECT_NEAR(most, rest.sag, 1e-6);
-      if (how == UnderGravity::kModelled)
+      EXPECT_NEAR(most, rest.sag, kConverged);
+      if (young > 50e3)
         EXPECT_EQ(rest.sag, 0.0);
       else
         EXPECT_GT(rest.sag, 0.01) << "too stiff for this test to prove anything";
@@ -73,10 +77,10 @@ TEST_F(SettledPath, ABodyRestsInTheEditorWhereItBeginsInARun) {
 }
 
 TEST_F(SettledPath, WhatHasNoWeightOrNoPinsIsWhereItIsDrawn) {
-  Level level = hung(UnderGravity::kSettled);
+  Level level = hung(UnderGravity::kSettled, 12e3);
   level.simulation.gravity = dvec3(0);
   EXPECT_EQ(resting_mesh(level, 0, folder).sag, 0.0);
-  level = hung(UnderGravity::kFalls);
+  level = hung(UnderGravity::kFalls, 12e3);
   EXPECT_TRUE(resting_mesh(level, 0, folder).falls);
   unpin(level, 0);
   EXPECT_FALSE(resting_mesh(level, 0, folder).held);
@@ -86,7 +90,7 @@ TEST_F(SettledPath, WhatHasNoWeightOrNoPinsIsWhereItIsDrawn) {
 // A rod, or a probe, along a path on the far end, which sags by more than it is thick. The last cannot keep its shape.
 TEST_F(SettledPath, ARodAndAProbeTouchASaggingBodyWhereTheirKeysAre) {
   for (const auto& [how, young] :
-       {std::pair{UnderGravity::kSettled, 12e3}, {UnderGravity::kFalls, 12e3}, {UnderGravity::kModelled, 900.0}})
+       {std::pair{UnderGravity::kSettled, 12e3}, {UnderGravity::kFalls, 12e3}, {UnderGravity::kModelled, 12e3}})
     for (const bool rod : {true, false}) {
       const std::string what = std::to_string(static_cast<int>(how)) + (rod ? " rod" : " probe");
       Level level = hung(how, young);

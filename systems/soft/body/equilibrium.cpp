@@ -191,7 +191,7 @@ std::string sag_doubt(const SoftBody& body, const Equilibrium& now, const Unload
   if (body.under_gravity == UnderGravity::kModelled) {
     if (!unloaded || unloaded->found) return "";
     return "cannot keep its shape under gravity (`under_gravity` `modelled`): tissue so soft does not hold it on what "
-           "is pinned, and it begins where it rests; " +
+           "is pinned; " +
            cure;
   }
   if (now.turned > kMuchTurn)
