@@ -12,13 +12,13 @@
 namespace pliant {
 namespace {
 
-constexpr double kForever = 1e6;  // [s] of a step in which inertia is nothing (systems/soft/fem/tissue_step.cpp)
-constexpr int kMostTissueIterations = 80;  // of one press
-constexpr double kRestTolerance = 1e-4;    // [1] of the load that may be left over
-constexpr std::size_t kMemory = 6;         // iterates that Anderson's acceleration mixes
-constexpr double kFinest = 6.0;            // samples over the indenter's radius
+constexpr double kForever = 1e6;           // [s] of a step with negligible inertia (systems/soft/fem/tissue_step.cpp)
+constexpr int kMostTissueIterations = 80;  // per press
+constexpr double kRestTolerance = 1e-4;    // [1] residual at equilibrium, relative to the load
+constexpr std::size_t kMemory = 6;         // iterates in Anderson's acceleration
+constexpr double kFinest = 6.0;            // samples per indenter radius
 constexpr std::size_t kMoments = 6;        // 1, x, y, x^2, xy, y^2
-constexpr double kFlattestTissue = 1e-6;   // [1] of the largest eigenvalue
+constexpr double kFlattestTissue = 1e-6;   // [1] smallest eigenvalue, relative to the largest
 
 std::vector<Embedding> embedding_of(const std::vector<SurfaceSample>& samples, const TetMesh& tets) {
   std::vector<dvec3> points, normals;
@@ -73,7 +73,7 @@ TissuePress::Punch TissuePress::punch(const Mesh& surface, const PressPlace& pla
   solver_->solve_many(columns);
   out.yields = columns;
   const Eigen::MatrixXd gram = out.loads.transpose() * out.yields;
-  // A patch of few elements does not tell all moments apart: those it cannot are left out.
+  // A patch of few elements cannot distinguish all moments: singular directions are left out.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (gram + gram.transpose()));
   const Vector& values = eigen.eigenvalues();
   Vector over = Vector::Zero(values.size());
@@ -124,7 +124,7 @@ std::vector<PressedTissue> TissuePress::press_to(const Punch& it, const std::vec
                                                  int steps) {
   const std::vector<Embedding> held = embedding_of(seen, *tets_);
   std::vector<PressedTissue> out;
-  const Vector one = it.yields * (it.inverse * it.whole);  // moved by a small press, over its depth
+  const Vector one = it.yields * (it.inverse * it.whole);  // displacement of a small press over its depth
   Vector u = Vector::Zero(one.size()), before = u;
   for (int i = 1; i <= steps; ++i) {
     const double wanted = depth * i / steps;
