@@ -20,7 +20,7 @@ void add_mesh(Hash& hash, const LevelMesh& mesh) {
   hash.add(mesh.primitives.size());
   for (const Primitive& p : mesh.primitives) {
     add_values(hash, p.position);
-    add_values(hash, p.normal);  // make creases
+    add_values(hash, p.normal);  // they create creases
     add_values(hash, p.index);
     for (const std::vector<float>* painted :
          {&p.stiffness, &p.friction, &p.damping, &p.relaxation, &p.pinned, &p.handle})
@@ -52,7 +52,7 @@ void add_animation(Hash& hash, const LevelAnimation& animation) {
   }
 }
 
-// A probe that a window adds for its mouse has a colour of its own, and a replay of it has not.
+// A probe added for a window's mouse has a special colour; a replay of it does not.
 bool is_not_felt(const Extension& extension, const Key& key) {
   return (extension.name == "probe" && key.name == "color") || key.name == "error" || key.name == "carries";
 }
@@ -63,7 +63,7 @@ void add_keys(Hash& hash, const Extension& extension, const void* owner, const f
   for (const Key& key : extension.keys) {
     if (key.alias || is_not_felt(extension, key)) continue;
     const Json value = key.get(owner);
-    if (key.name == "under_gravity" && value == "falls") continue;  // scenes from before it have the hash they had
+    if (key.name == "under_gravity" && value == "falls") continue;  // keeps the hash of scenes older than this key
     add_text(hash, value.dump(-1, ' ', false, Json::error_handler_t::replace));
     if (key.type == KeyType::kText && value.is_string() && extension.name != "haptic_device")
       add_named_file(hash, folder, value.get<std::string>());
@@ -85,7 +85,7 @@ void add_named_file(Hash& hash, const fs::path& folder, const std::string& name)
     std::error_code no;
     if (file.empty() || !fs::is_regular_file(file, no)) continue;
     const Result<Bytes> bytes = read_file(file);
-    if (!bytes) continue;  // whoever needs it says so
+    if (!bytes) continue;  // the reader of the file reports it
     hash.add(bytes->size());
     hash.add_bytes(bytes->data(), bytes->size());
   }
@@ -99,7 +99,7 @@ std::uint64_t scene_hash(const Level& level) {
   for (const LevelNode& node : level.nodes) add_node(hash, node);
   for (const LevelAnimation& animation : level.animations) add_animation(hash, animation);
   for (const Extension& extension : extension_table()) {
-    if (extension.name == "environment") continue;  // is seen, not felt
+    if (extension.name == "environment") continue;  // visible only
     if (extension.on_scene) {
       add_keys(hash, extension, &level, folder);
       continue;
