@@ -10,7 +10,8 @@ namespace {
 
 constexpr Side kAdvisedSides[] = {Side::kBottom, Side::kBack, Side::kTop, Side::kLeft, Side::kRight, Side::kFront};
 constexpr double kAdvisedShares[] = {0.15, 0.3};  // [1]
-constexpr double kCoarser = 1.4;                  // [1] than the usual cell: which side holds it hardly hangs on that
+constexpr double kCoarser = 1.4;                  // [1] relative to the usual cell: which pinned side supports the body
+                                                  // hardly depends on it
 
 }  // namespace
 

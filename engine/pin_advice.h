@@ -1,4 +1,4 @@
-// Which side of a soft body, pinned, holds it under gravity: for whoever authors it.
+// Advice for authors: which pinned side of a soft body supports it under gravity.
 #pragma once
 
 #include <stop_token>
@@ -15,8 +15,8 @@ struct PinAdvice {
   double sag = 0.0;        // [m] of a coarse lattice of it
   double sag_share = 0.0;  // [1] of its size
 };
-// Of every side and two shares, those that hold it: it finds rest, does not turn over and sags by less than kMuchSag of
-// its size. The smallest share first, then the least sag. Some seconds.
+// Tries every side with two shares and returns those that support the body: it comes to rest, does not turn over and
+// sags by less than kMuchSag of its size. Sorted by share, then by sag. Takes some seconds.
 std::vector<PinAdvice> advise_pins(const Level& level, std::int32_t node, const std::stop_token& stop = {});
 
 }  // namespace pliant

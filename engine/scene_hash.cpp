@@ -12,7 +12,7 @@ void add_mesh(Hash& hash, const LevelMesh& mesh) {
   hash.add(mesh.primitives.size());
   for (const Primitive& p : mesh.primitives) {
     add_values(hash, p.position);
-    add_values(hash, p.normal);  // make creases
+    add_values(hash, p.normal);  // they create creases
     add_values(hash, p.index);
     for (const std::vector<float>* painted :
          {&p.stiffness, &p.friction, &p.damping, &p.relaxation, &p.pinned, &p.handle})
@@ -44,7 +44,7 @@ void add_animation(Hash& hash, const LevelAnimation& animation) {
   }
 }
 
-// A probe that a window adds for its mouse has a colour of its own, and a replay of it has not.
+// A probe added for a window's mouse has a special colour; a replay of it does not.
 bool is_not_felt(const Extension& extension, const Key& key) {
   return (extension.name == "probe" && key.name == "color") || key.name == "error" || key.name == "carries";
 }
@@ -55,7 +55,7 @@ void add_keys(Hash& hash, const Extension& extension, const void* owner, const f
   for (const Key& key : extension.keys) {
     if (key.alias || is_not_felt(extension, key)) continue;
     const Json value = key.get(owner);
-    if (key.name == "under_gravity" && value == "falls") continue;  // scenes from before it have the hash they had
+    if (key.name == "under_gravity" && value == "falls") continue;  // keeps the hash of scenes older than this key
     add_text(hash, value.dump(-1, ' ', false, Json::error_handler_t::replace));
     if (key.type == KeyType::kText && value.is_string() && extension.name != "haptic_device")
       add_named_file(hash, folder, value.get<std::string>());
@@ -72,7 +72,7 @@ std::uint64_t scene_hash(const Level& level) {
   for (const LevelNode& node : level.nodes) add_node(hash, node);
   for (const LevelAnimation& animation : level.animations) add_animation(hash, animation);
   for (const Extension& extension : extension_table()) {
-    if (extension.name == "environment") continue;  // is seen, not felt
+    if (extension.name == "environment") continue;  // visible only
     if (extension.on_scene) {
       add_keys(hash, extension, &level, folder);
       continue;

@@ -1,4 +1,4 @@
-// What makes two scenes the same to a recording, and a part of what makes two runs of a sweep the same.
+// Identity of a scene for recordings, and part of the identity of a sweep's run.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace pliant {
 
-// Of everything that is felt: meshes, which node has which, where nodes are and hang, keys, animations, and the bytes
-// of files that keys name. Not of an error budget, which is felt by what was chosen for it, in other keys; nor of
-// scripts of devices, whose poses a recording has. Never 0.
+// Hash of everything that affects forces: meshes, their nodes, transforms and hierarchy, keys, animations, and the
+// bytes of files that keys name. Excluded: error budgets, whose effect is in other keys, and device scripts, whose
+// poses are in a recording. Never 0.
 std::uint64_t scene_hash(const Level& level);
 
 }  // namespace pliant

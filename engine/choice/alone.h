@@ -1,4 +1,4 @@
-// One node of a level by itself: what a measurement presses.
+// Extracts one node of a level, for measurements on it.
 #pragma once
 
 #include <functional>
@@ -10,12 +10,12 @@
 
 namespace pliant {
 
-// The level with nothing but this node, at its place, without what moves it. A tool keeps its handle, without a device.
+// The level with only this node, at its place and without motion. A tool keeps its handle, without a device.
 Level level_alone(const Level& level, std::size_t node);
-// The same as a world; `edit`: of the node, before.
+// The same as a world; `edit` changes the node first.
 Result<World> spawn_alone(const Level& level, std::size_t node, const std::function<void(LevelNode&)>& edit);
 
-// Whether a key is the author's: said in the file, by --set, or not at its default.
+// True if the author set the key: in the file, by --set, or to a value other than the default.
 bool states(const LevelNode& node, const std::string& extension, const std::string& key);
 bool states_step(const Level& level);
 

@@ -1,4 +1,4 @@
-// The lattice, the soft step and the solver of a body, by presses on patches of its surface.
+// Chooses the lattice, the soft step and the solver of a body, by presses on patches of its surface.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,25 +15,25 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kPresses = 6;                   // places, along the surface's own order
+constexpr std::uint32_t kPresses = 6;                   // places, in the order of the surface's vertices
 constexpr std::array kCells{2.0, 1.6, 1.25, 1.0, 0.8};  // [1] of the usual cell
-constexpr double kFinest = 0.6;                         // [1] the truth's
+constexpr double kFinest = 0.6;                         // [1] cell of the reference, in usual cells
 constexpr std::array<double, 5> kStepsTried{1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480};  // [s]
 
-// What is measured has this size at most, whatever the level says: seconds each, as with the usual cell, which never
-// makes more than kMostUsualTets. An answer is a factor and six solutions; a press is some 500 steps.
+// Limits of what is measured, whatever the level sets: seconds each, as with the usual cell, which never makes more
+// than kMostUsualTets. An answer costs a factorisation and six solutions; a press takes some 500 steps.
 constexpr std::size_t kMostAnswerTets = 5 * kMostUsualTets, kMostPressTets = kMostUsualTets;
-constexpr int kCoarsenings = 4;  // tries to find a cell that makes so few
+constexpr int kCoarsenings = 4;  // attempts to find a cell within the limit
 
-// How far apart two lattices are is not what either is off by: the finer one has an error of its own, a quarter of one
-// of twice the cell (order 2). The difference is scaled to what is left to cells of no size.
+// The difference of two lattices underestimates the error: the finer one has an error itself, a quarter of one of twice
+// the cell (order 2). The difference is extrapolated to vanishing cell size.
 double to_truth(double difference, double cell, double finest) {
   const double ratio = finest / cell;
   return difference / std::max(0.05, 1 - ratio * ratio);
 }
 
 struct TriedLattice {
-  double error;  // [1] of the lattice
+  double error;  // [1] discretisation error
   Lattice its;
 };
 
@@ -52,7 +52,7 @@ Error unpressed(const LevelNode& node) {
   return {node.name, "could not be pressed to measure an error; leave out `error`"};
 }
 
-// One body's choice while it is made.
+// State of one body's choice.
 class BodyChooser {
  public:
   BodyChooser(const Level& level, std::size_t index, ModelChoice& choice, ChoiceProgress& progress)
@@ -62,9 +62,10 @@ class BodyChooser {
         choice_(choice),
         progress_(progress) {}
 
-  // Lattices with their errors; from a file the only one there is.
+  // Lattices with their errors; for tetrahedra from a file, only that one.
   Status try_lattices();
-  // What soft steps are measured on: coarse, also where the level says a finer cell, else opening would take minutes.
+  // The lattice for measuring soft steps: coarse even if the level sets a finer cell, because opening would otherwise
+  // take minutes.
   Status find_press_lattice();
   std::vector<TriedLattice> lattices;
   Patches patches;
@@ -74,8 +75,8 @@ class BodyChooser {
 
  private:
   Result<Lattice> lattice(double cell) { return make_lattice(alone_, index_, cell, patches); }
-  // Of this cell, or of the larger one that makes at most so many tetrahedra. Nothing: what is thin in it does not
-  // take so coarse a lattice.
+  // A lattice of this cell, or of a larger one with at most `most` tetrahedra. Empty if thin parts do not allow so
+  // coarse a lattice.
   std::optional<Lattice> lattice_within(double cell, std::size_t most);
   Error too_large() const;
   void say(const std::string& doing) { progress_.say(doing + " for `" + node_.name + "`"); }
@@ -123,7 +124,7 @@ Status BodyChooser::try_lattices() {
   const bool cell_said = states(node_, "soft_body", "cell");
   const double cell = usual->cell;
   const std::size_t count = usual->tets.tets.size();
-  // The finest cell whose refinement can be answered.
+  // The finest cell whose refinement is affordable.
   const double share = std::cbrt(static_cast<double>(count) / static_cast<double>(kMostAnswerTets)) / kFinest;
   if (cell_said && share > 1.0) {
     lattices.push_back({0.0, std::move(*usual)});
@@ -150,7 +151,7 @@ Status BodyChooser::try_lattices() {
     say("choosing a model");
     if (each != 1.0 && cell_said) continue;
     auto tried = each == 1.0 ? std::move(usual) : lattice(each * cell);
-    if (!tried) continue;  // too coarse for what is thin in it
+    if (!tried) continue;  // too coarse for thin parts
     const auto answer = answers(*tried, *node_.soft_body, patches);
     if (!answer) continue;
     const double error = to_truth(difference(*answer, *truth, surface), tried->cell, finest->cell);
@@ -212,7 +213,7 @@ Result<ModelChoice> choose_body(Level& level, std::size_t index, double& step, C
     return measure_solvers(its.tets, material_of(body, Strain::kCorotational), patch_load(patches, its.tets, vertex), T,
                            kinds);
   };
-  // Of several lattices none is so large (try_lattices).
+  // Among several lattices none is too large (try_lattices).
   const bool solvable = lattices.front().its.tets.tets.size() <= kMostAnswerTets;
   if (!solvable)
     choice.presses.push_back(fmt::format("with so many tetrahedra no solver was measured; {}",
@@ -228,8 +229,8 @@ Result<ModelChoice> choose_body(Level& level, std::size_t index, double& step, C
     candidate.ms = &its == &chooser.pressed() && solver.kind == SolverKind::kAuto ? steps[s].ms : 0.0;
     tried.push_back({candidate, {l, s, solver.kind}});
   };
-  // By the solver that the level says, or `auto`; where it is open the others come after, with the lattice and step
-  // that are taken: no solver is cheaper than `auto`, and none nearer by what a budget could tell.
+  // First with the level's solver, or `auto`. If the solver is open, the others follow with the chosen lattice and
+  // step: no solver is cheaper than `auto`, and none is more accurate by an amount that matters to a budget.
   for (std::size_t l = 0; l < lattices.size(); ++l)
     for (std::size_t s = 0; s < steps.size(); ++s)
       for (const SolverFigures& figures :

@@ -11,13 +11,14 @@
 namespace pliant {
 namespace {
 
-constexpr double kTruthStep = 1.0 / 480;                 // [s] the midpoint rule's
-constexpr double kRise = 0.2, kHold = 0.1, kLast = 0.5;  // [s] of a press: it comes, holds, is let go
-constexpr int kLooks = 15;                               // moments of a press that are compared, equally far apart
-constexpr double kHeldShare = 0.15;                      // [1] of the height, where nothing is pinned
-constexpr double kStrain = 0.1;                          // [1] deepest dent over the patch's radius
+constexpr double kTruthStep = 1.0 / 480;                 // [s] of the midpoint rule
+constexpr double kRise = 0.2, kHold = 0.1, kLast = 0.5;  // [s] of a press: rise, hold, total with release
+constexpr int kLooks = 15;                               // equidistant moments of a press at which motions are compared
+constexpr double kHeldShare = 0.15;                      // [1] of the height: the pinned part, if nothing else is
+                                                         // pinned
+constexpr double kStrain = 0.1;                          // [1] depth of the deepest dent over the patch's radius
 
-// A body that nothing holds is held at its lowest part, so that there is an answer to a press.
+// Pins the lowest part of a free body, so that a press has a static solution.
 void hold(TetMesh& tets) {
   if (tets.free_count < tets.node_count()) return;
   double low = 1e300, high = -1e300;
@@ -30,7 +31,7 @@ void hold(TetMesh& tets) {
   tets.handle_count = 0;
 }
 
-// [m] of each sample point, where nodes have moved from rest.
+// [m] Displacement of each sample point from rest.
 std::vector<dvec3> moved(const TetMesh& tets, const std::vector<dvec3>& nodes) {
   std::vector<dvec3> out;
   for (const Embedding& at : tets.embedding) {
@@ -49,8 +50,8 @@ double pressed(double time) {  // [1] of the load
   return t * t * (3 - 2 * t) - (time > kRise + kHold ? 1.0 : 0.0);
 }
 
-// The body pressed and let go in steps of T [s]: where its nodes are at each of kLooks moments, between the ends of
-// steps on the straight line. Empty: a step cannot be solved. `ms`: of a step.
+// Node positions at each of kLooks moments while the body is pressed and released in steps of T [s], interpolated
+// linearly within a step. Empty if a step cannot be solved. `ms`: per step.
 std::vector<std::vector<dvec3>> motion(const Lattice& lattice, const SoftBody& body, const std::vector<dvec3>& load,
                                        Scheme scheme, double T, double* ms = nullptr) {
   Tissue tissue(lattice.tets, material_of(body, Strain::kCorotational), lattice.tets.free_count);
@@ -58,7 +59,7 @@ std::vector<std::vector<dvec3>> motion(const Lattice& lattice, const SoftBody& b
   solver->analyse(tissue.inner());
   std::vector<dvec3> push = load, before = tissue.position();
   const TissueStep step{.scheme = scheme, .iterations = scheme == Scheme::kEuler ? 1 : 2, .push = &push};
-  const double at = scheme == Scheme::kEuler ? 1.0 : 0.5;  // [1] of the step: when the load counts
+  const double at = scheme == Scheme::kEuler ? 1.0 : 0.5;  // [1] of the step: time at which the load is evaluated
   std::vector<std::vector<dvec3>> out;
   const std::uint64_t begin = now_ns();
   int steps = 0;
@@ -67,7 +68,7 @@ std::vector<std::vector<dvec3>> motion(const Lattice& lattice, const SoftBody& b
     if (!step_tissue(tissue, *solver, T, dvec3(0), step).solved) return {};
     ++steps;
     for (; out.size() < kLooks;) {
-      // [1] of this step, when the next moment is; one that falls on its end may round beyond it.
+      // [1] of this step, the next moment; rounding may put one at the step's end beyond it.
       const double share = static_cast<double>(out.size() + 1) * (kLast / kLooks) / T - (steps - 1);
       if (share > 1 + 1e-9) break;
       std::vector<dvec3>& look = out.emplace_back(tissue.position());
@@ -126,7 +127,7 @@ std::vector<dvec3> patch_load(const Patches& patches, const TetMesh& tets, std::
 }
 
 std::optional<Answers> answers(const Lattice& lattice, const SoftBody& body, const Patches& patches) {
-  constexpr double kForever = 1e4;  // [s] inertia is nothing against stiffness
+  constexpr double kForever = 1e4;  // [s] inertia is negligible against stiffness
   Tissue tissue(lattice.tets, material_of(body, Strain::kLinear), lattice.tets.free_count);
   tissue.assemble(kForever, dvec3(0));
   const auto solver = make_solver(SolverKind::kBlockCholesky, tissue.inner().size);

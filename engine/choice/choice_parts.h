@@ -1,4 +1,4 @@
-// The parts of model_choice.h, one a kind of object.
+// The parts of model_choice.h, one per kind of object.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 
 namespace pliant {
 
-// Thrown through a choice whose watch has ended it; caught by choose_model.
+// Thrown when the watch ends a choice; caught by choose_model.
 struct ChoiceStopped {};
 
-// Tells the watch, or without one stderr, that the choice goes on.
+// Reports progress to the watch, or to stderr without one.
 class ChoiceProgress {
  public:
   explicit ChoiceProgress(const ChoiceWatch& watch = {}) : watch_(watch) {}
@@ -31,19 +31,20 @@ class ChoiceProgress {
   LongWork work_;
 };
 
-// Each sets the keys of the node that are not stated.
+// Each sets the keys of the node that the author has not set.
 Result<ModelChoice> choose_surface(Level& level, std::size_t node, ChoiceProgress& progress);
-// After the surface, whose choice this is: nothing where nothing says what the force should be, and a remark says why.
+// Called after the surface's choice, which is passed in. Empty if nothing defines the reference force; a remark gives
+// the reason.
 Result<std::optional<ModelChoice>> choose_law(Level& level, std::size_t node, ModelChoice& surface,
                                               ChoiceProgress& progress);
-// `step` [s] is what the bodies of the level need.
+// `step` [s]: smallest soft step needed by the level's bodies.
 Result<ModelChoice> choose_body(Level& level, std::size_t node, double& step, ChoiceProgress& progress);
-// After all bodies: with the level's soft step. `whose`: the choice whose budget it has. Nothing where it would take
-// too long to measure, and `whose` says so.
+// Called after all bodies, with the level's soft step. `whose`: the choice that has the budget. Empty if the
+// measurement would take too long; `whose` then notes it.
 Result<std::optional<ModelChoice>> choose_tool(Level& level, std::size_t node, ModelChoice& whose,
                                                ChoiceProgress& progress);
 
-// What a candidate stands for goes with it while they are sorted: the cheapest first, and the one to take.
+// Sorts candidates by cost, keeping the model that each stands for, and returns the one to take.
 template <class What>
 const What& take_cheapest(ModelChoice& choice, std::vector<std::pair<ModelCandidate, What>>& tried) {
   std::stable_sort(tried.begin(), tried.end(),

@@ -1,5 +1,5 @@
-// The law of a surface's force, where `young` and a spherical probe say what the force should be: Hertz's, or that of a
-// layer bonded to something rigid.
+// Chooses the law of a surface's force if `young` and a spherical probe define the reference: Hertz's force, or that of
+// a layer bonded to a rigid base.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr double kDeepest = 0.25;       // [1] of the sphere's radius, and of th
 constexpr double kMostOfObject = 0.02;  // [1] of the object's diagonal
 constexpr double kMostStiffening = 12.0, kMostCubic = 100.0;  // [1] of the deepest press: alpha d, and k3 d^2 / k
 
-// What a law says of the force at a depth [m], times E*. [m2]
+// Force of a law at a depth [m], over E*. [m2]
 double law_area(const Deformable& its, SpringLaw spring, double constant, double radius, double depth) {
   Deformable with = its;
   with.spring = spring;
@@ -28,7 +28,7 @@ double law_area(const Deformable& its, SpringLaw spring, double constant, double
   return 4.0 / 3.0 * std::sqrt(radius) * z * std::sqrt(std::max(0.0, z));
 }
 
-// The constant between 0 and `most` whose force comes nearest, by golden section.
+// The constant between 0 and `most` with the smallest force error, by golden section.
 double fitted(const Deformable& its, SpringLaw spring, double most, double radius, double deepest,
               const LayerSphere& truth) {
   const auto off = [&](double constant) {
@@ -66,12 +66,12 @@ void set(Deformable& its, const LawModel& law) {
   if (law.spring == SpringLaw::kCubic) its.cubic = law.constant;
 }
 
-// The key of a law's constant; null: it has none.
+// The key of a law's constant; null if it has none.
 const char* constant_of(SpringLaw spring) {
   return spring == SpringLaw::kExponential ? "stiffening" : spring == SpringLaw::kCubic ? "cubic" : nullptr;
 }
 
-// Why there is nothing to choose by; empty: there is.
+// The reason why there is no reference; empty if there is one.
 std::string no_truth(const LevelNode& node, double sphere) {
   if (!(node.deformable->young > 0.0))
     return "the author's, as is the stiffness: without `young` no truth says what it is";
@@ -92,7 +92,7 @@ Result<std::optional<ModelChoice>> choose_law(Level& level, std::size_t index, M
   }
   ModelChoice choice{node.name, "force law", node.deformable->error, {}, 0, false, {}, {}};
   Level alone = level_alone(level, index);
-  for (LevelMesh& mesh : alone.meshes)  // a painted factor scales law and truth alike
+  for (LevelMesh& mesh : alone.meshes)  // a painted factor scales law and reference alike
     for (Primitive& primitive : mesh.primitives) primitive.stiffness.clear();
   auto bench = PressBench::make(alone, nullptr, sphere);
   if (!bench) return bench.error();

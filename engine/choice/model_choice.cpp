@@ -14,7 +14,7 @@ namespace pliant {
 
 namespace {
 
-constexpr double kAsNear = 1.01;  // [1] of the least error: what is nearer buys nothing that anybody could tell
+constexpr double kAsNear = 1.01;  // [1] of the smallest error: a smaller one makes no noticeable difference
 
 std::string cost_words(double us) {
   return us < 100.0 ? fmt::format("{:.2g} us", us) : fmt::format("{:.0f} us", us);
@@ -30,7 +30,7 @@ bool is_tool(const LevelNode& node) {
   return node.handle && (node.rigid_body || node.soft_body);
 }
 
-// A surface with its law, or a body; of those that have a budget.
+// Chooses a surface with its law, or a body, if it has a budget.
 Status choose_object(Level& level, std::size_t index, double& step, ChoiceProgress& progress,
                      std::vector<ModelChoice>& all) {
   if (!has_surface_budget(level.nodes[index])) {
@@ -48,7 +48,7 @@ Status choose_object(Level& level, std::size_t index, double& step, ChoiceProgre
   return Done{};
 }
 
-// What else there is where no candidate is within the budget.
+// The alternative if no candidate is within the budget.
 const char* cure(const std::string& kind) {
   if (kind == "surface") return "; for less, make it a soft body (PLIANT_soft_body)";
   if (kind == "force law") return "; for less, fit a law to measured presses (pliant fit)";
@@ -91,7 +91,7 @@ Result<std::vector<ModelChoice>> choose_models(Level& level) {
   ChoiceProgress progress;
   double step = 1.0;
   bool any_body = false;
-  std::map<std::size_t, std::size_t> body_of;  // node -> its body's choice
+  std::map<std::size_t, std::size_t> body_of;  // node -> index of its body's choice
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const LevelNode& node = level.nodes[i];
     if (!node.in_scene || !(has_surface_budget(node) || has_body_budget(node))) continue;
@@ -105,7 +105,7 @@ Result<std::vector<ModelChoice>> choose_models(Level& level) {
   for (std::size_t i = 0; i < level.nodes.size() && !all.empty(); ++i) {
     const LevelNode& node = level.nodes[i];
     if (!node.in_scene || !is_tool(node)) continue;
-    // A soft tool has its body's budget, a rigid one the least of the level's.
+    // A soft tool uses its body's budget, a rigid one the smallest of the level's.
     const auto body = body_of.find(i);
     if (body == body_of.end() && !node.rigid_body) continue;
     ModelChoice& whose = body != body_of.end()

@@ -29,7 +29,7 @@ Entity add_probe(World& world, double radius, dvec3 at) {
   return entity;
 }
 
-// Distances of vertices along the surface from where the probe presses, as far as `reach` [m].
+// Offsets of vertices along the surface from the contact, up to `reach` [m].
 std::vector<vec3> distances(const Mesh& mesh, const Contact& contact, double reach) {
   std::vector<vec3> offset(mesh.px.size(), vec3(kFar));
   FieldSource source;
@@ -65,7 +65,7 @@ Result<PressBench> PressBench::make(const Level& level, const PressPlaces* place
   Deformable& surface = bench.surface();
   if (surface.reach == 0.0) surface.reach = default_reach(bench.mesh());
   surface.response = Response::kFollow;
-  surface.settling_time = DeformableRange::kSettlingTime.min;  // at rest again within a tick
+  surface.settling_time = DeformableRange::kSettlingTime.min;  // the surface is at rest again within a tick
   surface.damping_ratio = 1.0;
   surface.contact_damping = 0.0;
   surface.contact_damping_material = false;
@@ -141,8 +141,8 @@ PressBench::Press PressBench::press(std::size_t place, double depth, const Surfa
     const Pose& pose = world_.registry.get<Pose>(object_);
     out.force = dot(world_.registry.get<Probe>(probes_[place]).force, pose.rotation * places_.normal[place]);
   }
-  tick(probes_.size(), 0.0);  // let go
-  tick(probes_.size(), 0.0);  // asleep
+  tick(probes_.size(), 0.0);  // release
+  tick(probes_.size(), 0.0);  // until asleep
   return out;
 }
 

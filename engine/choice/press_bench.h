@@ -1,4 +1,4 @@
-// An object by itself under probes of its own, pressed by the touch tick at several places.
+// An isolated object with its own probes, pressed by the touch tick at several places.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,31 @@
 
 namespace pliant {
 
-// Where it is pressed, the same for every mesh that `reach` makes of the object. Object frame.
+// Places of the presses, the same for every mesh that `reach` makes of the object. Object frame.
 struct PressPlaces {
   std::vector<dvec3> foot, normal;  // [m], unit
 };
 inline constexpr std::size_t kPressPlaces = 6;
-// Along the mesh's own order, which is near in space for near numbers.
+// Places spread over the mesh's vertex order, in which near numbers are near in space.
 PressPlaces press_places(const Mesh& mesh);
 
 class PressBench {
  public:
-  // `level` is as of level_alone(), its node edited. Probes of this radius [m]; 0: points.
+  // `level`: of level_alone(), with the node edited. Probes of this radius [m]; 0: points.
   static Result<PressBench> make(const Level& level, const PressPlaces* places, double probe_radius);
 
   Deformable& surface() { return world_.registry.get<Deformable>(object_); }
   const Mesh& mesh() const { return world_.meshes[world_.registry.get<Deformable>(object_).mesh]; }
   const PressPlaces& places() const { return places_; }
 
-  // After `distance` or the law has changed; other keys of surface() need no call. No place may be pressed before.
+  // Call after `distance` or the law has changed; other keys of surface() need no call. No place may have been pressed
+  // before.
   [[nodiscard]] Status prepare();
 
-  // One place pressed `depth` [m] deep and let go; the surface is at rest again.
+  // Result of pressing one place `depth` [m] deep and releasing it; afterwards the surface is at rest.
   struct Press {
-    double off = 0.0, size = 0.0;  // sums of squares, by area, within the truth's region: from the truth, and of it
+    double off = 0.0, size = 0.0;  // area-weighted sums of squares within the reference's region: of the difference,
+                                   // and of the reference
     double vertices = 0.0;         // awake
     double force = 0.0;            // [N] along the normal
     double ms = 0.0;               // of the tick
@@ -41,7 +43,7 @@ class PressBench {
   Press press(std::size_t place, double depth, const SurfaceTruth& truth);
 
  private:
-  // What is compared of a place: vertices within the region, and the truth there.
+  // Comparison data of a place: vertices within the region, and the reference there.
   struct Region {
     bool known = false;
     std::vector<std::uint32_t> vertex;
@@ -57,7 +59,7 @@ class PressBench {
   std::vector<Region> regions_;
   Schedule<World> schedule_{{}};
   double probe_radius_ = 0.0;
-  double aside_ = 0.0;  // [m] how far outside probes wait
+  double aside_ = 0.0;  // [m] distance from the surface at which idle probes wait
   std::uint64_t ticks_ = 0;
   double ms_ = 0.0;  // of the last tick
 };

@@ -10,19 +10,19 @@
 namespace pliant {
 namespace {
 
-// Counted, as measured (systems/soft/linear/auto_solver.h, bench/results/README.md): a factor, a right-hand side solved
-// with it, and an iteration of conjugate gradients. step_cost.h is of a tool with some 60 contacts: three right-hand
-// sides each, and one for the step.
+// Cost model from measurements (systems/soft/linear/auto_solver.h, bench/results/README.md): a factorisation, a
+// right-hand side solved with it, and an iteration of conjugate gradients. step_cost.h assumes a tool with some 60
+// contacts: three right-hand sides each, and one for the step.
 constexpr double kColumns = 181.0;
-constexpr double kFlopNs = 0.08, kFrontNs = 1000.0;       // [ns] of a factor, a node
+constexpr double kFlopNs = 0.08, kFrontNs = 1000.0;       // [ns] of a factorisation, per node
 constexpr double kSolveNs = 0.75;                         // [ns] of a right-hand side, flops^(2/3)
-constexpr double kSetupNs = 500.0, kIterationNs = 100.0;  // [ns] a node
+constexpr double kSetupNs = 500.0, kIterationNs = 100.0;  // [ns] per node
 constexpr double kDenseFlopNs = 0.07;
-// [1] times of `block-cholesky`: factor, right-hand side.
+// [1] factors on the times of `block-cholesky`: factorisation, right-hand side.
 constexpr double kEigen[2] = {3.0, 2.0}, kCholmod[2] = {3.5, 3.5};
 
 struct SystemSize {
-  double nodes, flops;  // flops: of a block-cholesky factor
+  double nodes, flops;  // flops: of a block-cholesky factorisation
   double iterations;    // of conjugate gradients on this system
 };
 
@@ -49,7 +49,7 @@ double cost_ms(SolverKind kind, const SystemSize& s) {
     case SolverKind::kAuto:
       return std::min(direct_ms(s, 1, 1), iterative_ms(s));
     default:
-      return direct_ms(s, 1, 1);  // of a registered one nothing is known
+      return direct_ms(s, 1, 1);  // no cost is known for a registered solver
   }
 }
 

@@ -1,4 +1,4 @@
-// The shape of a surface's dent, how wide it is, and what its distance is, by presses of the touch tick.
+// Chooses the shape and width of a surface's dent and its distance function, by presses of the touch tick.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,18 +14,18 @@ namespace {
 
 constexpr double kDepths[] = {0.2, 0.5};              // [1] of the punch's radius, in turn
 constexpr double kReaches[] = {3.0, 5.0, 8.0, 12.0};  // [1] of the punch's radius
-constexpr double kContacts[] = {1.0, 1.5, 2.0};  // [1] the same: a window that takes a shape to zero makes it narrower
+constexpr double kContacts[] = {1.0, 1.5, 2.0};  // [1] likewise: a window that brings a shape to zero makes it narrower
 constexpr double kGpuAgrees = 1.9e-7;            // [1] of the largest height, as measured (bench/results/README.md)
-constexpr double kBytes = 16.0;                  // a vertex awake, for a picture of a field on the CPU
+constexpr double kBytes = 16.0;                  // per awake vertex, for drawing a field that is on the CPU
 
 struct SurfaceModel {
   Shape shape;
   Distance distance;
   double reach, contact;  // [m]; contact 0: the shape has none, or a fifth of the reach
-  double bulge;           // [m] of curved patches on the mesh that this reach makes, at most
+  double bulge;           // [m] largest bulge of curved patches on the mesh for this reach
 };
 
-// What the author leaves open.
+// Keys that the author left open.
 struct OpenKeys {
   std::vector<Shape> shapes;
   std::vector<Distance> ways;
@@ -54,7 +54,7 @@ OpenKeys open_keys(const LevelNode& node, const SurfaceTruth& truth) {
   return open;
 }
 
-// Models that share a mesh: it is cut finer for the reach, and for the contact of shapes that depend on it.
+// Models that share a mesh: it is refined for the reach, and for the contact radius of shapes that have one.
 struct Meshed {
   double reach, contact;  // [m]
   std::vector<Shape> shapes;
@@ -80,7 +80,7 @@ std::string label_of(const SurfaceModel& it) {
   return label;
 }
 
-// Nothing where no place could be pressed.
+// Empty if no place could be pressed.
 std::optional<ModelCandidate> measure(PressBench& bench, const SurfaceModel& model, const SurfaceTruth& truth) {
   Deformable& its = bench.surface();
   its.shape = model.shape;
@@ -100,7 +100,7 @@ std::optional<ModelCandidate> measure(PressBench& bench, const SurfaceModel& mod
                         vertices / count};
 }
 
-// What costs nothing to have, or has no key.
+// Remarks on aspects without cost or without a key.
 void remark(double bulge, const SurfaceTruth& truth, ModelChoice& choice) {
   choice.remarks.push_back("truth: " + truth.words());
   choice.remarks.push_back(fmt::format(

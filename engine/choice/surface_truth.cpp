@@ -13,10 +13,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kShareOfReach = 0.2;  // [1] contact radius over reach, as the engine's shapes have it
+constexpr double kShareOfReach = 0.2;                     // [1] contact radius over reach, as in the engine's shapes
 constexpr double kLeastShare = 0.004, kMostShare = 0.05;  // [1] of the object's diagonal
 constexpr std::size_t kPlaces = 256;
-constexpr double kFarthestRing = 10.0;  // [1] of the punch's radius: as far as shares are asked for
+constexpr double kFarthestRing = 10.0;  // [1] of the punch's radius: largest distance at which shares are evaluated
 
 }  // namespace
 

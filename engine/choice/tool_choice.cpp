@@ -1,4 +1,4 @@
-// How the touch clock makes a tool's force, by a press of that very tool on a fixed plate.
+// Chooses how the touch clock computes a tool's force, by pressing that tool on a fixed plate.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,8 +11,8 @@
 namespace pliant {
 namespace {
 
-// [us] of a tick, as `pliant study linearisation` measured them (bench/results/studies/linearisation.json: 20 us
-// with 58 contacts and 69 modes): coupling and handle; the linear model; each number of the contacts' rows.
+// [us] per tick, as measured by `pliant study linearisation` (bench/results/studies/linearisation.json: 20 us with 58
+// contacts and 69 modes): coupling and handle; the linear model; each entry of the contact rows.
 constexpr double kHeldUs = 0.5, kLinearUs = 0.1, kEntryUs = 1.5e-3;
 
 double cost_us(ToolForce force, int contacts, int modes) {
@@ -21,7 +21,7 @@ double cost_us(ToolForce force, int contacts, int modes) {
   return kHeldUs + kLinearUs + kEntryUs * 3.0 * contacts * (modes + 6.0);
 }
 
-// [1] RMS of the difference of the forces over the RMS of what the truth feels beyond how it began. The truth has every
+// [1] RMS difference of the forces over the RMS of the reference's change since its start. The reference has every
 // `every`-th tick.
 double difference(const std::vector<Vector6>& felt, const std::vector<Vector6>& truth, std::size_t every) {
   double off = 0.0, size = 0.0;

@@ -21,13 +21,13 @@
 namespace pliant {
 namespace {
 
-constexpr double kRestTime = 0.01, kPress = 0.1, kDraw = 0.14;  // [s] it rests, comes down, is drawn along
+constexpr double kRestTime = 0.01, kPress = 0.1, kDraw = 0.14;  // [s] rest, descent, drag
 constexpr double kDepth = 0.02;                                 // [1] of the tool's diagonal
 constexpr double kGap = 0.1, kWay = 2.0;                        // [1] of the depth: above the plate; along it
-constexpr double kPlate = 2.0;                                  // [1] of the tool's diagonal: half its side
+constexpr double kPlate = 2.0;                                  // [1] of the tool's diagonal: half the plate's side
 constexpr std::size_t kMostTruthSteps = 500;                    // 0.5 ms each
 constexpr double kMostWork = 60e3;                              // [ms] of all soft steps, counted (step_cost.h)
-constexpr std::size_t kForces = 3;  // models that are pressed as well, in steps of the level's
+constexpr std::size_t kForces = 3;                              // models pressed in addition, in the level's steps
 
 struct PressFrame {
   dvec3 down, along, across;
@@ -39,7 +39,7 @@ PressFrame frame_of(dvec3 gravity) {
   return {down, along, cross(down, along)};
 }
 
-// Its upper face around `top`.
+// A plate with its upper face around `top`.
 LevelMesh plate(dvec3 top, const PressFrame& f, double half) {
   Primitive box;
   for (const double below : {0.0, 0.5})
@@ -62,7 +62,7 @@ double smooth(double t) {
   return t * t * (3 - 2 * t);
 }
 
-// How many ticks a step of the truth has; 0: too many steps to measure. It must be shorter than the step that it is
+// Ticks per step of the reference; 0: too many steps to measure. The step must be shorter than the one that it is
 // compared with, unless it has the touch rate.
 std::size_t stride_of(std::size_t ticks, std::size_t length, std::size_t tetrahedra) {
   const double step = step_ms(tetrahedra, 1.0);
@@ -82,7 +82,7 @@ ToolTouchState& tool_of(World& world) {
   return *world.tools->tools[0];
 }
 
-// Where the script has the device.
+// The scripted state of the device.
 RigidMotion device_at(const World& world, Entity device, double time, double dt) {
   const Path& path = world.paths[world.registry.get<HapticDevice>(device).path];
   const PathRow now = sample_path(path, time), before = sample_path(path, std::max(0.0, time - dt));
@@ -213,7 +213,7 @@ Result<ToolPress::Felt> ToolPress::touched(ToolForce force) {
       const std::uint64_t n = i / length_;
       if (i > 0) publish.run(world_, {n - 1, T, time - T});
       run_soft_step(soft, world_, {n, T, time});
-      if (i == 0) publish.run(world_, {n, T, time});  // something must be felt until the second one comes
+      if (i == 0) publish.run(world_, {n, T, time});  // gives a force until the second model arrives
       note_model(tool.pending, out);
     }
     touch.run(world_, {i, tick_, time});

@@ -1,6 +1,6 @@
-// A tool by itself, pressed on a fixed plate below it and drawn along it, by a script: what the hand that holds it
-// feels, by the touch clock beside a soft clock of the level's step, and by short soft steps: at the touch rate, or as
-// near to it as can be measured in a minute.
+// An isolated tool, pressed by a script on a fixed plate below it and dragged along it. Its hand force is computed by
+// the touch clock with a soft clock at the level's step, and by short soft steps as reference: at the touch rate, or
+// the nearest rate that can be measured in a minute.
 #pragma once
 
 #include <string>
@@ -19,22 +19,22 @@ class ToolPress {
   // With the level's soft step and touch rate.
   static Result<ToolPress> make(const Level& level, std::size_t node);
 
-  // [N], [N m] on the hand at every tick (of the truth: step), of the coupling alone.
+  // [N], [N m] on the hand in every tick (of the reference: in every step), of the coupling alone.
   struct Felt {
     std::vector<Vector6> wrench;
-    double ms = 0.0;              // of a tick's tool_feedback, median; of the truth: of a soft step, mean
-    int contacts = 0, modes = 0;  // most in a model
-    double left_out = 0.0;        // [1] of the contacts' static flexibility: what the modes leave out, largest
+    double ms = 0.0;              // of a tick's tool_feedback, median; of the reference: of a soft step, mean
+    int contacts = 0, modes = 0;  // maximum over the models
+    double left_out = 0.0;        // [1] largest share of the contacts' static flexibility that the modes leave out
   };
-  // Short soft steps: the handle follows the hand by its coupling in the step itself. A wrench a step.
+  // Reference with short soft steps, in which the coupling moves the handle with the hand. One wrench per step.
   Result<Felt> truth(ChoiceProgress& progress);
-  // Both clocks. Models come one step late, as from a machine that needs the whole step for them.
+  // Both clocks. Models arrive one step late, as on a machine that needs the whole step to compute them.
   Result<Felt> touched(ToolForce force);
 
-  double depth() const { return depth_; }  // [m] that the hand goes beyond the touch
-  // Why neither can be asked for, with the cure; "": they can.
+  double depth() const { return depth_; }  // [m] by which the hand moves beyond first contact
+  // The reason why neither can be measured, with the remedy; empty: they can.
   const std::string& unmeasured() const { return unmeasured_; }
-  std::size_t truth_ticks() const { return stride_; }                         // of a step of the truth
+  std::size_t truth_ticks() const { return stride_; }                         // of a step of the reference
   double truth_step() const { return static_cast<double>(stride_) * tick_; }  // [s]
 
  private:
@@ -43,7 +43,7 @@ class ToolPress {
   World world_;
   Entity tool_;
   double tick_ = 1e-3, depth_ = 0.0;
-  std::size_t ticks_ = 0, length_ = 1, stride_ = 1;  // of the script, of a soft step, of a step of the truth
+  std::size_t ticks_ = 0, length_ = 1, stride_ = 1;  // of the script, of a soft step, of a step of the reference
   std::string unmeasured_;
 };
 

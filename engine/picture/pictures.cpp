@@ -27,7 +27,7 @@ Status check(const PictureView& view, int width, int height) {
 
 }  // namespace
 
-// The session's view hands every snapshot that it takes to the renderer as well.
+// The session's view passes every snapshot on to the renderer.
 struct Pictures::Parts {
   Session::Parts* session = nullptr;
   std::weak_ptr<int> run;  // of the session

@@ -28,8 +28,9 @@ dvec3 centre_of_mass(const std::vector<dvec3>& nodes, const std::vector<double>&
   return whole > 0.0 ? sum / whole : dvec3(0);
 }
 
-// Of a soft body without a handle: the centre of mass, and the rotation nearest to sum m (x - c) X^T, X the node's rest
-// position from the rest shape's centre of mass (Mueller et al. 2005, shape matching). `rotation`: the last step's.
+// Pose of a soft body without a handle: the centre of mass, and the rotation nearest to sum m (x - c) X^T, X the node's
+// rest position from the rest shape's centre of mass (Mueller et al. 2005, shape matching). `rotation`: that of the
+// last step.
 Pose mean_pose(const Tissue& tissue, const std::vector<dvec3>& rest, const dquat& rotation) {
   const dvec3 centre = centre_of_mass(tissue.position(), tissue.mass());
   dmat3 moment(0);
@@ -49,7 +50,7 @@ BodyJournal::BodyJournal(const World& world, std::size_t steps)
     : soft_(*world.soft), recorder_(rows_that_wait(steps, world.soft->moving.size())) {
   for (const std::uint32_t index : soft_.moving) {
     const Body& body = *soft_.bodies[index];
-    if (body.kind == BodyKind::kProbe) continue;  // forces.csv says where it is
+    if (body.kind == BodyKind::kProbe) continue;  // its pose is in forces.csv
     index_.push_back(index);
     const Pose* pose = world.registry.find<Pose>(body.entity);
     bodies_.push_back(body.entity);

@@ -24,7 +24,7 @@ std::string name_in(const World& world, Entity hand) {
   return named ? named->value : std::string();
 }
 
-// A device that is being opened, of a thread that may outlive whoever waits for it.
+// A device being opened, by a thread that may outlive the caller.
 struct Opening {
   std::vector<DeviceInfo> there;
   Result<DeviceChoice> chosen = Error{};
@@ -33,7 +33,7 @@ struct Opening {
   Status done = Done{};
 };
 
-// Does `work` on a thread of its own. False: `stop` became true before it was done.
+// Runs `work` on a separate thread. Returns false if `stop` became true first.
 bool does(const std::function<void()>& work, const std::function<bool()>& stop) {
   std::packaged_task<void()> task(work);
   std::future<void> done = task.get_future();
@@ -204,7 +204,7 @@ bool DeviceLinks::never_ready(Entity hand) {
 
 namespace {
 
-// What came of a device that could not be used.
+// Findings for a device that could not be used.
 void find_unused(const std::string& name, const DeviceReport& report, std::vector<std::string>& all) {
   const std::uint64_t samples = report.figures.samples, not_ready = report.dropped.not_ready;
   if (const std::string frames = describe(report.dropped); !frames.empty())

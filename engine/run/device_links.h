@@ -1,5 +1,5 @@
-// The devices of a run: a driver for every probe and tool that one moves (devices/choose.h, engine/run/driver_link.h),
-// opened before its clocks start, and written zero with the last of its ticks.
+// The devices of a run: one driver for every probe and tool that a device moves (devices/choose.h,
+// engine/run/driver_link.h). Opened before the run's clocks start; zero force is written after its last tick.
 #pragma once
 
 #include <functional>
@@ -16,33 +16,32 @@ namespace pliant {
 
 class DeviceLinks {
  public:
-  // Opens what each hand with the driver `external` asks for by its `id`, and takes those of `held`; one without an id
-  // is moved by nobody. Where the mouse is an alternative, it takes its place. `notes`: what is not as one might
-  // expect.
-  // Opening may take long (a name server, a maker's library): where `stop` becomes true it is given up, with an error,
-  // and goes on on a thread of its own, so that the program must end at once (gave_up()).
+  // Opens the device that each hand with the driver `external` requests by its `id`, and those of `held`; without an id
+  // no device moves the hand. If the mouse is an alternative, it is used instead. `notes`: anything unexpected. Opening
+  // may take long (a name server, a vendor's library). If `stop` becomes true it returns an error while its thread
+  // continues; the program must then end at once (gave_up()).
   Status open(World& world, SimulatedHands& held, bool windowed, const std::function<bool()>& stop,
               std::vector<std::string>& notes);
   bool gave_up() const { return gave_up_; }
   bool any() const { return !links_.empty(); }
   bool any_real() const;  // and not only simulated hands
-  // Before the run: whether simulated hands go by the wall's clock, or by the servo's periods.
+  // Before the run: whether simulated hands follow the wall clock or the servo's periods.
   void use_clock(DeviceClock clock);
   bool moves(Entity hand) const;
-  // Why they cannot run in virtual time, if one cannot.
+  // Error if a device cannot run in virtual time.
   Status may_step() const;
 
   // --- Around a tick
-  // Samples come in before it, forces leave after it; paused devices are let go. Outlives the runner.
+  // Samples are read before it, forces written after it; paused devices are released. Must outlive the runner.
   TickPart tick_part(World& world);
-  // --- The thread's that started them
-  // What is shown of each, and of the hands that none moves; `late_ticks` is left to the caller.
+  // --- Owner's thread
+  // Fills the view of each device, and of the hands that no device moves; the caller sets `late_ticks`.
   void view(DevicesView& out);
   void order(const DeviceOrders& orders);
-  void stop_all();  // no force until each is armed; from any thread
-  // No sample has come of it that said where it is: nothing else that can be said of its probe helps.
+  void stop_all();  // zero force until each is armed; thread-safe
+  // True if no sample of the device was ready: other findings about its probe are then irrelevant.
   bool never_ready(Entity hand);
-  // What became of each: transitions that a person should know of.
+  // Per device, transitions that the user should know of.
   std::vector<std::string> findings();
 
  private:
@@ -50,7 +49,7 @@ class DeviceLinks {
     std::string name;
     Entity hand, device;
     DriverLink link;
-    std::string id, called;                // "falcon:0|scale=2"; as people call it
+    std::string id, called;                // "falcon:0|scale=2"; display name
     SimulatedDevice* simulated = nullptr;  // in a simulated hand
   };
   Status start();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kMark = ".driver.";
 
-// One number of a device that its driver gives.
+// A numeric device property that its driver sets.
 struct DriverKey {
   const char* name;
   double (*get)(const HapticDevice& device);
@@ -36,7 +36,7 @@ constexpr DriverKey kKeys[] = {
      [](HapticDevice& d, double value) { d.workspace = value > 0.0 ? value : 1.0; }},
 };
 
-// A setting in its parts; a name may hold dots and equals signs, what stands behind it does not.
+// The parts of a setting. The name may contain dots and equals signs, the rest may not.
 struct Parts {
   std::string name, key;
   double value = 0.0;

@@ -1,5 +1,5 @@
-// What the drivers of a session could render, in a recording's settings: NODE.driver.KEY=VALUE, beside those that
-// change the level. A replay feels the same limits, so that its forces are the same.
+// Rendering limits of a session's drivers, stored in a recording's settings as NODE.driver.KEY=VALUE beside the level's
+// settings. A replay applies the same limits, so that its forces are the same.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace pliant {
 
-// Whatever differs from a device without a driver.
+// Every property that differs from a device without a driver.
 std::vector<std::string> driver_settings(const std::string& name, const HapticDevice& device);
 bool is_driver_setting(const std::string& setting);
-// Into the devices of the probes and tools of these names; settings of other kinds are passed over. The error names the
-// first that says nothing.
+// Applies settings to the devices of the named probes and tools; other settings are ignored. The error names the first
+// invalid one.
 Status apply_driver_settings(World& world, const std::vector<std::string>& settings);
 
 }  // namespace pliant

@@ -40,14 +40,14 @@ Status DriverLink::connect(std::unique_ptr<Driver> driver, const std::string& id
   const auto failed = [&](const std::string& what) {
     try {
       if (opened) driver->close();
-    } catch (...) {  // gone all the same
+    } catch (...) {  // closed regardless
     }
     return Error{where, what};
   };
   DeviceCapabilities can;
   Servo* servo = nullptr;
   try {
-    // Before it is opened: a line that two programs ask at once answers neither.
+    // Claimed before opening: a line that two programs query at once answers neither.
     if (!claimed.empty() && device_identity(claimed) != "simulated")
       if (Status taken = claim.take(claimed); !taken) return taken;
     if (Status status = driver->open(id); !status) return status;
@@ -94,7 +94,7 @@ void DriverLink::close() noexcept {
     if (watch_) watch_->end();
     try {
       driver_->close();
-    } catch (...) {  // gone all the same
+    } catch (...) {  // closed regardless
     }
   }
   driver_.reset();
@@ -117,12 +117,12 @@ void DriverLink::begin(HapticDevice& device, dquat placed, dvec3 middle) {
   ready_ = false;
 }
 
-// Without a new sample the device keeps what it said last; once that is old, safety takes it for lost.
+// Without a new sample the device keeps its last one; once that is old, the safety layer treats the device as lost.
 void DriverLink::read(HapticDevice& device, Tick tick) {
   DeviceSample sample;
   if (servo_ && !servo_->runs()) servo_->advance(tick.time);
   const bool fresh = driver_->read(sample);
-  if (state_ && state_->sense(fresh ? &sample : nullptr, tick.time)) ready_ = false;  // comes back through the gate
+  if (state_ && state_->sense(fresh ? &sample : nullptr, tick.time)) ready_ = false;  // force returns through the gate
   if (fresh) {
     device.position = device.origin + device.workspace * sample.position;
     if (!can_.senses_rotation)
@@ -130,7 +130,7 @@ void DriverLink::read(HapticDevice& device, Tick tick) {
     else if (plausible_rotation(sample.rotation))
       device.rotation = sample.rotation / glm::length(sample.rotation);
     else
-      device.rotation = sample.rotation;  // no rotation: the pose is not taken, and counted
+      device.rotation = sample.rotation;  // no rotation: the pose is rejected and counted
     device.sensed_at = tick.time;
     ready_ = sample.ready && !(state_ && state_->renewed());
   }
@@ -175,7 +175,7 @@ std::string DriverLink::late_note(const std::string& name) const {
 }
 
 void DriverLink::idle() {
-  written_at_ = 0;  // a pause is none
+  written_at_ = 0;  // a pause is not a late write
   DeviceSample sample;
   const bool fresh = driver_->read(sample);
   if (state_) state_->rest(fresh ? &sample : nullptr);
@@ -208,7 +208,7 @@ void DriverLink::zero() noexcept {
   if (!driver_) return;
   try {
     driver_->write({});
-  } catch (...) {  // what fails is left: its device's own watchdog ends the force
+  } catch (...) {  // after a failure the device's watchdog ends the force
   }
 }
 

@@ -1,5 +1,6 @@
-// One driver on one device of the world: its samples come in before a tick, what left safety goes out after it. A
-// device with a rate gets a servo in front (devices/servo/servo.h). For a Session and for a program's own loop.
+// Connects one driver to one device of the world: samples are read before a tick, the force that passed safety is
+// written after it. A device with a rate gets a servo (devices/servo/servo.h). Used by Session and by a program's own
+// loop.
 #pragma once
 
 #include <memory>
@@ -23,42 +24,41 @@ class DriverLink {
   DriverLink& operator=(DriverLink&& other) noexcept;
   ~DriverLink() { close(); }
 
-  // Opens it. `where` opens the error. `claimed`: "driver:id" that nobody else may have meanwhile; "": a driver of
-  // one's own. `placed`: the rotation of a device that senses none.
+  // Opens the driver. `where` prefixes the error. `claimed`: "driver:id" to claim exclusively; "": a driver of the
+  // program's own. `placed`: the rotation of a device that senses none.
   Status connect(std::unique_ptr<Driver> driver, const std::string& id, const std::string& where,
                  const std::string& claimed = {}, const GuardParameters& guard = {});
-  void close() noexcept;  // written zero, and gone
-  // Its owner's. What stands between it and a hand: of its servo, or of a driver without one (link_state.h).
+  void close() noexcept;  // writes zero and closes
+  // --- Owner's thread. State of the layer between driver and hand: of the servo, or of a driver without one
+  // (link_state.h).
   const DeviceReport& report();
   void arm();
   void disarm();
-  void stop();  // from any thread: no force until it is armed
+  void stop();  // thread-safe: no force until it is armed
   bool connected() const { return driver_ != nullptr; }
   explicit operator bool() const { return connected(); }
   const DeviceCapabilities& can() const { return can_; }
   const std::string& note() const;         // what is not as it might be, once it is connected; may be empty
   Servo* servo() const { return servo_; }  // null: its driver is called by the touch clock
 
-  // `device` is moved by this driver, or by none, from now on.
-  // `middle` [m] world: where the workspace of a driver that says one has its own; of others, it is in the world's
-  // frame.
+  // From now on this driver, or none, moves `device`. `middle` [m] world: place of the workspace's centre for a driver
+  // that reports one; other drivers' workspaces are in the world frame.
   void begin(HapticDevice& device, dquat placed, dvec3 middle);
-  void forget() { ready_ = false; }  // its pose, until it says another
+  void forget() { ready_ = false; }  // its pose, until the next sample
 
-  // --- Around a tick. None allocates or waits.
-  // In lockstep the servo's periods until this tick run here.
+  // --- Around a tick. Nothing allocates or waits. In lockstep the servo's periods up to this tick run here.
   void read(HapticDevice& device, Tick tick);
-  // Where the device's guard lets nothing leave, the device's force_sent is zero afterwards.
+  // If the device's guard withholds the force, the device's force_sent is zero afterwards.
   void write(World& world, Entity effector, Entity device, Tick tick);
-  // What a person should know after a run: a device lets go of a force that nobody renews. One sentence, or none.
+  // Note after a run: a device drops a force that is not renewed in time. One sentence, or empty.
   std::string late_note(const std::string& name) const;
-  void idle();  // instead of both, while a loop is paused
+  void idle();  // called instead of both while a loop is paused
   void zero() noexcept;
 
-  // --- Real time, around the touch clock's; without a servo nothing to do
+  // --- Real time, on the touch clock's start and end; does nothing without a servo.
   Status start();
   void halt() noexcept;
-  Status may_step() const;  // an error of a device that cannot run in lockstep
+  Status may_step() const;  // error if the device cannot run in lockstep
 
  private:
   DeviceClaim claim_;
@@ -66,7 +66,7 @@ class DriverLink {
   Servo* servo_ = nullptr;
   DeviceCapabilities can_;
   dquat placed_rotation_{1, 0, 0, 0};
-  std::uint64_t written_at_ = 0, late_ = 0;  // [ns]; writes later than kForceHolds after the one before
+  std::uint64_t written_at_ = 0, late_ = 0;  // [ns]; number of writes later than kForceHolds after the previous one
   double longest_ = 0.0;                     // [s] between two writes
   bool ready_ = false;                       // as it said last, since a pause
   // Of a driver without a servo.

@@ -32,7 +32,7 @@ Journal::Journal(const World& world, double seconds, const BodyJournal* bodies)
   }
 }
 
-// The touch clock's own side of the tool: what the tick that has just been run went by.
+// Tool fields known to the touch clock: the state used by the tick just run.
 void Journal::note_tool(Hand& hand, Tick tick, TickRow& row) {
   const ToolTouchState& tool = *hand.tool;
   const HandleModel& model = tool.model.read();

@@ -1,5 +1,5 @@
-// What is noted of every tick. The touch clock's half: it reads the world after each tick, and neither allocates nor
-// waits. Rows leave through a ring for whoever keeps them (keeper.h).
+// Journal of the ticks. This is the touch clock's half: it reads the world after each tick and neither allocates nor
+// waits. A ring passes the rows to the keeper (keeper.h).
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ struct TickRow {
   dvec3 device_position{0};  // [m] world, as sensed
   dquat device_rotation{1, 0, 0, 0};
   dvec3 torque{0};            // [N m] world, on the hand
-  std::uint32_t objects = 0;  // touched; of a tool by the last soft step, itself left out
-  std::uint8_t limited = 0;   // 1 << SafetyLimit: what kept the hand from what the law says (systems/safety/safety.h)
+  std::uint32_t objects = 0;  // touched; for a tool in the last soft step, itself excluded
+  std::uint8_t limited = 0;   // 1 << SafetyLimit: limits that changed the force (systems/safety/safety.h)
   bool late = false;          // of a tool: its contacts were not solved within the tick's budget
   bool stale = false;         // of a tool: its model is older than kStaleSteps soft steps
 };
@@ -37,14 +37,14 @@ struct AwakeStats {
   std::uint32_t max = 0;
 };
 
-// [rows] That may wait: `seconds` of them, within limits::kJournal, but two ticks of every hand at least, since in
-// lockstep they leave after each.
+// [rows] Capacity: `seconds` of rows, limited by limits::kJournal. At least two ticks of every hand, since in lockstep
+// rows leave after each tick.
 std::size_t rows_that_wait(double seconds, double rate, std::size_t hands);
 
 class Journal {
  public:
-  // Every probe, tool and deformable of a prepared world. Holds `seconds` of rows until they are drained, within
-  // limits::kJournal. `bodies`: what tools touch, or null: nothing.
+  // Covers every probe, tool and deformable of a prepared world. Has room for `seconds` of rows, limited by
+  // limits::kJournal, until drained. `bodies`: what tools touch; null: none.
   Journal(const World& world, double seconds, const BodyJournal* bodies = nullptr);
 
   void note(const World& world, Tick tick);
@@ -53,18 +53,18 @@ class Journal {
   const std::vector<Entity>& probes() const { return probes_; }  // hands(): tools after the probes
   // Valid when the touch clock has stopped.
   const std::vector<AwakeStats>& awake() const { return awake_; }
-  // What this probe or tool has pressed on since the start.
+  // Everything this probe or tool has pressed on since the start.
   std::vector<Entity> touched(Entity hand) const;
   std::uint64_t ticks() const { return ticks_; }
   std::uint64_t lost() const { return recorder_.lost(); }
   Hash hash() const { return hash_; }  // of every force so far
 
  private:
-  // Of one probe or tool, made before the first tick.
+  // Per probe or tool, created before the first tick.
   struct Hand {
     const ToolTouchState* tool = nullptr;  // null: a probe
     std::uint64_t late = 0;                // ticks_late after the last tick
-    std::vector<std::uint8_t> now, ever;   // of a probe: whether it presses on each of awake_; since the start
+    std::vector<std::uint8_t> now, ever;   // of a probe, per awake_: pressed on now; since the start
   };
   void note_tool(Hand& hand, Tick tick, TickRow& row);
   void note_probe(const World& world, Entity probe, Hand& hand, TickRow& row);
@@ -72,7 +72,7 @@ class Journal {
   const BodyJournal* bodies_;
   std::vector<Hand> hands_;
   std::vector<Entity> probes_;
-  std::vector<HandSafety> safety_;  // of each
+  std::vector<HandSafety> safety_;  // per hand
   std::vector<AwakeStats> awake_;
   Recorder<TickRow> recorder_;
   Hash hash_;

@@ -14,15 +14,15 @@
 namespace pliant {
 namespace {
 
-// What a sentence needs of a force, or of a torque.
+// Properties of a force or a torque for its sentence.
 struct Quantity {
   const char* name;
   const char* limit;    // key of its largest value
-  const char* unit;     // of that
+  const char* unit;     // unit of that key
   double largest;       // [N] or [N m]
   double slew;          // [N/s] or [N m/s]
   double stiffness;     // [N/m] 0: none
-  const char* smaller;  // below which the gate opens
+  const char* smaller;  // threshold below which the gate opens
 };
 
 std::string sentence(SafetyLimit limit, const LimitCount& count, const std::string& who, const Quantity& q) {

@@ -1,4 +1,4 @@
-// Where a hand did not get what the law says: the safety layer's counts (systems/safety/safety.h), in words.
+// Sentences about limited forces, from the counts of the safety layer (systems/safety/safety.h).
 #pragma once
 
 #include <string>
@@ -9,16 +9,17 @@
 
 namespace pliant {
 
-// Of a probe or tool. Null where nothing prepared it; `torque` of tools alone.
+// Safety states of a probe or tool. Null if not prepared; `torque` of tools only.
 struct HandSafety {
   const SafetyState* force = nullptr;
   const SafetyState* torque = nullptr;
-  // Which limits acted in the last tick, as bits 1 << SafetyLimit.
+  // Limits that acted in the last tick, as bits 1 << SafetyLimit.
   std::uint8_t now() const;
 };
 HandSafety find_safety(const World& world, Entity hand);
 
-// One sentence per limit that acted, with how often, how much at most, and the cure. Valid when the clock has stopped.
+// One sentence per limit that acted, with its frequency, its largest value and the remedy. Valid when the clock has
+// stopped.
 std::vector<std::string> explain_limits(const World& world, Entity hand, const std::string& name);
 
 // "clipped", "withheld", "gated", "slewed": keys of report.json.

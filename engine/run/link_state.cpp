@@ -11,11 +11,11 @@ void LinkState::to(DeviceState state, DeviceCause cause, double now) {
   report_.cause = cause;
 }
 
-// A stop holds whether or not the device is there, and wins over an order to arm.
+// A stop applies even without the device, and overrides an order to arm.
 void LinkState::follow_orders(double now) {
   const std::uint32_t given = orders_.exchange(0, std::memory_order_relaxed);
   renewed_ = false;
-  // What gives no force has nothing to be stopped.
+  // A device that renders nothing cannot be stopped.
   if (!(can_.renders_force || can_.renders_torque || can_.renders_grip || can_.renders_vibration)) return;
   if (given & kStop) {
     if (report_.state != DeviceState::kTripped) to(DeviceState::kTripped, DeviceCause::kEmergencyStop, now);
@@ -30,7 +30,7 @@ void LinkState::follow_orders(double now) {
   }
 }
 
-// What the newest sample warns of takes its share at once or within kFadeTime; a battery that is low latches.
+// A warning in the newest sample takes its share at once or within kFadeTime; a low battery latches.
 void LinkState::warn(double elapsed) {
   const double since = std::clamp(elapsed, 0.0, 0.01);
   const std::uint32_t warnings = report_.sample.warnings;

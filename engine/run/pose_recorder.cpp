@@ -14,8 +14,8 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMostStamps = 4096;  // events that may wait to be written
-constexpr std::size_t kRoom = 8192;        // ticks that may wait to be written
+constexpr std::size_t kMostStamps = 4096;  // capacity [events]
+constexpr std::size_t kRoom = 8192;        // capacity [ticks]
 constexpr auto kDrainEvery = std::chrono::milliseconds(20);
 
 std::size_t room_for(std::size_t effectors) {
@@ -56,7 +56,7 @@ std::uint32_t PoseRecorder::announce(const RecordedEvent& event) {
   return next_announced_++;
 }
 
-// Stamps are drained after the rows: those of the rows' ticks and of earlier ones are there.
+// Stamps are drained after the rows, so those of the rows' ticks and of earlier ones are present.
 void PoseRecorder::write_events(std::uint64_t until) {
   const std::lock_guard lock(events_mutex_);
   std::size_t done = 0;
@@ -70,7 +70,7 @@ void PoseRecorder::write_events(std::uint64_t until) {
   stamped_.erase(stamped_.begin(), stamped_.begin() + static_cast<std::ptrdiff_t>(done));
 }
 
-// A full ring, or a tick that ended in its middle, leaves a part of a tick: it is left out.
+// A full ring, or an aborted tick, leaves an incomplete tick, which is dropped.
 void PoseRecorder::drain() {
   taken_.clear();
   rows_.drain(taken_);

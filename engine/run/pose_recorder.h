@@ -1,5 +1,5 @@
-// A recording that is being written: the pose of every probe and tool at every tick. The touch clock notes; the owner,
-// or a thread of the recorder's in real time, writes.
+// A recording in progress: the pose of every probe and tool in every tick. The touch clock adds poses; the owner, or in
+// real time a thread of the recorder, writes them.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace pliant {
 
-// One probe's or tool's pose of one tick, on its way into a recording.
+// Pose of one probe or tool in one tick.
 struct PoseRow {
   std::uint64_t tick = 0;
   std::uint32_t effector = 0;
@@ -27,28 +27,29 @@ struct PoseRow {
 class PoseRecorder {
  public:
   PoseRecorder(RecordingWriter writer, std::size_t effectors);
-  // Touch clock: every effector of a tick, in order. `ready`: its state was known and fresh.
-  // `felt`: its guard let the force leave.
+  // Touch clock: every effector of a tick, in order. `ready`: its state was known and fresh. `felt`: its guard passed
+  // the force.
   void note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready, bool felt);
-  // Touch clock: the same of every hand of a world, after a tick.
+  // Touch clock: the same for every hand of a world, after a tick.
   void note(World& world, const std::vector<Entity>& hands, Tick tick);
-  // Owner: an event on its way to the touch clock; its number. Touch clock: the tick that it takes effect in.
+  // Owner: registers an event sent to the touch clock and returns its number. Touch clock: stamp() sets the tick in
+  // which it takes effect.
   std::uint32_t announce(const RecordedEvent& event);
   void stamp(std::uint32_t number, std::uint64_t tick) { stamps_.record({number, tick}); }
   void write_now(const RecordedEvent& event) { writer_.event(event); }  // before the first tick
   void drain();
-  std::size_t room() const { return room_; }  // [ticks] that may wait
-  void start();                               // a thread drains from now on
+  std::size_t room() const { return room_; }  // [ticks] capacity
+  void start();                               // starts a thread that drains
   Status finish();
-  // Owner's, where no thread drains: why nothing more can be written; ticks that were.
+  // Owner's thread, while no thread drains: the reason why writing failed; number of ticks written.
   const std::optional<Error>& failure() const { return writer_.failure(); }
   std::uint64_t ticks() const { return writer_.ticks(); }
 
  private:
   RecordingWriter writer_;
-  std::size_t room_;                   // [ticks] that may wait
-  std::vector<RecordedPose> last_;     // touch clock's: the last that was a pose, of each
-  std::vector<RecordedPose> pending_;  // of the tick under way
+  std::size_t room_;                   // [ticks] capacity
+  std::vector<RecordedPose> last_;     // touch clock: last valid pose per effector
+  std::vector<RecordedPose> pending_;  // of the current tick
   std::uint64_t pending_tick_ = 0;
   Recorder<PoseRow> rows_;
   std::vector<PoseRow> taken_;
@@ -58,7 +59,7 @@ class PoseRecorder {
   };
   void write_events(std::uint64_t until);
   Recorder<Stamp> stamps_;
-  std::mutex events_mutex_;              // between the owner and the thread that writes
+  std::mutex events_mutex_;              // between the owner and the writing thread
   std::deque<RecordedEvent> announced_;  // by number, from first_announced_ on
   std::uint32_t first_announced_ = 1, next_announced_ = 1;
   std::vector<Stamp> stamped_;  // in order, not yet written

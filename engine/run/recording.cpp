@@ -21,7 +21,7 @@ constexpr std::uint32_t kMaxProbes = 4096, kMaxName = 4096, kMaxSettings = 4096;
 constexpr std::uint8_t kEnd = 0, kTick = 1, kEvent = 2;
 constexpr std::size_t kPoseBytes = 7 * sizeof(double) + 1;
 
-// Takes values off untrusted bytes; after a short read everything is zero and `ok` false.
+// Reads values from untrusted bytes; after a short read everything is zero and `ok` is false.
 struct Reader {
   const std::string& bytes;
   std::size_t at = 0;
@@ -49,7 +49,7 @@ struct Reader {
   }
 };
 
-// Each value was hashed on its own when it was written, so the whole is hashed value by value here as well.
+// The writer hashed each value separately, so the reader hashes value by value too.
 struct HashingReader : Reader {
   Hash hash{};
   template <class T>
@@ -175,7 +175,7 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
     if (const Status read = read_records(name, in, probes, recording); !read) return read.error();
     return recording;
   }
-  // What is left must be whole ticks and the hash.
+  // The remainder must be whole ticks and the hash.
   const std::size_t tick_bytes = sizeof(std::uint64_t) + probes * kPoseBytes;
   const std::size_t body = bytes.size() - in.at - sizeof(std::uint64_t);
   if (body % tick_bytes != 0) return short_file;
@@ -209,13 +209,13 @@ Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const Reco
   if (fs::exists(file, ignored)) {
     if (!replace) return Error{file.string(), "is there already; name another, or replace it with --force"};
     if (!fs::is_regular_file(file, ignored))
-      return Error{file.string(), "is not a regular file; name another"};  // a pipe would be waited for
+      return Error{file.string(), "is not a regular file; name another"};  // opening a pipe would block
     char magic[sizeof kMagic] = {};
     std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
     if (std::memcmp(magic, kMagic, sizeof kMagic) != 0)
       return Error{file.string(), "is no recording, so it is not replaced; name another, or move it away"};
   }
-  const FolderLock lock(file.parent_path());  // until ours begins as a recording does
+  const FolderLock lock(file.parent_path());  // until our file starts with a recording's header
   if (remove_abandoned(file, std::string_view(kMagic, sizeof kMagic)))
     return Error{file.string(), "is being recorded into by another run; give each its own file"};
   RecordingWriter writer;
@@ -318,7 +318,7 @@ Status RecordingWriter::finish() {
   std::optional<Error> failure = out_->failure();
   bool whole = true;
   if (failure) {
-    // The room of one record is the end's.
+    // The space of one record is used for the end marker.
     const std::size_t kept = std::min(out_->kept_since_flush(), hashes_.size() - 1), dropped = kept > 0 ? 1 : 0;
     whole = out_->end_instead(out_->kept_since_flush() - kept + dropped, bytes_of(hashes_[kept - dropped]));
     failure = Error{file_.string(), failure->what + (whole ? " (it has what was recorded until then)" : "")};

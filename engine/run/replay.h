@@ -1,4 +1,4 @@
-// A recording that moves every probe and tool: its ticks take the place of the clock's, its poses that of the devices.
+// A recording that moves every probe and tool: its ticks replace the clock's, its poses those of the devices.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,15 @@ namespace pliant {
 
 class Replay {
  public:
-  // A prepared world with the hands (hands(world)) of the recording, in that order. Both outlive it. Whatever moved
-  // their devices before moves them no more.
+  // A prepared world with the hands (hands(world)) of the recording, in that order. Both must outlive it. The devices'
+  // previous sources no longer move them.
   Replay(World& world, const Recording& recording);
 
   std::size_t size() const { return recording_->ticks.size(); }  // [ticks]
-  // Tick `n` of the recording, below size(), with the ticks that its run missed before it; its poses are the devices'
-  // then.
+  // Starts tick `n` of the recording, below size(), including the ticks that its run missed before it, and sets its
+  // device poses.
   Tick begin_tick(std::size_t n);
-  // After the tick: forces that a guard withheld in the recorded run are zero.
+  // After the tick: forces that a guard withheld in the recorded run become zero.
   void end_tick();
 
  private:

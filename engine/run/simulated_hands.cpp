@@ -24,7 +24,7 @@ HandWords hand_words(const std::string& words) {
     else if (out.file.empty())
       out.file = part;
     else
-      keys += "," + part;  // one too many: parse_simulated says so
+      keys += "," + part;  // one too many: parse_simulated reports it
   }
   if (profile.empty()) profile = device_profiles().front().name;
   out.device = profile + keys;
@@ -33,20 +33,20 @@ HandWords hand_words(const std::string& words) {
 
 namespace {
 
-// In the metres of a device whose workspace has its middle there.
+// In device metres, with the workspace's centre at `middle`.
 Path local(Path path, dvec3 middle, double scale) {
   for (PathRow& row : path.rows) row.position = (row.position - middle) / scale;
   return path;
 }
 
-// Whoever sets a device up puts the middle of its workspace into the middle of what is to be reached.
+// The centre of the workspace is put at the centre of the path.
 dvec3 middle_of(const Path& path) {
   dvec3 low = path.rows.front().position, high = low;
   for (const PathRow& row : path.rows) low = glm::min(low, row.position), high = glm::max(high, row.position);
   return 0.5 * (low + high);
 }
 
-// A path that a workspace does not hold: one sentence, or none.
+// A sentence if a path exceeds the workspace, else empty.
 std::string beyond_stops(const World& world, Entity hand, const SimulatedOptions& options) {
   dvec3 farthest(0);
   for (const PathRow& row : options.will.path.rows) farthest = glm::max(farthest, glm::abs(row.position));

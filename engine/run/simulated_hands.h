@@ -1,5 +1,5 @@
-// Simulated hands with simulated devices in them (devices/simulated) that move probes and tools: --probe NAME=hand.
-// A DriverLink (driver_link.h) connects them as it does any device: servo, guard and all.
+// Simulated hands that hold simulated devices (devices/simulated) and move probes and tools: --probe NAME=hand. A
+// DriverLink (driver_link.h) connects them like any device, with servo and guard.
 #pragma once
 
 #include <memory>
@@ -13,12 +13,12 @@
 
 namespace pliant {
 
-inline constexpr std::string_view kHandId = "hand:";  // in front of the words, as the id of what such a hand holds
+inline constexpr std::string_view kHandId = "hand:";  // prefix of the id of a device in a simulated hand
 
-// The words behind "hand:" of a source, apart: [FILE][,PROFILE][,KEY=VALUE...][|WRAPPER=VALUE...], in any order before
-// the bar. FILE is what is neither a profile's name nor holds '='.
+// The parsed words after "hand:" of a source: [FILE][,PROFILE][,KEY=VALUE...][|WRAPPER=VALUE...], in any order before
+// the bar. FILE is a word that is neither a profile's name nor contains '='.
 struct HandWords {
-  std::string file;      // of the path; "": the level's own script, or an orbit
+  std::string file;      // of the path; "": the level's script, or an orbit
   std::string device;    // profile and keys, for parse_simulated
   std::string wrappers;  // for wrap()
 };
@@ -26,8 +26,8 @@ HandWords hand_words(const std::string& words);
 
 class SimulatedHands {
  public:
-  // A hand for this probe or tool. It wants to follow the device's path (script, orbit), which is its own from now on;
-  // without one it stays where the device is. Before the clocks start.
+  // Adds a hand for this probe or tool. It takes over the device's path (script, orbit) as its target; without one it
+  // stays at the device's place. Call before the clocks start.
   Status add(World& world, Entity hand, const std::string& words);
   bool empty() const { return hands_.empty(); }
   bool moves(Entity hand) const;
@@ -36,9 +36,9 @@ class SimulatedHands {
 
   struct Held {
     Entity hand = kNoEntity;
-    std::unique_ptr<Driver> driver;     // wrappers and all, not opened; whoever connects it takes it
-    SimulatedDevice* device = nullptr;  // within it
-    dvec3 middle{0};                    // [m] world: of its workspace, as DriverLink::begin() takes it
+    std::unique_ptr<Driver> driver;     // with wrappers, not opened; DeviceLinks takes it when connecting
+    SimulatedDevice* device = nullptr;  // owned by the driver
+    dvec3 middle{0};                    // [m] world: centre of its workspace, as for DriverLink::begin()
     double seconds = 0.0;
   };
   std::vector<Held>& held() { return hands_; }

@@ -34,7 +34,7 @@ void SoftClock::step(double dt) {
   figures_.residual_max = std::max(figures_.residual_max, soft.report.residual);
 }
 
-// Step k begins at k soft_step, whatever rounding the sum of steps would have.
+// Step k begins at k soft_step, without accumulated rounding.
 void SoftClock::reach(double time) {
   if (!any()) return;
   const double T = world_.simulation.soft_step;
@@ -100,7 +100,7 @@ void SoftClock::loop() {
     told_.publish();
     due = began + period;
   }
-  // The last step may have been the one that took too long.
+  // The last step may be the one that took too long.
   const double late = std::chrono::duration<double>(clock::now() - due).count();
   if (!paused_ && late > 0.0) figures_.time_lost += late_step(late, world_.simulation.soft_step).lost;
 }

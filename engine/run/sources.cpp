@@ -13,10 +13,10 @@ namespace pliant {
 namespace {
 
 constexpr double kMouseTip = 5e-3, kMouseTipShare = 0.015;  // [m], [1] of the level's diagonal
-constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);            // linear: pale, among the colours of other probes
+constexpr vec3 kMouseColor(0.75f, 0.78f, 0.85f);            // linear: pale, distinct from other probes' colours
 
-// A point among surfaces; where it meets bodies, a fingertip: under a point, tissue of finite elements gives way as it
-// likes. [m]
+// [m] A point for surfaces only. If there are bodies, a sphere like a fingertip: the deflection of FEM tissue under a
+// point force depends on its mesh.
 double mouse_probe_radius(const Level& level) {
   const bool meets = std::any_of(level.nodes.begin(), level.nodes.end(), [](const LevelNode& node) {
     return node.in_scene && (node.soft_body || node.rigid_body);
@@ -37,7 +37,7 @@ Entity find_hand(const World& world, const std::string& name) {
 Entity own_device(World& world, Entity hand) {
   if (find_device(world, hand)) return device_of(world, hand);
   HapticDevice device;
-  if (Handle6* handle = world.registry.find<Handle6>(hand)) {  // a tool without a device's name is its own
+  if (Handle6* handle = world.registry.find<Handle6>(hand)) {  // a tool without a device name gets its own device
     handle->device.clear();
     if (const Pose* pose = world.registry.find<Pose>(hand))
       device.position = pose->position, device.rotation = pose->rotation;
@@ -135,7 +135,7 @@ Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
     }
     HapticDevice& device = world.registry.get<HapticDevice>(own_device(world, hand));
     if (source.held && source.file.empty() && device.driver == DriverKind::kScript && device.path.valid())
-      continue;  // the hand wants to follow the level's own script
+      continue;  // the hand follows the level's script
     device.driver = source.driver;
     device.file = source.file;
     device.id = source.device;

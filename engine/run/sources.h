@@ -1,4 +1,4 @@
-// What moves a probe: --probe NAME=SOURCE, and what the level says itself.
+// Sources that move a probe: --probe NAME=SOURCE, and those of the level.
 #pragma once
 
 #include <string>
@@ -15,38 +15,38 @@ struct ProbeSource {
   std::string name;  // of the probe or tool
   DriverKind driver = DriverKind::kOrbit;
   std::string file;    // of a script, relative to the working directory
-  std::string device;  // which one (devices/choose.h)
-  bool held = false;   // by a simulated hand (simulated_hands.h), which wants to follow that path
-  std::string words;   // of the hand
+  std::string device;  // requested device (devices/choose.h)
+  bool held = false;   // by a simulated hand (simulated_hands.h) that follows the path
+  std::string words;   // options of the hand
 };
 
 // NAME=script:FILE.csv, NAME=orbit, NAME=hand[:WORDS], NAME=mouse or NAME=device:WISH.
 Result<ProbeSource> parse_source(const std::string& argument);
 
-// Adds a node for each source that names no node of the level: a point probe with a device of its own. Before --set, so
-// that keys reach it. Fails where a node of that name is not a probe, and where a name comes twice.
+// Adds a node for each source whose name is not in the level: a point probe with its own device. Call before --set, so
+// that keys can be set on it. Error: a node of that name is not a probe, or a name occurs twice.
 Status add_probes(Level& level, const std::vector<ProbeSource>& sources);
 
-// The device that moves this probe or tool; made where there is none. Before the clocks start.
+// The device that moves this probe or tool; created if there is none. Call before the clocks start.
 Entity own_device(World& world, Entity hand);
 
-// Where the level put this probe or tool. [m] world. Before the clocks start.
+// [m] world. Initial place of this probe or tool in the level. Call before the clocks start.
 dvec3 place_of(const World& world, Entity hand);
 
-// Gives each named probe or tool its source; scripts are read. Call after spawn.
+// Sets the source of each named probe or tool and reads its script. Call after spawn.
 Status apply_sources(World& world, const std::vector<ProbeSource>& sources);
 
-// The path `orbit` of one; empty where it finds nothing to touch. Call after prepare_touch.
+// The path `orbit` of one hand; empty if it finds nothing to touch. Call after prepare_touch.
 Path orbit_of(const World& world, Entity hand, unsigned index);
 
-// Makes the paths of every probe and tool whose driver is `orbit`. Call after prepare_touch. Says who found nothing to
-// touch and is held where it stands.
+// Makes the paths of every probe and tool with the driver `orbit`. Call after prepare_touch. Returns a sentence for
+// each that finds nothing to touch and stays in place.
 std::vector<std::string> make_orbits(World& world);
 
 // The simulated hands of --probe NAME=hand. Call after make_orbits.
 Result<SimulatedHands> make_hands(World& world, const std::vector<ProbeSource>& sources);
 
-// "script:press.csv", "orbit", "mouse", "null": what moves this probe or tool.
+// "script:press.csv", "orbit", "mouse", "null": the source of this probe or tool.
 std::string describe_source(const World& world, Entity hand);
 
 }  // namespace pliant

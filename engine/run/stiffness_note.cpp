@@ -10,7 +10,8 @@
 namespace pliant {
 namespace {
 
-// [N/m] per metre of the world, and what has it: the stiffest that this one can feel, before vertices and depth.
+// [N/m] per metre of the world, and its owner: the largest stiffness that this effector can feel, without vertex
+// factors and depth.
 std::pair<double, std::string> stiffest_for(const World& world, Entity effector, const std::string& name) {
   std::pair<double, std::string> stiffest{0.0, ""};
   if (const ToolTouchState* const tool = find_tool(world, effector))
@@ -24,7 +25,7 @@ std::pair<double, std::string> stiffest_for(const World& world, Entity effector,
   return stiffest;
 }
 
-// [1] of the force that is left.
+// [1] Share of the force that remains.
 double share_by_keys(const HapticDevice& device, double stiffness) {
   const double most = device.can.max_stiffness, felt = stiffness * device.workspace;
   return most > 0.0 && felt > most ? most / felt : 1.0;

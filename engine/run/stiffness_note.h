@@ -1,4 +1,4 @@
-// What is said of a surface that is stiffer than a device renders stably (systems/device/softening.h).
+// Notes about surfaces that are stiffer than a device renders stably (systems/device/softening.h).
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace pliant {
 
-// By the level's keys, for a probe or tool whose device is connected: one sentence, or none.
+// From the level's keys, for a probe or tool with a connected device: one sentence, or empty.
 std::string stiffness_note(const World& world, Entity effector, const std::string& name);
-// After a run, vertices and laws counted. `least`: SafetyState::least_share.
+// After a run, including vertex factors and laws. `least`: SafetyState::least_share.
 std::string softened_note(const World& world, Entity effector, const std::string& name, double least);
 
 }  // namespace pliant

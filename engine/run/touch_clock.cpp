@@ -9,14 +9,15 @@ namespace pliant {
 namespace {
 
 constexpr const char* kReport = "; please report it with the level";
-constexpr double kTellEvery = 0.1;  // [s] of figures for a person to read
+constexpr double kTellEvery = 0.1;  // [s] between published figures
 
 }  // namespace
 
 void let_go(World& world, Tick tick) {
   for (auto [entity, device] : world.registry.view<HapticDevice>()) device.status = DeviceStatus::kLost;
   write_devices(world, tick);
-  for (auto [entity, device] : world.registry.view<HapticDevice>())  // those that nothing in the level moves, too
+  for (auto [entity, device] : world.registry.view<HapticDevice>())  // including devices that nothing in the level
+                                                                     // moves
     device.force_sent = device.torque_sent = dvec3(0);
 }
 
@@ -32,7 +33,7 @@ void TouchClock::start() {
   try {
     thread_ = std::thread([this] { run(); });
     if (soft_) soft_->start();
-  } catch (...) {  // one thread could be started and the other not
+  } catch (...) {  // one thread started, the other did not
     stop();
     throw;
   }
@@ -43,7 +44,7 @@ void TouchClock::pause(bool paused) {
   if (soft_) soft_->pause(paused);
 }
 
-// This thread is waited for first, so that forces are zero however long a solver takes, or hangs.
+// The touch thread is joined first, so that forces are zero however long a solver takes, or hangs.
 void TouchClock::stop() {
   if (soft_) soft_->tell_to_stop();
   stop_ = true;
@@ -64,7 +65,7 @@ void TouchClock::tick(Tick tick) {
   now_.store(tick.index, std::memory_order_relaxed);
 }
 
-// last_ with every device lost: it goes through safety, so its forces are zero. No device is read.
+// Runs last_ with every device lost: it passes through safety, so its forces are zero. No device is read.
 void TouchClock::tick_without_devices() {
   for (auto [entity, device] : world_.registry.view<HapticDevice>()) device.status = DeviceStatus::kLost;
   schedule_.run(world_, last_);
@@ -78,7 +79,7 @@ void TouchClock::pause_devices() {
   for (auto [entity, device] : world_.registry.view<HapticDevice>()) before_pause_[i++] = device.status;
   tick_without_devices();
   i = 0;
-  bool found = false;  // a mouse that was first heard in this very tick
+  bool found = false;  // a mouse that was first sensed in this very tick
   for (auto [entity, device] : world_.registry.view<HapticDevice>()) {
     if (device.status == DeviceStatus::kReady) before_pause_[i] = device.status, found = true;
     ++i;
@@ -108,8 +109,8 @@ void TouchClock::tell(double time) {
 
 void TouchClock::loop() {
   RealtimeClock clock(rate_);
-  std::uint64_t stood = 0, stood_overruns = 0;        // periods that passed, and were missed, in pauses
-  std::uint64_t pause_index = 0, pause_overruns = 0;  // where the last pause began
+  std::uint64_t stood = 0, stood_overruns = 0;        // periods passed, and missed, in pauses
+  std::uint64_t pause_index = 0, pause_overruns = 0;  // start of the last pause
   bool standing = false;
   told_at_ = now_ns();
   while (!stop_ && !(soft_ && soft_->failed())) {
@@ -146,7 +147,7 @@ void TouchClock::loop() {
   overruns_ = clock.overruns() - stood_overruns;
 }
 
-// The last row, where there are any, has zero force whatever failed.
+// The last row, if there is any, has zero force after every failure.
 void TouchClock::end_after_error() {
   let_go(world_, last_);
   if (!noted_) return;
@@ -155,7 +156,7 @@ void TouchClock::end_after_error() {
   try {
     if (hooks_.after) hooks_.after(last_);
     now_.store(last_.index, std::memory_order_relaxed);
-  } catch (...) {  // the first error is the one to say
+  } catch (...) {  // the first error is reported
   }
 }
 

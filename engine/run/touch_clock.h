@@ -1,8 +1,8 @@
-// The touch clock in real time: one loop, on a thread of its own, for every program that feels. What it tells leaves by
-// exchanges that never wait.
+// The touch clock in real time: one loop on a separate thread, for every program with haptics. Results leave by
+// non-blocking exchanges.
 //
-// However it ends - it is told to, its ticks are over, or something in it fails - its last tick has every device lost:
-// it goes through safety, so that the last force sent is zero.
+// However it ends (on request, after its last tick, or by a failure), every device is lost in its last tick. That tick
+// passes through safety, so that the last force sent is zero.
 #pragma once
 
 #include <atomic>
@@ -26,39 +26,39 @@ struct TouchFigures {
   std::uint64_t overruns = 0;
 };
 
-// What else a tick does, on the touch clock. None may allocate or wait.
+// Hooks of a tick, on the touch clock. None may allocate or wait.
 struct TouchHooks {
-  std::function<void(Tick)> before;  // drivers are read, edits come in
-  std::function<void(Tick)> after;   // drivers are written, rows are noted
-  std::function<void(Tick)> idle;    // instead of both, while it is paused: the forces are zero
-  std::function<void()> end;         // last of all, whatever ended it: drivers are written zero. Must not throw
+  std::function<void(Tick)> before;  // reads drivers, applies edits
+  std::function<void(Tick)> after;   // writes drivers, notes rows
+  std::function<void(Tick)> idle;    // called instead of both while paused: the forces are zero
+  std::function<void()> end;         // called last in every case: writes zero to drivers. Must not throw
 };
 
-// All devices are lost and feel nothing: safety has been told, so that each passes the gate again when it comes back.
+// Sets all devices lost, without force. Safety is informed, so that each passes the gate again on return.
 void let_go(World& world, Tick tick);
 
 class TouchClock {
  public:
-  // Runs at most `ticks`. `soft` starts, pauses and stops with it; null: none. All outlive it.
+  // Runs at most `ticks`. `soft` starts, pauses and stops with it; null: none. All must outlive it.
   TouchClock(World& world, Schedule<World>& schedule, SoftClock* soft, double rate, std::uint64_t ticks,
              TouchHooks hooks);
   ~TouchClock() { stop(); }
 
-  // The world is the thread's from start() until stop() returns.
+  // The thread owns the world from start() until stop() returns.
   void start();
-  // Stands still in its own time. Devices are let go in one tick, which is noted like any other; those that were ready
-  // come back through the gate.
+  // Stops the simulated time. Devices are released in one tick, which is noted like any other; those that were ready
+  // return through the gate.
   void pause(bool paused);
   bool paused() const { return paused_; }
   void stop();
   bool done() const { return done_; }
 
-  std::uint64_t now() const { return now_; }  // the tick it has reached
+  std::uint64_t now() const { return now_; }  // index of the current tick
   const TouchFigures& figures();              // the newest; from one thread only
   // Valid after stop().
   std::uint64_t overruns() const { return overruns_; }
   bool has_priority() const { return granted_; }
-  const std::optional<Error>& error() const { return error_; }  // why it ended before it was told to
+  const std::optional<Error>& error() const { return error_; }  // the reason if it ended by itself
 
  private:
   void run();
@@ -83,7 +83,7 @@ class TouchClock {
   Tick last_{};
   std::uint64_t told_at_ = 0, told_count_ = 0, count_ = 0;
   std::uint64_t overruns_ = 0;
-  bool noted_ = false;  // a tick has come to its end
+  bool noted_ = false;  // a tick has been completed
   bool granted_ = false;
   std::optional<Error> error_;
   std::thread thread_;

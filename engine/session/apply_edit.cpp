@@ -1,4 +1,4 @@
-// Parameters that come in between two ticks. On the touch clock: nothing here allocates.
+// Applies parameter changes between two ticks. Runs on the touch clock; nothing here allocates.
 #include "engine/session/session_parts.h"
 #include "systems/device/devices.h"
 #include "systems/tool/tool_touch_state.h"
@@ -21,7 +21,7 @@ void take(World& world, Entity entity, const DeviceParameters& now) {
   static_cast<DeviceParameters&>(world.registry.get<HapticDevice>(entity)) = now;
 }
 
-// A contact goes on as if the probe had always had this radius: growing is no motion, and has no damping force.
+// The contact continues as if the probe had always had this radius: growth is not motion and causes no damping force.
 void take(World& world, Entity entity, const ProbeSetting& setting) {
   Probe& probe = world.registry.get<Probe>(entity);
   const double grown = setting.radius - probe.radius;

@@ -1,4 +1,4 @@
-// Which keys of a level a Session takes between ticks, and why it does not take the others.
+// Keys of a level that a Session can change between ticks, and the reasons against the others.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace pliant {
 
-// "" where it is live; else why not, and what to do: "the mesh is built with it; change the scene and open it again".
+// Empty if the key is live; otherwise the reason and the remedy: "the mesh is built with it; change the scene and open
+// it again".
 std::string why_not_live(const Extension& extension, const Key& key);
 
 }  // namespace pliant

@@ -5,7 +5,7 @@
 namespace pliant {
 namespace {
 
-// The first of the object's own vertices at each vertex of the collision mesh; kBorder: refining has made it.
+// For each vertex of the collision mesh its first source vertex; kBorder: created by refinement.
 std::vector<std::uint32_t> first_sources(const Mesh& mesh) {
   std::vector<std::uint32_t> of_touch(mesh.vertex_count, kBorder);
   for (std::size_t i = mesh.of_source.size(); i-- > 0;)

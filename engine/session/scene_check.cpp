@@ -47,7 +47,7 @@ Status check_keys(const std::string& name, const Extension& extension, void* own
   for (const Key& key : extension.keys) {
     if (key.alias) continue;
     const Json value = key.get(owner);
-    if (value.is_null()) continue;  // says nothing
+    if (value.is_null()) continue;  // not set
     if (const std::string fault = check_value(key, value); !fault.empty())
       return Error{"`" + name + "`: " + key.name, fault};
   }

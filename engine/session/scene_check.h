@@ -1,4 +1,4 @@
-// What a reader has checked of a file, of a scene that was made in code (pliant/scene.h).
+// The checks of a file reader, for a scene made in code (pliant/scene.h).
 #pragma once
 
 #include "content/level/level.h"
@@ -6,11 +6,11 @@
 
 namespace pliant {
 
-// Arrays that fit each other, indices within them, and every key within its range (content/keys/extension_table.h);
-// derives what follows from them, as a reader does. The error names mesh or node.
+// Checks that array sizes match, indices are in range, and every key is within its range
+// (content/keys/extension_table.h). Sets derived values as a reader does. The error names mesh or node.
 Status check_scene(Level& level);
 
-// Whether a device may have these limits: a force that leaves for a hand is clamped by them.
+// Checks a device's limits: the force on a hand is clamped by them.
 Status check_device(const std::string& name, const DeviceParameters& device);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Session's own functions (pliant/session.h): sources, time, parameters. What is seen is in session_frame.cpp.
+// Session's functions (pliant/session.h) for sources, time and parameters. Output is in session_frame.cpp.
 #include "pliant/session.h"
 
 #include <fmt/format.h>

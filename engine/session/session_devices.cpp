@@ -1,4 +1,4 @@
-// What a Session says of the devices' servos, and tells them (pliant/session.h).
+// State and control of the devices' servos in a Session (pliant/session.h).
 #include <cmath>
 
 #include "engine/session/session_parts.h"

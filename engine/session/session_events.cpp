@@ -1,5 +1,5 @@
-// What a program does to a session between ticks, beside moving its probes and setting parameters: forces of its own,
-// pushes. An event is checked here, goes to the clock that takes it, and to whatever is recorded.
+// Actions of a program on a session between ticks, other than moving its probes and setting parameters: external forces
+// and impulses. An event is checked here, then sent to the clock that applies it and to the recording.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMostStanding = 512;  // a new world takes them all before its first tick
-constexpr double kMostValue = 1e9;          // [N], [m]...: what is larger is a mistake of units
+constexpr std::size_t kMostStanding = 512;  // a new world receives them all before its first tick
+constexpr double kMostValue = 1e9;          // [N], [m]...: a larger value is a mistake of units
 
 bool sound(const RecordedEvent& event) {
   return std::all_of(event.values.begin(), event.values.end(), [](double v) { return std::abs(v) <= kMostValue; });
@@ -39,7 +39,7 @@ BodyEditKind kind_of(const RecordedEvent& event) {
   }
 }
 
-// A triangle of the collision mesh that one of the object's own vertices is a corner of.
+// Finds a triangle of the collision mesh with this source vertex as a corner.
 bool find_corner(const Mesh& mesh, std::uint32_t vertex, BodyEdit& edit) {
   if (vertex >= mesh.of_source.size() || mesh.of_source[vertex] == kBorder) return false;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
@@ -55,7 +55,7 @@ bool at_a_vertex(EventKind kind) {
   return kind == EventKind::kPointForce || kind == EventKind::kPointPush;
 }
 
-// The same standing force: another value replaces it.
+// True for the same standing force: the new value replaces the old.
 bool replaces(const RecordedEvent& now, const RecordedEvent& before) {
   return now.kind == before.kind && now.name == before.name && now.vertex == before.vertex;
 }

@@ -1,4 +1,4 @@
-// What a Session shows (pliant/session.h): readings, deformed vertices, forces on them, the stream.
+// Output of a Session (pliant/session.h): readings, deformed vertices, forces on them, the stream.
 #include <algorithm>
 #include <limits>
 
@@ -28,7 +28,7 @@ SessionFigures Session::figures() const {
   if (p.clock()) {
     const TouchFigures& newest = p.clock()->figures();
     out = {p.clock()->now() + 1, newest.p50, newest.p99, newest.max, newest.overruns, p.runner->soft().latest().steps};
-  } else if (p.runner) {  // none after a restart that failed
+  } else if (p.runner) {  // none after a failed restart
     const Histogram& cost = p.runner->schedule().total();
     out = {p.ticks,    cost.percentile_us(0.5),         cost.percentile_us(0.99), cost.max_us(),
            p.overruns, p.runner->soft().figures().steps};

@@ -1,6 +1,7 @@
 // The bytes of a saved state, little-endian: 8 bytes "pliantst", u32 version, f64 rate, u64 scene_hash(), texts (u32
-// length and bytes each) and numbers as SavedState has them, lists with a u32 count in front; poses run by run: u32 how
-// many ticks all effectors stand still, then a pose for each. Last a u64 hash of all before it.
+// length and bytes each) and numbers in the order of SavedState, lists preceded by a u32 count. Poses are run-length
+// encoded: u32 number of ticks in which all effectors stand still, then a pose for each. Last a u64 hash of everything
+// before.
 #include "engine/session/session_history.h"
 
 #include <algorithm>
@@ -37,7 +38,7 @@ class Packer {
   std::vector<std::uint8_t> bytes;
 };
 
-// After a short read everything is zero and `ok` false.
+// After a short read everything is zero and `ok` is false.
 class Unpacker {
  public:
   explicit Unpacker(const std::vector<std::uint8_t>& from, std::size_t begin, std::size_t end)
@@ -133,7 +134,7 @@ SavedSource get_source(Unpacker& in) {
   return source;
 }
 
-// By the bits, so that what was -0 is -0 again.
+// Compares bits, so that -0 is restored as -0.
 bool same_bits(const HistoryPose& a, const HistoryPose& b) {
   const auto same = [](double x, double y) { return std::memcmp(&x, &y, sizeof x) == 0; };
   for (int k = 0; k < 3; ++k)

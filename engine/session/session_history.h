@@ -1,6 +1,6 @@
-// What a lockstep session has been given since its time 0: the pose of every probe and tool in every tick, and what the
-// program did between ticks. A state is saved as that (Session::save_state): whoever runs it again in the same scene is
-// where the session was, to the bit, tissue, contacts and guards included. Owner's.
+// All inputs of a lockstep session since its time 0: the pose of every probe and tool in every tick, and the program's
+// actions between ticks. Session::save_state saves these. Running them again in the same scene reproduces the session
+// to the bit, with tissue, contacts and guards. Owner's thread.
 #pragma once
 
 #include <cstdint>
@@ -12,27 +12,27 @@
 
 namespace pliant {
 
-// A device as one tick had it.
+// A device in one tick.
 struct HistoryPose {
   dvec3 position{0};  // [m] world
   dquat rotation{1, 0, 0, 0};
   double sensed_at = 0.0;  // [s]
   bool ready = false;      // and not stale
-  bool felt = true;        // false: its guard let nothing leave
+  bool felt = true;        // false: its guard withheld the force
 };
 
 struct SessionHistory {
-  const char* lacking = nullptr;             // why no state can be saved; null: it is whole
-  std::map<std::string, std::string> begun;  // settings that time 0 began with: NODE.EXT.KEY -> value
+  const char* lacking = nullptr;             // reason why no state can be saved; null: it can
+  std::map<std::string, std::string> begun;  // initial settings: NODE.EXT.KEY -> value
   std::vector<RecordedEvent> events;         // by tick
   std::vector<HistoryPose> poses;            // [tick][effector]
 };
 
-// One effector's source, as far as it goes on by itself.
+// The source of one effector, as far as it continues by itself.
 struct SavedSource {
   std::uint8_t kind = 0;               // EffectorSource
   std::uint64_t path = 0;              // hash of its path
-  bool placed = false, waits = false;  // of a pose that was set: it holds; it has not been taken yet
+  bool placed = false, waits = false;  // of a pose that was set: it is active; it is still pending
   double heard_at = 0.0, lasts = 1e-3;
   HistoryPose from, now, to;  // position and rotation
 };

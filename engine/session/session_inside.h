@@ -1,5 +1,5 @@
-// The way into a Session for programs of this project that show and steer it (editor/play): on its owner's thread, and
-// by the rules of session_parts.h.
+// Internal access to a Session for programs of this project that show and control it (editor/play): on its owner's
+// thread, under the rules of session_parts.h.
 #pragma once
 
 #include "engine/session/session_parts.h"

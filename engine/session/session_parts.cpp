@@ -22,14 +22,14 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMostEdits = 1024;  // that wait for a tick
+constexpr std::size_t kMostEdits = 1024;  // capacity
 
 std::string name_of(const World& world, Entity entity) {
   const Name* name = world.registry.find<Name>(entity);
   return name ? name->value : std::string();
 }
 
-// Names are how a Session is asked: each once, and not empty.
+// A Session identifies things by name: names must be unique and not empty.
 Status check_names(const std::vector<std::string>& names, const char* what) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
@@ -76,7 +76,7 @@ Status Session::Parts::prepare() {
   } catch (...) {
     made = Error{"scene", "cannot be made: something that is no std::exception was thrown; look at what is registered"};
   }
-  for (SessionEffector& effector : before) effector.link.close();  // what the new world has no place for
+  for (SessionEffector& effector : before) effector.link.close();  // those absent from the new world
   if (made)
     ended = nullptr;
   else
@@ -316,7 +316,7 @@ void Session::Parts::read_prescribed(SessionEffector& effector, Tick tick) {
     effector.heard_at = tick.time;
     effector.placed = true;
   }
-  if (clock() && tick.time - effector.heard_at > kPrescribedHolds) effector.placed = false;  // it grows stale
+  if (clock() && tick.time - effector.heard_at > kPrescribedHolds) effector.placed = false;  // it becomes stale
   if (!effector.placed) return;
   const PrescribedPose& to = effector.prescribed->read();
   const double share = std::min(1.0, (tick.time - effector.heard_at + tick.dt) / effector.lasts);
@@ -348,7 +348,7 @@ void Session::Parts::before(Tick tick) {
   }
 }
 
-// After a pause the pose from before it is old, however little time has passed by the clock: the gate would open on it.
+// After a pause the previous pose is old, although little simulated time has passed: the gate would open on it.
 void Session::Parts::forget(SessionEffector& effector) {
   if (effector.source != EffectorSource::kPose && effector.source != EffectorSource::kDriver) return;
   effector.placed = false;

@@ -1,5 +1,5 @@
-// What a Session answers about geometry (pliant/query.h): triangles, the closest point, rays, bounds, and where among
-// an object's own triangles a contact lies. On the owner's thread, by what the clocks have shown.
+// Geometry queries of a Session (pliant/query.h): triangles, the closest point, rays, bounds, and the place of a
+// contact among an object's own triangles. On the owner's thread, from the state that the clocks have published.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -32,7 +32,7 @@ QueryHit hit_of(const TriangleBoxes& boxes, std::uint32_t object, const Triangle
   return hit;
 }
 
-// The objects that are asked about.
+// The objects selected by the options.
 Result<std::vector<std::size_t>> asked(const Session::Parts& p, const QueryOptions& options, const char* what) {
   if (!(options.within >= 0.0)) return Error{what, "`within` is negative or no number; give 0 m or more"};
   std::vector<std::size_t> out;
@@ -86,7 +86,7 @@ void Session::Parts::place_vertices(Entity object, bool rest, std::vector<vec3>&
   out.assign(mesh.of_source.size(), vec3(to_world[3]));
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::uint32_t v = mesh.of_source[i];
-    if (v == kBorder) continue;  // no triangle uses it
+    if (v == kBorder) continue;  // used by no triangle
     if (!rest && moved && !moved->position.empty()) {
       out[i] = moved->position[v];
     } else {

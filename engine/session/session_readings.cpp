@@ -1,4 +1,4 @@
-// Every tick's readings (Session::keep_readings): the touch clock fills a ring for each effector and never waits; the
+// Readings of every tick (Session::keep_readings): the touch clock fills one ring per effector and never waits; the
 // owner empties it.
 #include <fmt/format.h>
 

@@ -25,16 +25,16 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
     return Error{"Session::record", "the scene has no probe and no tool; there is nothing to record"};
   RecordingHeader header{p.world.name, p.world.simulation.touch_rate, effectors(), scene_hash(p.scene.level()), {}};
   for (const auto& [key, value] : p.settings) header.settings.push_back(key + "=" + value);
-  for (const SessionEffector& effector : p.effectors)  // a driver's limits are felt as well
+  for (const SessionEffector& effector : p.effectors)  // a driver's limits affect forces too
     for (std::string& setting : driver_settings(effector.name, p.world.registry.get<HapticDevice>(effector.device)))
       header.settings.push_back(std::move(setting));
   auto writer = RecordingWriter::create(file, header, replace);
   if (!writer) return writer.error();
   p.recorder = std::make_unique<PoseRecorder>(std::move(writer).value(), p.effectors.size());
-  // What holds from before. Parameters and drivers are in the header.
+  // Events already in effect. Parameters and drivers are in the header.
   std::vector<RecordedEvent> holds = p.ticks == 0 && !p.history.lacking ? p.history.events : p.standing;
   if (p.ticks > 0)
-    for (const RecordedEvent& event : p.history.events)  // sent, and not yet taken
+    for (const RecordedEvent& event : p.history.events)  // sent, but not yet applied
       if (event.tick == p.ticks &&
           (event.kind == EventKind::kPush || event.kind == EventKind::kPointPush || event.kind == EventKind::kPlace))
         holds.push_back(event);

@@ -1,4 +1,4 @@
-// What a tick tells the owner of a Session. On the touch clock: nothing here allocates.
+// Output of a tick for the owner of a Session. On the touch clock: nothing here allocates.
 #include <algorithm>
 
 #include "engine/session/session_parts.h"

@@ -1,5 +1,5 @@
-// Session::set and get: parameters between ticks. What is asked is checked here, on the owner's thread, by the level
-// format's own table of keys; the clocks get all parameters of a kind together (apply_edit.cpp,
+// Session::set and get: parameters between ticks. Requests are checked here, on the owner's thread, against the key
+// table of the level format. The clocks receive all parameters of a kind together (apply_edit.cpp,
 // systems/soft/soft_step.cpp).
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@
 namespace pliant {
 namespace {
 
-// What the name of an object, probe or tool stands for: the extensions that it has, with the values that hold.
+// An object, probe or tool by name: its extensions with their current values.
 struct Named {
   LevelNode node;
   std::vector<const Extension*> extensions;
@@ -52,7 +52,7 @@ struct Found {
   const Key* key = nullptr;
 };
 
-// `live`: an error says why a key that is there cannot change.
+// `live`: an existing key that cannot change is an error with its reason.
 Result<Found> find_named_key(const Named& named, const std::string& name, const std::string& key, bool live) {
   const std::string where = "`" + name + "`: " + key;
   std::vector<std::string> keys;
@@ -79,7 +79,7 @@ bool is_painted(const Mesh& mesh) {
   return !mesh.stiffness_factor.empty() || !mesh.damping_factor.empty() || !mesh.relaxation_factor.empty();
 }
 
-// What paint_motion has made of it would have to be made anew.
+// True if paint_motion must be repeated.
 bool moves_otherwise(const Motion& a, const Motion& b) {
   return a.mass != b.mass || a.damping != b.damping || a.arm_stiffness != b.arm_stiffness || a.arm_time != b.arm_time ||
          a.law.kind != b.law.kind || a.law.cubic != b.law.cubic || a.law.stiffening != b.law.stiffening;
@@ -108,7 +108,7 @@ CouplingSetting coupling_of(const HandleParameters& handle) {
 
 }  // namespace
 
-// What goes to the clocks.
+// Changes to send to the clocks.
 struct SessionChange {
   Entity entity;
   std::vector<Edit> touch;
@@ -188,7 +188,7 @@ SessionChange change_handle(Session::Parts& p, const std::string& name, const Ha
   return change;
 }
 
-// `node`: with the new value.
+// `node` contains the new value.
 Result<SessionChange> change_of(Session::Parts& p, const std::string& name, const std::string& where,
                                 const Extension& extension, LevelNode& node) {
   if (extension.name == "deformable") return change_surface(p, name, where, *node.deformable);
@@ -215,7 +215,7 @@ void keep(Session::Parts& p, const std::string& name, const Extension& extension
                                      : void(p.bodies[name].handle = node.handle);
 }
 
-// For recordings: the key, or those that an alias has changed.
+// For recordings: the key, or the keys that an alias has changed.
 void note_settings(Session::Parts& p, const std::string& name, const Extension& extension, const Key& key,
                    const LevelNode& before, const LevelNode& now) {
   for (const Key& each : extension.keys) {
@@ -227,14 +227,14 @@ void note_settings(Session::Parts& p, const std::string& name, const Extension& 
                                                                     : value.dump();
   }
   if (!now.deformable) return;
-  const std::string follows = name + ".deformable.stiffness";  // from `young`, where there is one
+  const std::string follows = name + ".deformable.stiffness";  // derived from `young`, if set
   if (now.deformable->young > 0.0)
     p.settings.erase(follows);
   else if (before.deformable->young > 0.0 && key.name == "young")
     p.settings[follows] = fmt::format("{}", now.deformable->stiffness);
 }
 
-// `note`: of what is recorded, once there is room for it.
+// `note`: records the change, once there is room for it.
 template <class Note>
 Status send(Session::Parts& p, SessionChange& change, const Note& note) {
   const bool soft = p.world.soft && !change.soft.empty();
@@ -248,7 +248,7 @@ Status send(Session::Parts& p, SessionChange& change, const Note& note) {
   return Done{};
 }
 
-// Value of `key`, for the recording: KEY=VALUE, the extension with it.
+// Notes the value of `key` for the recording: KEY=VALUE with its extension.
 std::uint32_t note_set(Session::Parts& p, const std::string& name, const Extension& extension, const Key& key,
                        const Json& value) {
   return p.note_event(
@@ -260,7 +260,7 @@ std::uint32_t note_set(Session::Parts& p, const std::string& name, const Extensi
        {}});
 }
 
-// Not `sent`: a world is made next, and begins with it.
+// `sent` is false if a new world follows, which begins with the value.
 Status set_value(Session::Parts& p, const std::string& name, const std::string& key_name, const Json& value,
                  bool sent = true) {
   Result<Named> named = find_named(p, name);

@@ -1,4 +1,4 @@
-// States of lockstep runs (Session::save_state): a session notes what it is given, and runs that again.
+// States of lockstep runs (Session::save_state): a session stores its inputs and replays them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,13 +37,13 @@ std::uint64_t hash_of(const Path& path) {
   return hash.value();
 }
 
-// Only what senses a person grows stale (systems/safety).
+// Only devices that sense a person become stale (systems/safety).
 bool is_ready(const HapticDevice& device, double now) {
   const bool sensed = device.driver == DriverKind::kExternal || device.driver == DriverKind::kMouse;
   return device.status == DeviceStatus::kReady && !(sensed && now - device.sensed_at > kStaleAfter);
 }
 
-// The scene with the objects of another one behind its own; `names` gets theirs.
+// The scene with another scene's objects appended; `names` receives theirs.
 Result<Scene> with_more(const Scene& scene, const Scene& more, std::vector<std::string>& names) {
   const char* const kAdd = "Session::add";
   Scene merged = scene;
@@ -120,7 +120,7 @@ SavedState Session::Parts::saved_state() const {
   return state;
 }
 
-// What was given, tick by tick. Sources and drivers are put aside by the caller.
+// Replays the inputs tick by tick. The caller has set sources and drivers aside.
 Status Session::Parts::run_again(SavedState state) {
   const double dt = 1.0 / world.simulation.touch_rate;
   const std::vector<RecordedEvent> events = std::move(state.history.events);
@@ -151,7 +151,7 @@ Status Session::Parts::run_again(SavedState state) {
   return perform_until(ticks);
 }
 
-// Whoever moves the probes now takes over where they are.
+// The current sources take over at the restored places.
 void Session::Parts::go_on(const SavedState& state, std::vector<EffectorSource>& sources,
                            std::vector<DriverLink>& links, std::vector<HapticDevice>& before) {
   for (std::size_t i = 0; i < effectors.size(); ++i) {
@@ -164,7 +164,7 @@ void Session::Parts::go_on(const SavedState& state, std::vector<EffectorSource>&
     device.path = before[i].path;
     const bool posed = was.kind == static_cast<std::uint8_t>(EffectorSource::kPose);
     if (posed && (effector.source == EffectorSource::kNone || effector.source == EffectorSource::kReleased)) {
-      effector.source = EffectorSource::kPose;  // whoever sets poses next goes on
+      effector.source = EffectorSource::kPose;  // the next poses that are set continue from here
       device.driver = DriverKind::kExternal;
     }
     const bool same_kind = static_cast<std::uint8_t>(effector.source) == was.kind;
@@ -218,7 +218,7 @@ Status Session::add(const Scene& more) {
   std::vector<std::string> names;
   auto merged = with_more(p.scene, more, names);
   if (!merged) return merged.error();
-  auto trial = Session::open(*merged);  // what is wrong with it is said before anything changes
+  auto trial = Session::open(*merged);  // errors are reported before anything changes
   if (!trial) return trial.error();
   SavedState state = p.saved_state();
   std::vector<RecordedEvent> events;

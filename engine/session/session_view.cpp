@@ -55,7 +55,7 @@ void SessionView::take(World& world) {
 }
 
 void SessionView::take_all(World& world, Tick tick) {
-  // Every turn takes as many zones as fit, and the next sees it, so this ends.
+  // Each iteration takes as many zones as fit and the next takes the rest, so the loop ends.
   do {
     publish(world, tick);
     take(world);

@@ -1,4 +1,4 @@
-// The frame side of a Session: what the touch and soft clocks have shown so far, complete. Owner's thread.
+// The frame side of a Session: the complete state that the touch and soft clocks have published so far. Owner's thread.
 #pragma once
 
 #include <functional>
@@ -10,23 +10,23 @@ namespace pliant {
 
 class SessionView {
  public:
-  // After the world was prepared.
+  // Call after the world was prepared.
   void reset(const World& world);
-  // Lockstep: everything that changed until now. `tick`: the last one.
+  // Lockstep: takes all changes until now. `tick`: the last one.
   void take_all(World& world, Tick tick);
-  // Real time: what has come since.
+  // Real time: takes what has arrived since the last call.
   void take(World& world);
 
-  const std::vector<vec4>* stream(Entity object) const;  // null: no deformable surface
-  const SoftObjectSnapshot* soft(Entity object) const;   // null: nothing that moves, or not seen yet
+  const std::vector<vec4>* stream(Entity object) const;  // null: not a deformable surface
+  const SoftObjectSnapshot* soft(Entity object) const;   // null: not moving, or no snapshot yet
   mat4 to_world(const World& world, Entity object) const;
-  // Of a soft body without a handle: where the scene put it, which is where its rest shape is. Else to_world().
+  // For a soft body without a handle: its initial pose in the scene, which is that of its rest shape. Else to_world().
   mat4 rest_to_world(const World& world, Entity object) const;
-  std::uint64_t version() const { return version_; }  // another one: something new was taken
+  std::uint64_t version() const { return version_; }  // changes when something new was taken
   const std::vector<ContactMark>& contacts() const { return contacts_; }
   const std::vector<HandleMark>& handles() const { return handles_; }
 
-  // Called for every snapshot that is taken: a renderer follows them (engine/picture/pictures.cpp).
+  // Called for every snapshot taken: a renderer uses them (engine/picture/pictures.cpp).
   std::function<void(const Snapshot&)> seen;
   std::function<void(const SoftSnapshot&)> soft_seen;
 

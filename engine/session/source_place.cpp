@@ -12,7 +12,7 @@ dvec3 nearest_weights(dvec3 a, dvec3 b, dvec3 c, dvec3 x) {
     const double u = dot(cross(b - x, c - x), normal) / area, v = dot(cross(c - x, a - x), normal) / area;
     if (u >= 0.0 && v >= 0.0 && u + v <= 1.0) return {u, v, 1.0 - u - v};
   }
-  // On an edge, then.
+  // Otherwise the point is on an edge.
   const dvec3 corner[3] = {a, b, c};
   dvec3 best{1, 0, 0};
   double least = std::numeric_limits<double>::max();

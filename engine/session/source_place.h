@@ -1,5 +1,4 @@
-// Where a vertex that refining has made lies among the triangles that a file or a program gave: what is pressed there
-// is shared by their corners.
+// The place of a refined vertex among the source triangles: a force on it is distributed over their corners.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +15,13 @@ struct SourcePlace {
   dvec3 weights{1, 0, 0};  // [1] barycentric
 };
 
-// Barycentric coordinates of the point of a triangle that is nearest to x.
+// Barycentric coordinates of the triangle's point nearest to x.
 dvec3 nearest_weights(dvec3 a, dvec3 b, dvec3 c, dvec3 x);
 
-// The nearest point of the source triangles to x. `source`: their vertices, as `triangles` number them, in x's frame.
+// The point of the source triangles nearest to x. `source`: their vertices in x's frame, numbered as in `triangles`.
 SourcePlace nearest_source(const std::vector<dvec3>& source, const std::vector<uvec3>& triangles, dvec3 x);
 
-// All triangles of a mesh, its vertices numbered through its primitives.
+// All triangles of a mesh, with vertices numbered through its primitives.
 std::vector<uvec3> source_triangles(const LevelMesh& mesh);
 
 }  // namespace pliant

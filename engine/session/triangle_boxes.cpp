@@ -15,7 +15,8 @@ double distance_to_box(dvec3 low, dvec3 high, dvec3 x) {
   return length(glm::max(dvec3(0), glm::max(low - x, x - high)));
 }
 
-// Where a ray enters a box [m], or infinity. A ray that runs in a face's plane counts as inside (0 times infinity).
+// Entry distance of a ray into a box [m], or infinity. A ray in the plane of a face counts as inside (0 times
+// infinity).
 double entry_to_box(dvec3 low, dvec3 high, dvec3 from, dvec3 inverse, double within) {
   double enter = 0.0, leave = within;
   for (int k = 0; k < 3; ++k) {
@@ -27,8 +28,8 @@ double entry_to_box(dvec3 low, dvec3 high, dvec3 from, dvec3 inverse, double wit
   return enter <= leave ? enter : std::numeric_limits<double>::infinity();
 }
 
-// Woop, Benthin and Wald 2013: what a ray meets along a shared edge is found by one triangle at least. `axis`: the
-// direction's largest component, which the others are sheared by.
+// Woop, Benthin and Wald 2013: a hit on a shared edge is found by at least one triangle. `axis`: the direction's
+// largest component, by which the others are sheared.
 TrianglePlace meet_triangle(dvec3 a, dvec3 b, dvec3 c, dvec3 from, dvec3 way, int axis) {
   const int kx = (axis + 1) % 3, ky = (axis + 2) % 3;
   const dvec3 shear{way[kx] / way[axis], way[ky] / way[axis], 1.0 / way[axis]};
@@ -63,7 +64,7 @@ TriangleBoxes::TriangleBoxes(std::vector<dvec3> positions, std::vector<uvec3> tr
   fit(std::move(positions_));
 }
 
-// At the median of the longest side: the depth is log2 of the count, whatever the triangles are like.
+// Splits at the median of the longest side: the depth is log2 of the count for any triangles.
 void TriangleBoxes::split(std::uint32_t node, std::uint32_t first, std::uint32_t count,
                           const std::vector<dvec3>& middle) {
   if (count <= kTrianglesInALeaf) {
@@ -117,7 +118,7 @@ TrianglePlace TriangleBoxes::closest(dvec3 x, double within) const {
     if (node.count == 0) {
       const Node &a = nodes_[node.first], &b = nodes_[node.first + 1];
       const bool swap = distance_to_box(a.low, a.high, x) < distance_to_box(b.low, b.high, x);
-      stack[top++] = node.first + (swap ? 1 : 0);  // the nearer one is looked at first
+      stack[top++] = node.first + (swap ? 1 : 0);  // the nearer one is visited first
       stack[top++] = node.first + (swap ? 0 : 1);
       continue;
     }

@@ -1,6 +1,6 @@
-// A tree of boxes over triangles whose vertices move: built once, fitted anew to every new set of positions. For the
-// questions that a program asks of a session (pliant/query.h): in double, and with the same answer as trying every
-// triangle. Owner's thread; nothing here runs in a tick.
+// A bounding volume tree over triangles with moving vertices: built once, refitted to every new set of positions. For a
+// program's queries of a session (pliant/query.h): in double, with the same answer as brute force. Owner's thread;
+// nothing here runs in a tick.
 #pragma once
 
 #include <cstdint>
@@ -21,18 +21,19 @@ struct TrianglePlace {
 
 class TriangleBoxes {
  public:
-  // `members`: those of `triangles` that count. Both and `positions` are copied.
+  // `members`: per triangle, whether it counts. All arguments are copied.
   TriangleBoxes(std::vector<dvec3> positions, std::vector<uvec3> triangles, const std::vector<std::uint8_t>& members);
-  // The same triangles at other positions.
+  // Refits the tree to other positions of the same triangles.
   void fit(std::vector<dvec3> positions);
 
-  // The nearest point that is not farther than `within` [m].
+  // The nearest point within `within` [m].
   TrianglePlace closest(dvec3 x, double within) const;
-  // The first triangle on the way from `from` along the unit vector `way`, from either side, degenerate ones left out.
+  // The first triangle along the ray from `from` in the unit direction `way`, from either side; degenerate ones are
+  // ignored.
   TrianglePlace first_along(dvec3 from, dvec3 way, double within) const;
 
   bool empty() const { return members_.empty(); }
-  dvec3 low() const { return nodes_.front().low; }  // of all members; not where it is empty
+  dvec3 low() const { return nodes_.front().low; }  // of all members; invalid if empty
   dvec3 high() const { return nodes_.front().high; }
   dvec3 corner(std::uint32_t triangle, int i) const { return positions_[triangles_[triangle][i]]; }
   const std::vector<uvec3>& triangles() const { return triangles_; }
@@ -47,7 +48,7 @@ class TriangleBoxes {
   std::vector<dvec3> positions_;
   std::vector<uvec3> triangles_;
   std::vector<std::uint32_t> members_;
-  std::vector<Node> nodes_;  // children behind their parents
+  std::vector<Node> nodes_;  // children after their parents
 };
 
 }  // namespace pliant

@@ -13,13 +13,13 @@
 namespace pliant {
 namespace {
 
-// A line end at the end says nothing.
+// Removes trailing blanks and line ends.
 std::string trimmed(std::string text) {
   while (!text.empty() && (text.back() == ' ' || text.back() == '\n' || text.back() == '\r')) text.pop_back();
   return text;
 }
 
-// Names from files may hold anything.
+// printable(): a name from a file may contain control characters.
 std::string note_line(const std::string& sentence) {
   return std::string(progress_line_stands() ? "\r\x1b[K" : "") + "pliant: note: " + printable(trimmed(sentence)) + '\n';
 }
@@ -30,7 +30,7 @@ std::string sentence_of(ExitStatus status, const Error& error) {
   std::string sentence = trimmed(error.message());
   if (sentence.find("; ") != std::string::npos) return sentence;
   if (status == kUsage) return sentence + "; see `pliant --help`";
-  // A finding in a level is its own cure to a reader who knows the format; `validate` knows of levels alone.
+  // An error inside a level file is fixed by editing the level; `pliant validate` reads levels only.
   const bool in_level = !error.pointer.empty() || error.node >= 0;
   return sentence + (in_level ? "; mend the level: `pliant validate` lists every finding" : "");
 }
@@ -53,7 +53,7 @@ void note(const std::string& sentence) {
 void note_at_once(const std::string& sentence) {
   const std::string line = note_line(sentence);
   pollfd room{STDERR_FILENO, POLLOUT, 0};
-  // A pipe that can be written has room for PIPE_BUF bytes, which is more than a line.
+  // poll() reports a pipe writable only when it has room for PIPE_BUF bytes, more than one line.
   if (line.size() > PIPE_BUF || ::poll(&room, 1, 0) <= 0 || !(room.revents & POLLOUT)) return;
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
 }

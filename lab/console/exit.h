@@ -1,4 +1,4 @@
-// How the command ends: exit status 0 done, 1 the input or the run failed, 2 the arguments are wrong.
+// Exit status of the command: 0 success, 1 the input or the run failed, 2 wrong arguments.
 #pragma once
 
 #include <exception>
@@ -10,18 +10,18 @@ namespace pliant {
 
 enum ExitStatus : int { kDone = 0, kFailed = 1, kUsage = 2 };
 
-// Prints `pliant: error: WHERE: what is wrong; what to do`, always one line, to stderr and returns the status.
+// Prints `pliant: error: WHERE: what is wrong; what to do` on one line to stderr and returns the status.
 int fail(ExitStatus status, const Error& error);
 
-// What an exception that nobody below expected (most are a library's) says to a user.
+// Turns an unexpected exception (usually from a library) into an Error for the user.
 Error explain(const std::exception& error);
 
-// The error's sentence with its cure, as fail() prints it and the report has it.
+// The error's sentence with its remedy, as fail() prints it and report.json stores it.
 std::string sentence_of(ExitStatus status, const Error& error);
 
-// Prints `pliant: note: ...` to stderr: something was done differently than a user might expect.
+// Prints `pliant: note: ...` to stderr: the command did something that the user might not expect.
 void note(const std::string& sentence);
-// The same without waiting for whoever reads stderr: left out where there is no room.
+// The same without blocking: the note is dropped if stderr cannot take it at once.
 void note_at_once(const std::string& sentence);
 
 }  // namespace pliant

@@ -20,7 +20,7 @@ constexpr std::uint64_t kOnePress = 300'000'000;  // [ns] signals closer than th
 constexpr int kForcedPress = 3;
 constexpr int kRemoveAttempts = 5;  // a thread may still write into a folder that is being removed
 
-// A signal handler has no argument to carry state: these are the process's.
+// Process-global, because a signal handler takes no state argument.
 std::atomic<bool> g_requested{false};
 std::atomic<bool> g_pressed{false};    // SIGINT came since the watcher looked
 std::atomic<bool> g_signalled{false};  // any of them came
@@ -51,12 +51,12 @@ constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
 struct Interrupt::State {
   InterruptWords words;
-  std::mutex mutex;  // of the two below
+  std::mutex mutex;  // guards the two members below
   std::optional<Error> reason;
   std::vector<std::filesystem::path> staged;
   struct sigaction before[std::size(kSignals)] = {};
   std::atomic<bool> over{false};
-  std::thread watcher;  // counts what the handler only notes, where everything may be called
+  std::thread watcher;  // handles signals outside the handler, where any function may be called
 
   void watch() {
     std::uint64_t counted = 0;  // [ns] when the last press was counted

@@ -1,5 +1,5 @@
-// The one way to end a run early: Ctrl-C and other signals, or a reason of the run's own, such as a full disk. The loop
-// sees requested(), ends, lets the devices go, and the report of what ran is written.
+// The only way to end a run early: by a signal such as Ctrl-C, or by an error of the run such as a full disk. The loop
+// polls requested(), stops, releases the devices, and the report is still written.
 #pragma once
 
 #include <filesystem>
@@ -10,36 +10,34 @@
 
 namespace pliant {
 
-// What is said at the second Ctrl-C, and at the third.
+// Messages printed at the second and at the third Ctrl-C.
 struct InterruptWords {
   const char* second = "ending, results are being written; press Ctrl-C again to quit at once without them";
   const char* third = "quit at once; results of this run were not written";
 };
 
-// Of verbs that write all of their files or none.
+// For verbs that write either all of their files or none.
 inline constexpr InterruptWords kAllOrNothing{"ending; press Ctrl-C again to quit at once",
                                               "quit at once; nothing was written"};
 
-// From its beginning to its end SIGINT, SIGTERM and SIGHUP only request the end of the run, however often they come.
-// Only the third Ctrl-C ends the process at once, without a report; the second one says so. Signals that arrive
-// together (from the terminal and from a program that forwards it) count as one Ctrl-C. SIGHUP and SIGINT stay ignored
-// where they were (nohup; what a script runs in the background). One at a time.
+// While an Interrupt exists, SIGINT, SIGTERM and SIGHUP only request the end of the run. The second Ctrl-C prints a
+// warning; the third ends the process at once, without a report. Signals that arrive together (from the terminal and
+// from a program that forwards them) count as one Ctrl-C. SIGHUP and SIGINT remain ignored if they were ignored before
+// (nohup; background jobs of a script). Only one Interrupt may exist at a time.
 class Interrupt {
  public:
   explicit Interrupt(InterruptWords words = {});
-  // Signals do what they did before. After one of them has ended the run they do nothing any more: the process is about
-  // to end, with the status of that run; a third Ctrl-C still ends it at once.
-  ~Interrupt();
+  ~Interrupt();  // restores the previous signal handlers
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
   bool requested() const;
-  // From any thread: requests the end of the run because of an error. The first error stays.
+  // Thread-safe. Requests the end of the run because of an error; the first error is kept.
   void end(Error why) const;
-  // The error that ended the run; nothing where only a signal did, or nothing has.
+  // The error that ended the run. Empty if a signal ended it, or if nothing did.
   std::optional<Error> reason() const;
 
-  // A staged file or folder, which the third Ctrl-C removes.
+  // A staged file or folder that the third Ctrl-C removes.
   void remove_if_forced(std::filesystem::path staged) const;
 
  private:

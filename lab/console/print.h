@@ -1,5 +1,5 @@
-// What goes to stdout. Names from files, arguments and devices may hold anything, so text that is put into a sentence
-// is made printable (runtime/printable.h).
+// Output to stdout. Strings from files, arguments and devices are made printable before they are formatted
+// (runtime/printable.h).
 #pragma once
 
 #include <fmt/format.h>
@@ -24,14 +24,14 @@ requires(!IsText<T>) const T& shown(const T& value) {
   return value;
 }
 
-// To stdout; never throws. The format is ours and may end lines, the arguments may not.
+// Prints to stdout; never throws. The format may contain line ends; the arguments may not.
 template <class... Args>
 void print(fmt::format_string<decltype(shown(std::declval<const Args&>()))...> format, const Args&... args) {
   const std::string text = fmt::format(format, shown(args)...);
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
-// As lines of JSON in ASCII: what a terminal might act on is escaped, and what is no UTF-8 is replaced.
+// Prints ASCII JSON. Control characters are escaped; invalid UTF-8 is replaced.
 template <class Json>
 void print_json(const Json& json) {
   const std::string text = json.dump(2, ' ', /*ensure_ascii*/ true, Json::error_handler_t::replace) + '\n';

@@ -12,11 +12,11 @@
 
 namespace pliant {
 namespace {
-constexpr double kQuiet = 1.0;       // [s] before anything is said
-constexpr double kOnTerminal = 0.2;  // [s] between two updates there
+constexpr double kQuiet = 1.0;       // [s] before the first message
+constexpr double kOnTerminal = 0.2;  // [s] between two updates on a terminal
 constexpr double kElsewhere = 5.0;   // [s]
-std::atomic<bool> g_line{false};     // the terminal is the process's
-std::atomic<int> g_shown{0};         // how many tell how far the whole is
+std::atomic<bool> g_line{false};     // process-global, like the terminal
+std::atomic<int> g_shown{0};         // number of live Progress objects
 double seconds(std::uint64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-9;
 }

@@ -1,5 +1,5 @@
-// How far a long piece of work has come, on stderr: nothing in the first second; then a line that is redrawn on a
-// terminal, or a line every few seconds elsewhere.
+// Progress of a long computation on stderr. Nothing is printed in the first second; then one line is redrawn on a
+// terminal, or a line is printed every few seconds elsewhere.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@
 
 namespace pliant {
 
-// What the library says beside its results (pliant/process.h) goes to stderr; that work goes on, only while no Progress
-// says how far.
+// Sends the library's log (pliant/process.h) to stderr. Messages that work goes on are dropped while a Progress is
+// shown.
 void log_to_stderr();
 
-// A line stands on the terminal that the next output has to clear. From any thread.
+// True while the terminal shows a progress line that the next output must clear. Thread-safe.
 bool progress_line_stands();
 
 class Progress {
@@ -20,7 +20,7 @@ class Progress {
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  void update(double share);  // [1] of the whole, done
+  void update(double share);  // [1] completed share of the whole
 
  private:
   std::string what_;

@@ -20,7 +20,7 @@ fs::path data_folder() {
 fs::path content_folder() {
   if (const char* told = std::getenv("PLIANT_CONTENT"); told && *told) return told;
   std::error_code no;
-  return fs::weakly_canonical(data_folder() / "content", no);  // a link to the sources, in a build tree
+  return fs::weakly_canonical(data_folder() / "content", no);  // in a build tree this is a link to the sources
 }
 
 std::vector<fs::path> shipped_levels() {

@@ -1,4 +1,4 @@
-// Where what ships lies, and which file a LEVEL argument means.
+// Locations of the shipped files, and the file that a LEVEL argument refers to.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-// share/pliant beside the command's bin/: of an installed one, wherever it has been moved, and of one in a build tree.
+// share/pliant beside the command's bin/, for an installed command (which may have been moved) and for a build tree.
 std::filesystem::path data_folder();
 
 // PLIANT_CONTENT from the environment, else the data folder's content/.

@@ -19,7 +19,7 @@ bool is_plain_number(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
 }
 
-// Apostrophes and blanks aside, what a spreadsheet would evaluate.
+// True if a spreadsheet would evaluate the cell; leading apostrophes and blanks are ignored.
 bool is_formula(std::string_view cell) {
   cell.remove_prefix(std::min(cell.find_first_not_of('\''), cell.size()));
   cell.remove_prefix(std::min(cell.find_first_not_of(' '), cell.size()));
@@ -28,7 +28,7 @@ bool is_formula(std::string_view cell) {
   return false;
 }
 
-// Calls change(part, text) for what stands between semicolons, and joins what that makes of it.
+// Calls change(part, text) for each part between semicolons and joins the results.
 template <class Change>
 std::string each_part(std::string_view cell, const Change& change) {
   std::string text;

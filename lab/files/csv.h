@@ -1,4 +1,4 @@
-// Text and numbers as the files in CSV have them: forces.csv and bodies.csv.
+// Text and numbers in the CSV files of a run: forces.csv and bodies.csv.
 #pragma once
 
 #include <cstddef>
@@ -10,24 +10,24 @@
 
 namespace pliant {
 
-// A cell (RFC 4180): names come from files and may hold commas and quotes; the rest is made printable
-// (runtime/printable.h), so that a row is one line. Every text in a CSV file goes through here.
+// A text cell (RFC 4180). Names come from files and may contain commas and quotes; control characters are made
+// printable (runtime/printable.h), so that a row is one line. Every text in a CSV file is written by this function.
 //
-// A spreadsheet evaluates a cell that begins with =, +, - or @ (full-width ones too), also behind blanks, and behind a
-// semicolon where that separates cells. Where that is no number an apostrophe stands before it, which spreadsheets do
-// not show as part of a formula and csv_cells() takes off.
+// A spreadsheet evaluates a cell that begins with =, +, - or @ (full-width ones too), also after blanks, or after a
+// semicolon where semicolons separate cells. Unless such a cell is a number, an apostrophe is put before it.
+// Spreadsheets hide that apostrophe, and csv_cells() removes it.
 std::string csv_text(const std::string& name);
 
-// The cells of a line, with `mark` between them: one more than there are marks. In a cell in quotes, which blanks may
-// stand before, marks mean nothing and two quotes are one. The apostrophes of csv_text() are taken off.
+// Splits a line at `mark`: one more cell than there are marks. In a quoted cell (blanks may precede the quote) marks
+// are literal and two quotes are one. The apostrophes that csv_text() adds are removed.
 void csv_cells(std::string_view line, char mark, std::vector<std::string>& cells);
 
-// Which cell of a header is `name`; kNoColumn: none.
+// Index of the column `name` in a header; kNoColumn if there is none.
 inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 std::size_t csv_column(const std::vector<std::string>& header, std::string_view name);
 
-// Appends a comma and the value, with nine digits: exact for a float, and 1e-9 relative for what is kept in double. -0
-// becomes 0, and so does what has decayed to (nearly) less than a double holds, so that every reader takes it.
+// Appends a comma and the value with nine digits: exact for a float, 1e-9 relative for a double. -0 and values near or
+// below the smallest normal double are written as 0, so that every reader accepts them.
 void put(std::string& line, double value);
 void put(std::string& line, const dvec3& v);  // x, y, z
 void put(std::string& line, const dquat& q);  // w, x, y, z

@@ -21,7 +21,7 @@ void say_left_behind(const Level& level, const std::filesystem::path& out) {
   std::error_code ignored;
   for (const std::string& name : names) {
     const Result<std::filesystem::path> file =
-        confined_path(out.parent_path(), name);  // else a panorama that all levels share
+        confined_path(out.parent_path(), name);  // otherwise a panorama that all levels share
     if (!std::filesystem::exists(file ? *file : out.parent_path() / name, ignored))
       missing += (missing.empty() ? "`" : ", `") + name + "`";
   }

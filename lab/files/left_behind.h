@@ -1,4 +1,4 @@
-// Files that a level names and that stay where they are when it is written somewhere else.
+// Files that a level refers to and that are not copied when the level is written to another folder.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-// Files that PLIANT extensions name are not copied; where the level moves to another folder it misses them, and a note
-// says so.
+// Files referred to by PLIANT extensions are not copied. If the level moves to another folder, a note lists those that
+// it will miss there.
 void say_left_behind(const Level& level, const std::filesystem::path& out);
 
 }  // namespace pliant

@@ -21,7 +21,7 @@ constexpr const char* kReserve = ".reserve";
 constexpr const char* kListCopy = ".list";
 constexpr off_t kReserved = 256 << 10, kLeastReserved = 32 << 10;  // [byte] for report.json and forces.png
 constexpr int kMostFolders = 100000;
-constexpr int kFolderAttempts = 8;  // while other runs make and remove the same folders
+constexpr int kFolderAttempts = 8;  // attempts, while other runs create and remove the same folders
 
 bool is_there(const fs::path& file) {
   std::error_code error;
@@ -33,7 +33,7 @@ bool is_folder(const fs::path& file) {
   return fs::symlink_status(file, error).type() == fs::file_type::directory;
 }
 
-// Of `folder`: what is there and no run wrote, and what this run would be in the way of.
+// Name of an entry in `folder` that has the name of a result but that no run wrote; empty if there is none.
 std::string foreign_result(const fs::path& folder) {
   const std::set<std::string> listed = listed_files(folder);
   if (listed.empty() && is_there(folder / kRunList)) return kRunList;
@@ -46,8 +46,8 @@ bool is_taken(const fs::path& folder) {
   return clear_abandoned(folder) || is_there(folder / kRunList) || !result_files(folder).empty();
 }
 
-// Where `folder` really is: links in it lead before `..` goes back. Its own name stays, so that FOLDER-2 lies beside
-// it.
+// The folder with its symbolic links resolved before `..` is applied. Its own last component is kept, so that FOLDER-2
+// is created beside it.
 fs::path resolved(const fs::path& folder) {
   std::error_code error;
   fs::path whole = fs::absolute(folder, error);
@@ -80,7 +80,7 @@ Result<OutputFolder> OutputFolder::create(const fs::path& folder, bool replace) 
   return out;
 }
 
-// Makes the folder where it is missing, and the hidden one in it.
+// Creates the folder if it is missing, and the hidden staging folder in it.
 Status OutputFolder::open(const fs::path& folder) {
   std::error_code error;
   const fs::path staging = folder / (".partial-" + std::to_string(::getpid()));
@@ -93,12 +93,12 @@ Status OutputFolder::open(const fs::path& folder) {
     error.clear();
     for (const fs::path& at : missing) {
       if (fs::create_directory(at, error)) made_.push_back(at);
-      if (error) break;  // no error and not made: another run was faster
+      if (error) break;  // no error and not created: another run was faster
     }
     if (!error) staged = fs::create_directory(staging, error);
     if (!error && !staged)
       return Error{folder.string(), "contains `" + staging.filename().string() + "` of another process; remove it"};
-    // A run that ended early has removed what it had made, between the look and the making.
+    // A run that ended early may remove the folder between the check and the creation.
     if (error && error != std::errc::no_such_file_or_directory) break;
   }
   if (!staged) return Error{folder.string(), "cannot be created: " + error.message() + "; choose another with --out"};
@@ -115,14 +115,14 @@ Status OutputFolder::open(const fs::path& folder) {
   return Done{};
 }
 
-// The first of FOLDER-2, FOLDER-3, ... that is not there, or empty.
+// The first of FOLDER-2, FOLDER-3, ... that does not exist or is empty.
 Status OutputFolder::choose_next() {
   for (int n = 2; n < kMostFolders; ++n) {
     const fs::path next = asked_.string() + "-" + std::to_string(n);
     std::error_code error;
     if (fs::is_directory(next, error) && !clear_abandoned(next) && fs::is_empty(next, error)) return open(next);
     if (is_there(next)) continue;
-    if (fs::create_directory(next, error)) {  // else another run took it just now
+    if (fs::create_directory(next, error)) {  // false: another run has just created it
       made_.push_back(next);
       return open(next);
     }
@@ -174,7 +174,7 @@ Error OutputFolder::at_place(Error error) const {
   return error;
 }
 
-// Into the next folder that is free, with all that is staged.
+// Moves everything staged into the next free folder.
 Status OutputFolder::move_on() {
   const fs::path staged = staging_;
   const int marker = std::exchange(marker_, -1);
@@ -191,7 +191,8 @@ Status OutputFolder::move_on() {
   return Done{};
 }
 
-// By a second name, so that what is staged is known as this run's until its end. 0, or errno.
+// Places the list as a hard link, so that the staging folder remains identified as this run's until the end. Returns 0
+// or errno.
 int OutputFolder::place_list() {
   const fs::path copy = staging_ / kListCopy;
   if (::link((staging_ / kRunList).c_str(), copy.c_str()) != 0) return ENOTSUP;
@@ -203,8 +204,9 @@ int OutputFolder::place_list() {
 
 Status OutputFolder::commit() {
   free_reserve();
-  std::erase_if(names_, [&](const std::string& name) { return !is_there(staging_ / name); });  // could not be written
-  std::optional<Error> wrong;  // the first; what was written goes into place all the same
+  std::erase_if(names_,
+                [&](const std::string& name) { return !is_there(staging_ / name); });  // the file could not be written
+  std::optional<Error> wrong;  // the first error; the other files are still moved into place
   const auto note_first = [&](const std::string& name, const char* what, const std::string& why) {
     if (!wrong) wrong = Error{(shown() / name).string(), what + why};
   };
@@ -215,7 +217,7 @@ Status OutputFolder::commit() {
   const auto in_the_way = [&](const std::string& name) {
     return is_there(folder_ / name) && (!old.count(name) || is_folder(folder_ / name));
   };
-  // The list first: it says what may come, should the process be killed now.
+  // The list is placed first: if the process is killed, it names the files that may follow.
   int placed = EEXIST;
   for (int attempt = 0; placed == EEXIST && attempt < kFolderAttempts; ++attempt) {
     if (std::any_of(names_.begin(), names_.end(), in_the_way) || (!replaces() && is_there(folder_ / kRunList))) {

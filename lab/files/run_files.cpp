@@ -29,7 +29,7 @@ bool is_result(std::string_view name) {
 
 enum class Staged : std::uint8_t { kOthers, kAbandoned, kAlive };
 
-// A hidden folder is a run's if its list begins as a run's does; the run is over if nobody holds the lock.
+// A hidden folder belongs to a run if it has a run's list. The run has ended if the list is unlocked.
 Staged state_of(const fs::path& staging) {
   const int list = ::open((staging / kRunList).c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
   if (list < 0) return Staged::kOthers;
@@ -46,7 +46,9 @@ Staged state_of(const fs::path& staging) {
 std::set<std::string> listed_files(const fs::path& folder) {
   std::set<std::string> names;
   std::error_code error;
-  if (!fs::is_regular_file(folder / kRunList, error)) return names;  // a link to what has no end
+  if (!fs::is_regular_file(folder / kRunList, error))
+    return names;  // not a regular file, for instance a link to an
+                   // endless device
   std::ifstream in(folder / kRunList);
   std::string line;
   if (!std::getline(in, line) || line + '\n' != kListTitle) return names;
@@ -72,7 +74,8 @@ std::vector<std::string> result_files(const fs::path& folder) {
 int begin_list(const fs::path& staging) {
   const int list = ::open((staging / kRunList).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (list < 0) return -1;
-  ::flock(list, LOCK_EX | LOCK_NB);  // before it says whose it is: nobody takes it for an abandoned one
+  ::flock(list, LOCK_EX | LOCK_NB);  // locked before the list is filled, so that no other run takes it for an abandoned
+                                     // one
   if (::write(list, kListTitle.data(), kListTitle.size()) == static_cast<ssize_t>(kListTitle.size())) return list;
   const int error = errno;
   ::close(list);

@@ -1,5 +1,5 @@
-// `pliant fit`: a surface's keys from measured presses, from the finite elements of an object, or from a sweep's runs
-// (docs/fit.md).
+// `pliant fit`: the keys of a deformable surface from measured presses, from an object's finite elements, or from the
+// runs of a sweep (docs/fit.md).
 #pragma once
 
 #include <string>
@@ -10,32 +10,32 @@ namespace pliant {
 struct FitOptions {
   std::string in;                                     // a level, or measured presses (.csv, .tsv, .txt)
   std::string object;                                 // node of the level
-  std::string out;                                    // level that is written; empty: none
+  std::string out;                                    // level to write; empty: none
   std::string report;                                 // folder; empty: out/fit
-  bool force = false;                                 // replaces level and report
-  double unit = 1.0;                                  // [m] of a bare mesh
-  std::vector<std::string> of_measured, of_elements;  // options that were said and are for one kind only
+  bool force = false;                                 // replace an existing level and report
+  double unit = 1.0;                                  // [m] unit of a bare mesh
+  std::vector<std::string> of_measured, of_elements;  // options given that apply to one kind of fit only
 
-  // Of measured presses.
-  std::string level;  // that the keys are written into; empty: they are only said
-  std::string probe;  // of a forces.csv
+  // Options of a fit to measured presses.
+  std::string level;  // level to write the keys into; empty: they are only printed
+  std::string probe;  // probe to read from a forces.csv
   std::string law = "auto";
-  double radius = 0.0;  // [m] of the indenter; 0: a point (finite elements: as the level says)
+  double radius = 0.0;  // [m] of the indenter; 0: a point (finite elements: the level's value)
   double hold_out = 0.25, confidence = 0.95;
   bool damping = false, contact = false;
 
-  // Of finite elements; below 0: the level's.
+  // Options of a fit to finite elements; a value below 0 means the level's.
   double young = -1.0, poisson = -1.0, thickness = -1.0, cell = -1.0;
   bool linear = false;  // small strains
-  std::string pin;      // side; empty: as the level has it
-  double reach = 0.0;   // [m] of the presses; 0: what fits best
+  std::string pin;      // side to pin; empty: as in the level
+  double reach = 0.0;   // [m] of the surface's dents; 0: the best fit
   unsigned points = 24, held = 12;
 
-  std::string sweep, target;  // a sweep's folder, and the presses that its runs should come near to
+  std::string sweep, target;  // a sweep's folder, and the presses to compare its runs with
 };
 int fit(const FitOptions& options);
 
-// The three, once it is known which is meant.
+// One function per kind of fit.
 int fit_press(const FitOptions& options);
 int fit_tissue(const FitOptions& options);
 int fit_sweep(const FitOptions& options);

@@ -1,4 +1,4 @@
-// The level that a fit is written into.
+// Loading, checking and saving the level that a fit writes its keys into.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace pliant {
 
 // A file or the name of a shipped level.
 Result<Level> level_to_fit(const std::string& name, double unit);
-// The node of that name, which has a mesh; errors name those that have one.
+// Index of the node of that name that has a mesh; errors list the nodes that have one.
 Result<std::int32_t> object_to_fit(const Level& level, const std::string& name);
-// `out` is glTF, and free or to be replaced.
+// Checks that `out` is glTF and does not exist or may be replaced.
 Status check_out(const FitOptions& options);
-// The level into `out`, and the files that it names but `out` has not beside it, in a note.
+// Writes the level to `out`; a note lists referenced files that are missing beside `out`.
 Status save_fitted(const Level& level, const FitOptions& options);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// pliant fit DATA.csv: a law from measured presses.
+// pliant fit DATA.csv: a contact law fitted to measured presses.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -83,7 +83,7 @@ std::string sentence_of(const LawFit& law) {
   return words;
 }
 
-// [1e-3, ...] so that axes need no exponents.
+// Scales values into [1e-3, ...], so that axis labels need no exponents.
 struct Prefix {
   double factor;
   const char* name;
@@ -126,7 +126,7 @@ void draw_record(Pen& pen, const PressRecord& record, const RecordFit& fit, cons
   draw_axes(pen, left, fmt::format("depth [{}m]", length.name), fmt::format("force [{}N]", newton.name));
   draw_dots(pen, left, kept_depth, kept_force, kBlue, dot, true);
   draw_dots(pen, left, held_depth, held_force, kOrange, dot, true);
-  // Without time the rows have no order that a line could follow.
+  // Without time the rows are sorted by depth, so that a line can be drawn through them.
   std::vector<std::size_t> order(record.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   if (record.time.empty())
@@ -175,7 +175,7 @@ void say(const PressRecord& record, const RecordFit& fit, const FitOptions& opti
               : fmt::format(", {:g} % within {:.6g} and {:.6g}", 100 * options.confidence, p.low, p.high));
 }
 
-// The law's keys become the node's; what else it has stays.
+// Writes the law's keys into the node; its other keys are kept.
 Status write_keys(const LawFit& fit, const FitOptions& options, Level& level, std::int32_t number) {
   LevelNode& node = level.nodes[static_cast<std::size_t>(number)];
   const Deformable fitted = fit.model.deformable(fit.p);
@@ -240,7 +240,7 @@ int fit_press(const FitOptions& options) {
     if (!object) return fail(kUsage, object.error());
     if (const Status s = write_keys(best, options, *level, *object); !s) return fail(kUsage, s.error());
   }
-  const Interrupt interrupt(kAllOrNothing);  // what is staged must not stay behind
+  const Interrupt interrupt(kAllOrNothing);  // removes staged files on interruption
   auto out = OutputFolder::create(options.report.empty() ? "out/fit" : options.report, options.force);
   if (!out) return fail(kFailed, out.error());
   interrupt.remove_if_forced(out->staging());

@@ -8,10 +8,11 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kLeastStretches = 5;  // that are held out, where there are as many rows
-constexpr double kStretch = 0.05;           // [1] of the record: none is longer
+constexpr std::size_t kLeastStretches = 5;  // least number of held-out stretches, given enough rows
+constexpr double kStretch = 0.05;           // [1] longest stretch, as a share of the record
 constexpr std::size_t kFewHeld = 5;         // rows
-constexpr double kAlike = 1.02;             // [1] errors that near are the same: the law with fewer parameters wins
+constexpr double kAlike = 1.02;             // [1] errors within this ratio are equal: the law with fewer parameters is
+                                            // chosen
 constexpr double kCorrelated = 0.3;         // [1]
 
 struct Shares {
@@ -87,7 +88,7 @@ std::vector<bool> held_rows(std::size_t rows, double share) {
   const std::size_t stretches =
       std::min(wanted, std::max(kLeastStretches, static_cast<std::size_t>(std::ceil(share / kStretch))));
   for (std::size_t k = 0; k < stretches; ++k) {
-    // In the middle of the k-th part of the record.
+    // A stretch in the middle of the k-th part of the record.
     const std::size_t begin = k * rows / stretches, end = (k + 1) * rows / stretches,
                       count = (k + 1) * wanted / stretches - k * wanted / stretches, first = (begin + end - count) / 2;
     for (std::size_t i = first; i < first + count; ++i) held[i] = true;

@@ -1,5 +1,4 @@
-// A law fitted to what an indenter measured: parameters with confidence intervals, and the error on rows that the fit
-// has not seen.
+// Fits a law to an indenter's record: parameters with confidence intervals, and the error on held-out rows.
 #pragma once
 
 #include <string>
@@ -10,16 +9,17 @@
 namespace pliant {
 
 struct RecordWish {
-  std::string law = "auto";  // auto: the one with the least error on the rows held out
+  std::string law = "auto";  // auto: the law with the smallest error on the held-out rows
   ModelWish model;
-  double hold_out = 0.25;    // [1] share of the rows, in stretches; 0: none
+  double hold_out = 0.25;    // [1] share of the rows held out, in stretches; 0: none
   double confidence = 0.95;  // [1] of the intervals
 };
 
 struct FittedParameter {
   std::string key, unit;
   double value = 0.0;
-  double low = 0.0, high = 0.0;  // of the interval, within the key's range; both the value where there is none
+  double low = 0.0, high = 0.0;  // bounds of the interval, within the key's range; both equal the value if there is no
+                                 // interval
   bool on_bound = false;
 };
 
@@ -27,22 +27,23 @@ struct LawFit {
   PressModel model;
   Eigen::VectorXd p;
   std::vector<FittedParameter> parameters;
-  std::vector<double> force;             // [N] of the model, at each row
-  double rms = 0.0, held_rms = 0.0;      // [N] on rows fitted, and on rows held out
-  double share = 0.0, held_share = 0.0;  // [1] of the RMS force there
-  double correlation = 0.0;  // [1] of a residual with the one before it; far from 0: the law is not the tissue's
+  std::vector<double> force;             // [N] predicted by the model at each row
+  double rms = 0.0, held_rms = 0.0;      // [N] on the fitted and on the held-out rows
+  double share = 0.0, held_share = 0.0;  // [1] the same, over the RMS force of those rows
+  double correlation = 0.0;  // [1] lag-1 autocorrelation of the residuals; far from 0: the law does not describe the
+                             // tissue
   bool converged = false, singular = false;
 };
 
 struct RecordFit {
-  std::vector<LawFit> laws;  // each that was tried
+  std::vector<LawFit> laws;  // every law that was tried
   std::size_t best = 0;
-  std::vector<bool> held;  // of each row
-  std::size_t fitted = 0;  // rows
+  std::vector<bool> held;  // per row: held out
+  std::size_t fitted = 0;  // number of rows fitted
   std::vector<std::string> notes;
 };
 
-// Whether a row is held out: so many as the share says, but one at least, in stretches that lie evenly apart.
+// Marks the held-out rows: the given share, at least one, in evenly spaced stretches.
 std::vector<bool> held_rows(std::size_t rows, double share);
 
 Result<RecordFit> fit_record(const PressRecord& record, const RecordWish& wish);

@@ -1,5 +1,5 @@
-// pliant fit --sweep DIR --target CSV: which of a sweep's runs comes nearest to measured presses. A sweep keeps figures
-// of its runs and no curves, so it is these that are compared.
+// pliant fit --sweep DIR --target CSV: finds the run of a sweep that comes nearest to measured presses. A sweep stores
+// summary figures of its runs and no curves, so the figures are compared.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ int fit_sweep(const FitOptions& options) {
   const Result<SweepTable> table = read_table({options.sweep});
   if (!table) return fail(kFailed, table.error());
   Result<PressRecord> target = read_press(options.target, options.probe, true);
-  if (!target && !options.probe.empty())  // the sweep's probe; what was measured may have no such column
+  if (!target && !options.probe.empty())  // the option names the sweep's probe; measured data may have no probe column
     if (Result<PressRecord> plain = read_press(options.target, {}, true); plain) target = std::move(plain);
   if (!target) return fail(kFailed, target.error());
   const Result<Nearest> nearest = nearest_run(*table, *target, options.probe);
@@ -66,7 +66,7 @@ int fit_sweep(const FitOptions& options) {
     put(csv, nearest->distance[row]);
     csv += "\n";
   }
-  const Interrupt interrupt(kAllOrNothing);  // what is staged must not stay behind
+  const Interrupt interrupt(kAllOrNothing);  // removes staged files on interruption
   auto out = OutputFolder::create(options.report.empty() ? "out/fit" : options.report, options.force);
   if (!out) return fail(kFailed, out.error());
   interrupt.remove_if_forced(out->staging());

@@ -1,4 +1,4 @@
-// pliant fit LEVEL --object NAME: a deformable surface (P1) from the object's finite elements.
+// pliant fit LEVEL --object NAME: a deformable surface (P1) fitted to the object's finite elements.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,16 +27,18 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMapPlaces = 256;      // at most, that the stiffness map is computed at
-constexpr int kDepths = 4;                   // a quarter of the reach is gone to in so many parts
-constexpr std::ptrdiff_t kEnoughPlaces = 6;  // away from edges, for law and shape
+constexpr std::size_t kMapPlaces = 256;      // most places at which the stiffness map is computed
+constexpr int kDepths = 4;                   // number of steps in which a press reaches its depth, a quarter of the
+                                             // reach
+constexpr std::ptrdiff_t kEnoughPlaces = 6;  // least number of places away from edges, for law and shape
 constexpr double kDeepestShare = 0.25;       // [1] of the reach
-constexpr double kHardest = 6.0;             // [1] of the usual stiffness: the most that is painted
-constexpr double kSeenApart = 0.3;           // [1] of the indenter's radius: points that a dent is compared at
-constexpr std::size_t kRefined = 4;          // places that a finer lattice is tried at
-constexpr double kFiner = 2.0 / 3.0;         // [1] its cells
+constexpr double kHardest = 6.0;             // [1] largest painted stiffness, relative to the usual one
+constexpr double kSeenApart = 0.3;           // [1] of the indenter's radius: spacing of the points at which dents are
+                                             // compared
+constexpr std::size_t kRefined = 4;          // number of places repeated with a finer lattice
+constexpr double kFiner = 2.0 / 3.0;         // [1] cell size of the finer lattice
 
-// Work at places, several at a time where each has a body of its own. Ends early when it is no longer wanted.
+// Runs work at many places, in parallel if each place has its own body. Stops early on interruption.
 class EachPlace {
  public:
   EachPlace(const PressBodies& bodies, const Interrupt& interrupt, Progress& progress)
@@ -111,7 +113,7 @@ T median(std::vector<T> values) {
   return *middle;
 }
 
-// The mesh in the object frame, with these factors painted on the vertices of the file.
+// The mesh in the object frame, with these stiffness factors painted on the vertices of the file.
 std::vector<Primitive> painted_primitives(const LevelMesh& mesh, const mat4& to_object,
                                           const std::vector<std::uint32_t>& of_source,
                                           const std::vector<double>& factor) {
@@ -133,16 +135,16 @@ std::vector<Primitive> painted_primitives(const LevelMesh& mesh, const mat4& to_
   return out;
 }
 
-// How stiff a small press is all over the object, and where it may be pressed.
+// Stiffness of a small press over the whole object, and where it may be pressed.
 struct StiffnessMap {
   std::vector<double> at_vertex;     // [N/m]
-  double usual = 0.0;                // [N/m] the median of the places
-  std::size_t places = 0, tets = 0;  // tets: the median of the bodies
+  double usual = 0.0;                // [N/m] median over the places
+  std::size_t places = 0, tets = 0;  // tets: median over the bodies
 };
 Result<StiffnessMap> map_stiffness(const PressBodies& bodies, EachPlace& each_place) {
   const Mesh& mesh = bodies.surface();
   std::vector<PressPlace> places;
-  std::vector<std::uint32_t> one_of(mesh.vertex_count, kBorder);  // a triangle's corner of each vertex
+  std::vector<std::uint32_t> one_of(mesh.vertex_count, kBorder);  // for each vertex, one triangle corner that uses it
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (int i = 0; i < 3; ++i)
       if (one_of[mesh.triangles[t][i]] == kBorder) one_of[mesh.triangles[t][i]] = 3 * t + static_cast<std::uint32_t>(i);
@@ -179,7 +181,7 @@ Result<StiffnessMap> map_stiffness(const PressBodies& bodies, EachPlace& each_pl
   return out;
 }
 
-// The places pressed, in four steps to this depth [m].
+// Presses every place to this depth [m] in four steps.
 Status press_all(const PressBodies& bodies, EachPlace& each_place, double depth, double share,
                  std::vector<PressedPlace>& places, const Mesh& mesh) {
   std::vector<PressPlace> at;
@@ -196,7 +198,7 @@ Status press_all(const PressBodies& bodies, EachPlace& each_place, double depth,
   });
 }
 
-// By how much the elements are too stiff: two lattices at the same places, of order two.
+// Richardson extrapolation: the excess stiffness of the elements from two lattices at the same places, with order two.
 Status extrapolate(const PressBodies& bodies, EachPlace& each_place, const std::vector<PressedPlace>& places,
                    TissueFit& out) {
   std::vector<PressPlace> at;
@@ -229,7 +231,7 @@ void divide_forces(std::vector<PressedPlace>& places, double by) {
   }
 }
 
-// The keys of the surface, of places and map.
+// Sets the keys of the surface from the fitted places and the map.
 void take_keys(const TissueFit& fitted, double usual, DeformableParameters& surface) {
   surface.young = 0.0;
   surface.thickness = 0.0;
@@ -243,7 +245,7 @@ void take_keys(const TissueFit& fitted, double usual, DeformableParameters& surf
   surface.contact_radius = fitted.shape.contact;
 }
 
-// All but files.
+// The whole fit, without file output.
 Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions& options, const Interrupt& interrupt) {
   Result<PressBodies> made = PressBodies::make(level, number, options);
   if (!made) return made.error();
@@ -268,7 +270,7 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
   if (const std::string doubt = locking_doubt(bodies.body(), out.tets); !doubt.empty())
     note("`" + node.name + "` " + doubt);
 
-  // Law and shape, from presses that are as deep as they will be used.
+  // Law and shape are fitted to presses as deep as those in use.
   std::vector<PressedPlace> places;
   double reach = options.reach > 0 ? options.reach : kUsualReach * out.radius;
   out.deepest = kDeepestShare * reach;
@@ -276,7 +278,7 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
   out.left_out = static_cast<std::size_t>(std::count(free.begin(), free.end(), 0));
   for (const PressPlace& place : scatter(mesh, options.points, 1, free)) places.push_back({place, 0.0, {}, {}});
   if (const Status done = press_all(bodies, each_place, out.deepest, 0.2, places, mesh); !done) return done.error();
-  // Near an edge the surface has no law of its own; those places count only where there are few others.
+  // Near an edge the surface law is not representative. Places there are used only if there are few others.
   const auto inner = std::stable_partition(places.begin(), places.end(), [&](const PressedPlace& each) {
     return each.presses.empty() || !is_near_an_edge(mesh, each.place, each.presses.back().depth);
   });
@@ -303,7 +305,7 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
   const std::vector<Primitive> primitives = painted_primitives(level.meshes[static_cast<std::size_t>(node.mesh)],
                                                                to_object, bodies.object().of_source, factor);
 
-  // The same places in the elements and in the engine.
+  // Compares finite elements and engine at the same held-out places.
   const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
   Result<BuiltMesh> final_mesh = build_mesh(node.name, primitives, mat4(1.0f), {crease, dent_size(out.surface)});
   if (!final_mesh) return final_mesh.error();
@@ -325,7 +327,7 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
     compare(held, mesh, out.radius);
   }
 
-  // Into the level.
+  // Writes the fit into the level.
   LevelMesh& own = own_mesh(level, number);
   for (std::size_t i = 0; i < own.primitives.size(); ++i) own.primitives[i].stiffness = primitives[i].stiffness;
   if (const Status done = make_touchable_surface(level, number, out.surface); !done) return done.error();

@@ -10,8 +10,9 @@ namespace {
 
 constexpr double kDifference = 1e-6;  // [1] of the scale: central differences
 constexpr int kMostSteps = 200;
-constexpr double kSmall = 1e-12;     // [1] a relative gain below this ends it
-constexpr double kFlattest = 1e-12;  // [1] of the normal matrix' eigenvalues in its own scale: below it singular
+constexpr double kSmall = 1e-12;     // [1] stops at a relative gain below this
+constexpr double kFlattest = 1e-12;  // [1] smallest eigenvalue of the scaled normal matrix; below it the problem is
+                                     // singular
 
 struct Problem {
   const std::vector<FitParameter>& parameters;
@@ -22,7 +23,7 @@ struct Problem {
   const FitParameter& at(Eigen::Index k) const { return parameters[static_cast<std::size_t>(k)]; }
   double clamped(double value, Eigen::Index k) const { return std::clamp(value, at(k).low, at(k).high); }
 
-  // In units of the scales. Inside of the box only: one-sided where a bound is near.
+  // Jacobian by differences in units of the scales. Evaluates only inside the box: one-sided near a bound.
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& p) const {
     Eigen::MatrixXd out(count, size());
     Eigen::VectorXd above(count), below(count), moved = p;
@@ -96,7 +97,7 @@ LeastSquares least_squares(const std::vector<FitParameter>& parameters, Eigen::I
     } else {
       damping *= growth;
       growth *= 2.0;
-      if (damping > 1e12) out.converged = true;  // no step is small enough to help: a minimum to rounding
+      if (damping > 1e12) out.converged = true;  // no step reduces the sum: a minimum to rounding
     }
   }
 
@@ -138,11 +139,12 @@ LeastSquares least_squares(const std::vector<FitParameter>& parameters, Eigen::I
 }
 
 double student_t(double share, double degrees) {
-  // Probability within (-t, t) = 1 - I_x(v/2, 1/2), x = v / (v + t^2): the density is integrated, and the t bisected.
+  // The probability within (-t, t) is 1 - I_x(v/2, 1/2), x = v / (v + t^2). The density is integrated and t found by
+  // bisection.
   const double scale = std::exp(std::lgamma(0.5 * (degrees + 1)) - std::lgamma(0.5 * degrees)) /
                        std::sqrt(degrees * 3.14159265358979323846);
   const auto within = [&](double t) {
-    // t = sqrt(v) tan(a): the density becomes cos(a)^(v-1), smooth on a finite range.
+    // Substituting t = sqrt(v) tan(a), the density becomes cos(a)^(v-1), smooth on a finite range.
     const double end = std::atan(t / std::sqrt(degrees));
     constexpr int kParts = 400;
     double sum = 0.0;

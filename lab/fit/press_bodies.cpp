@@ -18,12 +18,12 @@
 namespace pliant {
 namespace {
 
-constexpr double kCells = 2.0;         // over the punch's radius
-constexpr double kFocusRadii = 5.0;    // [1] of the lattice's focus
-constexpr double kReachRadii = 4.0;    // [1] what the surface is cut finer for
-constexpr std::size_t kTets = 16'000;  // aimed at, of a body that is one for all places
+constexpr double kCells = 2.0;         // cells per punch radius
+constexpr double kFocusRadii = 5.0;    // [1] radius of the lattice's fine region, in punch radii
+constexpr double kReachRadii = 4.0;    // [1] radius within which the surface is refined, in punch radii
+constexpr std::size_t kTets = 16'000;  // target size of a single body for all places
 
-// The node as tissue, with what the options say instead of the level.
+// The node as tissue; options override the level's values.
 Result<LevelNode> tissue_node(const Level& level, std::int32_t number, const FitOptions& options) {
   Level copy = level;
   LevelNode& node = copy.nodes[static_cast<std::size_t>(number)];
@@ -49,7 +49,7 @@ Result<LevelNode> tissue_node(const Level& level, std::int32_t number, const Fit
   return node;
 }
 
-// A body with even cells.
+// A body with cells of one size.
 Result<TetMesh> even_body(LevelNode& node, const LevelMesh& mesh, const mat4& to_object, const Level& level,
                           const FitOptions& options) {
   if (options.cell > 0) node.soft_body->cell = options.cell;
@@ -65,7 +65,7 @@ Result<TetMesh> even_body(LevelNode& node, const LevelMesh& mesh, const mat4& to
   return std::move(parts->tets);
 }
 
-// [m] Of the lattice, or of one with as many tetrahedra: twelve of a body-centred cubic one fill a cell.
+// [m] Cell of the lattice, or of a lattice with as many tetrahedra: a body-centred cubic cell has twelve.
 double cell_of(const TetMesh& tets) {
   if (tets.report.cell > 0) return tets.report.cell;
   return std::cbrt(12 * total_volume(tets) / static_cast<double>(tets.tets.size()));
@@ -144,7 +144,7 @@ std::vector<std::uint8_t> PressBodies::is_free(const Mesh& mesh, double within) 
     for (std::size_t t = 0; t < sheet.inner.size(); ++t)
       for (int c = 0; c < 3 && sheet.inner[t]; ++c) out[mesh.triangles[t][c]] = 0;
   }
-  if (!group) return out;  // what is held lies between the surface's vertices
+  if (!group) return out;  // the pinned region lies between the surface's vertices
   std::vector<std::uint32_t> held;
   for (std::uint32_t v = 0; v < all.vertex_count; ++v)
     if ((*group)[v] != NodeGroup::kFree) held.push_back(v);

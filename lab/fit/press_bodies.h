@@ -1,8 +1,8 @@
-// An object as tissue, made anew for each place that is pressed: a lattice that is fine under the punch and coarse far
-// away. A lattice that is even all over would need cells of half the punch's radius everywhere.
+// Tissue bodies of an object for the presses of a fit: each place gets a lattice that is fine under the punch and
+// coarse far away. A uniform lattice would need cells of half the punch's radius everywhere.
 //
-// Error of the elements: their order is two (measured 1.8 to 1.9 against the closed form of a bonded layer), so that
-// two lattices at the same places tell what one without size would give; the ratio is nearly the same at every place.
+// The discretisation error has order two (measured 1.8 to 1.9 against the closed form of a bonded layer). Two lattices
+// at the same places therefore give the limit of vanishing cell size. The ratio is nearly the same at every place.
 #pragma once
 
 #include <memory>
@@ -17,22 +17,22 @@ namespace pliant {
 
 class PressBodies {
  public:
-  // The node as tissue (its own keys, what the options say instead), for presses of a punch. Errors: it says no
-  // modulus, cannot be filled, is held nowhere.
+  // Makes the node a tissue (its own keys, overridden by the options) for presses of a punch. Errors: no modulus given,
+  // the mesh cannot be filled, nothing is pinned.
   static Result<PressBodies> make(const Level& level, std::int32_t number, const FitOptions& options);
 
-  // What is pressed: curved where the object is, fine enough for dents. Without the inner sheet of a wall that is
-  // filled.
+  // The surface that is pressed: curved patches, refined for dents. Without the inner sheet of a filled wall.
   const Mesh& surface() const { return surface_->mesh; }
-  const Mesh& object() const { return object_->mesh; }  // all of it
+  const Mesh& object() const { return object_->mesh; }  // the whole object
   const SoftBody& body() const { return *node_.soft_body; }
   double radius() const { return radius_; }  // [m] of the punch
   double cell() const { return cell_; }      // [m] under the punch
   const std::string& why() const { return why_; }
-  // Of each vertex of a mesh of the object: whether nothing of the same side of it is held within this distance [m],
-  // and it is of no inner sheet.
+  // Per vertex of a mesh of the object: true if no vertex of the same side within this distance [m] is pinned, and it
+  // is on no inner sheet.
   std::vector<std::uint8_t> is_free(const Mesh& mesh, double within) const;
-  // Tetrahedra from a file, and walls, whose lattice may not be coarse anywhere, are one body for all places.
+  // True if one body serves all places: for tetrahedra from a file, and for walls, whose lattice may not be coarse
+  // anywhere.
   bool is_one() const { return one_ != nullptr; }
 
   // The body to press at this place, its cells this share [1] of cell(). One at a time where is_one(); that one is for
@@ -47,7 +47,7 @@ class PressBodies {
   std::shared_ptr<const BuiltMesh> surface_, object_;
   std::shared_ptr<TissuePress> one_;
   double radius_ = 0.0, cell_ = 0.0;
-  std::string why_;  // the radius
+  std::string why_;  // reason for the choice of radius
 };
 
 }  // namespace pliant

@@ -10,15 +10,15 @@ namespace pliant {
 namespace {
 
 using R = DeformableRange;
-constexpr double kFlattestPress = 5.0;  // [1] below 0: hardly a slope is left at the deepest place
-constexpr double kSteepest = 50.0;      // [1] exponent at the deepest place: beyond it a double overflows soon
+constexpr double kFlattestPress = 5.0;  // [1] below 0: almost no slope is left at the deepest place
+constexpr double kSteepest = 50.0;      // [1] exponent at the deepest place: beyond it a double soon overflows
 
 struct Sizes {
   double depth = 0.0, force = 0.0, span = 0.0, least_step = 0.0;  // [m] [N] [s] [s]
   double slope = 0.0;                                             // [N/m] of a line through zero
 };
 
-// Where the indenter met the surface at the depth `met` [m].
+// Sizes of the record if contact begins at the depth `met` [m].
 Sizes sizes_of(const PressRecord& record, double met) {
   Sizes out;
   double fd = 0.0, dd = 0.0;
@@ -38,8 +38,8 @@ Sizes sizes_of(const PressRecord& record, double met) {
   return out;
 }
 
-// [m] Where it may have met the surface: before the record begins, as far as the record reaches, or anywhere in it but
-// in its last tenth; and where a fit looks first.
+// [m] Range of the contact depth: from one record length before the record begins to nine tenths of the record.
+// `starts`: initial guesses of a fit.
 struct ContactRange {
   double low = 0.0, high = 0.0;
   std::vector<double> starts{0.0};
@@ -55,13 +55,13 @@ ContactRange contact_range(const PressRecord& record, bool open) {
   return out;
 }
 
-// [Pa] Of a sphere on a half-space with the record's largest force at its deepest place.
+// [Pa] Young's modulus of a half-space on which a sphere reaches the record's largest force at its deepest place.
 double sphere_modulus(const Sizes& size, const ModelWish& wish) {
   const double plane = size.force / (4.0 / 3.0 * std::sqrt(wish.radius) * std::pow(size.depth, 1.5));
   return plane * (1 - wish.poisson * wish.poisson);
 }
 
-// Where fits of a law's own parameters begin.
+// Initial guesses for a law's own parameters.
 std::vector<std::vector<double>> law_starts(const std::string& law, const Sizes& size, const ModelWish& wish) {
   const double k = std::clamp(size.slope, R::kStiffness.min, R::kStiffness.max), d = size.depth;
   if (law == "hertz") return {{sphere_modulus(size, wish)}};
@@ -87,7 +87,7 @@ const std::vector<std::string>& press_laws() {
 std::optional<PressModel> press_model(const std::string& law, const PressRecord& record, const ModelWish& wish,
                                       std::string& why) {
   const ContactRange contact = contact_range(record, wish.contact);
-  // Bounds hold wherever it met the surface, starts go by where.
+  // Bounds must hold for every contact depth; initial guesses depend on it.
   const Sizes size = sizes_of(record, contact.low);
   if (law == "sls" && record.time.empty()) {
     why = "the law sls needs a column of time";
@@ -172,7 +172,7 @@ void PressModel::predict(const PressRecord& record, const Eigen::VectorXd& p, st
     const double depth = std::max(0.0, record.depth[i] - met);
     const double dt = i > 0 && !record.time.empty() ? record.time[i] - record.time[i - 1] : 0.0;
     if (contact.arm > 0 && dt > 0) {
-      // q' = (d - q) / tau, exact for a depth that changes evenly (field_kernels.cpp: step_relaxed).
+      // q' = (d - q) / tau, exact for a depth that is linear in time (field_kernels.cpp: step_relaxed).
       const double over = dt / surface.relaxation_time, left = std::exp(-over), ramp = -std::expm1(-over) / over;
       q = depth - (left * (before - q) + ramp * (depth - before));
       contact.relaxed_depth = std::max(q, 0.0);

@@ -1,5 +1,5 @@
-// The laws of a surface (methods.md 1.2, 1.8) as functions of an indenter's path, with the keys of PLIANT_deformable as
-// their parameters: the engine's own contact law, fed with a record's depths.
+// The laws of a surface (methods.md 1.2, 1.8) as functions of an indenter's path. Their parameters are the keys of
+// PLIANT_deformable. The engine's own contact law is evaluated on the recorded depths.
 #pragma once
 
 #include <optional>
@@ -13,32 +13,32 @@
 namespace pliant {
 
 struct ModelParameter {
-  std::string key, unit;  // of PLIANT_deformable; `contact`: the depth at which the indenter met the surface
-  FitParameter box;       // with the start of the first try
+  std::string key, unit;  // key of PLIANT_deformable; `contact`: the depth at which the indenter met the surface
+  FitParameter box;       // bounds and scale, with the first initial guess
 };
 
 struct ModelWish {
-  double radius = 0.0;    // [m] of a spherical indenter; 0: a point or punch
-  double poisson = 0.45;  // [1] with `hertz`
+  double radius = 0.0;    // [m] of a spherical indenter; 0: a point or a flat punch
+  double poisson = 0.45;  // [1] for the law `hertz`
   bool damping = false;   // contact_damping is one of the parameters
-  bool contact = false;   // the depth at which it met the surface is one
+  bool contact = false;   // the contact depth is one of the parameters
 };
 
 struct PressModel {
   std::string law;  // linear, cubic, exponential, sls, hertz
   ModelWish wish;
   std::vector<ModelParameter> parameters;
-  std::vector<Eigen::VectorXd> starts;  // where a fit begins: some laws have more than one valley
+  std::vector<Eigen::VectorXd> starts;  // initial guesses: some laws have several local minima
 
-  // The surface's keys at these parameters.
+  // The surface's keys for these parameters.
   Deformable deformable(const Eigen::VectorXd& p) const;
-  // [N] at each row of the record.
+  // [N] Predicted force at each row of the record.
   void predict(const PressRecord& record, const Eigen::VectorXd& p, std::vector<double>& force) const;
 };
 
-// Words of laws; `hertz` takes a radius, `sls` and damping a time.
+// Names of the laws; `hertz` needs a radius, `sls` and damping need time.
 const std::vector<std::string>& press_laws();
-// Nothing: the record or the wish lacks what the law needs; `why` says what.
+// Empty if the record or the request lacks something that the law needs; `why` gives the reason.
 std::optional<PressModel> press_model(const std::string& law, const PressRecord& record, const ModelWish& wish,
                                       std::string& why);
 

@@ -57,13 +57,13 @@ std::string lower(std::string_view word) {
   return out;
 }
 
-// Blanks around them are taken off.
+// Splits a line and trims the cells.
 void read_cells(std::string_view line, char mark, std::vector<std::string>& cells) {
   csv_cells(line, mark, cells);
   for (std::string& cell : cells) cell = std::string(trim(cell));
 }
 
-// "depth_mm", "depth [mm]", "Depth (mm)" -> the name in small letters, and the unit as it stands.
+// "depth_mm", "depth [mm]", "Depth (mm)" -> the name in lower case and the unit as written.
 std::pair<std::string, std::string> name_and_unit(std::string_view head) {
   const std::size_t open = head.find_first_of("[(");
   if (open != std::string_view::npos) {
@@ -81,11 +81,11 @@ bool is_name(std::size_t quantity, const std::string& name) {
 }
 
 struct Columns {
-  std::size_t at[kQuantities] = {};  // 1 and on; 0: not there
+  std::size_t at[kQuantities] = {};  // column number from 1; 0: absent
   double factor[kQuantities] = {1, 1, 1};
   std::optional<std::size_t> probe, contact;
-  std::size_t axis[3] = {}, torque[3] = {};  // of a run's force and torque, 1 and on
-  std::size_t count = 0;                     // without empty ones at the end
+  std::size_t axis[3] = {}, torque[3] = {};  // columns of a run's force and torque, from 1
+  std::size_t count = 0;                     // number of columns, without empty ones at the end
   char mark = ',';
   std::vector<std::string> notes;
 };
@@ -99,8 +99,8 @@ std::string unit_fault(const QuantityWords& words, const std::string& head, cons
              : fmt::format("column '{}' has the unit '{}'; must be one of {}", printable(head), printable(unit), all);
 }
 
-// Of one quantity, among all heads. What has its name but another unit may be something else (f_Hz, load_cell) where
-// another column is the quantity, or where it may be missing.
+// Finds the column of one quantity. A column with its name but another unit may be a different quantity (f_Hz,
+// load_cell); it is ignored if another column matches or if the quantity is optional.
 Status find_column(const std::vector<std::string>& heads, std::size_t q, const std::string& where, Columns& out) {
   const QuantityWords& words = quantity_words(q);
   std::vector<std::pair<std::size_t, std::string>> other;  // column, unit
@@ -131,7 +131,7 @@ Status find_column(const std::vector<std::string>& heads, std::size_t q, const s
   return Done{};
 }
 
-// With this mark between cells.
+// Reads the header with this separator.
 Result<Columns> read_head(std::string_view line, char mark, const std::string& where) {
   Columns out;
   out.mark = mark;
@@ -163,7 +163,7 @@ Result<Columns> read_head(std::string_view line, char mark, const std::string& w
   return out;
 }
 
-// With the mark that makes columns of it; names may hold the others.
+// Tries all separators and takes the one that gives columns; names may contain the others.
 Result<Columns> read_head(std::string_view line, const std::string& where) {
   std::optional<Error> wrong;
   std::size_t most = 0;
@@ -184,7 +184,7 @@ bool read_number(std::string_view cell, double& value) {
   return read.ec == std::errc{} && read.ptr == cell.data() + cell.size();
 }
 
-// Where commas are not between cells they may be decimal.
+// If commas do not separate cells, they may be decimal commas.
 bool read_number(std::string cell, char mark, double& value) {
   if (mark != ',' && cell.find('.') == std::string::npos)
     if (const std::size_t comma = cell.find(','); comma != std::string::npos) cell[comma] = '.';
@@ -198,7 +198,7 @@ Error of_tool(const std::string& where, const std::string& probe) {
                       printable(probe))};
 }
 
-// What no fit could use.
+// Rejects a record that no law can be fitted to.
 Status check(const PressRecord& record, const std::string& where) {
   if (record.size() < kLeastRows)
     return Error{where, fmt::format("has {} rows; a fit takes at least {}", record.size(), kLeastRows)};

@@ -9,7 +9,7 @@ namespace pliant {
 namespace {
 
 constexpr int kMostParts = 32;   // of a triangle's edge
-constexpr double kFacing = 0.0;  // [1] cosine to the place's normal, at least
+constexpr double kFacing = 0.0;  // [1] smallest cosine to the place's normal
 
 PressPlace place_on(const CurvedPatch& patch, std::uint32_t triangle, dvec3 b, dvec3* twice_area) {
   const CurvedPatch::Point at = patch.at(b.y, b.z);
@@ -34,7 +34,7 @@ std::vector<SurfaceSample> samples_around(const Mesh& mesh, const PressPlace& pl
     const CurvedPatch patch = curved_patch(mesh, k);
     const int parts = std::clamp(static_cast<int>(std::ceil(longest / apart)), 1, kMostParts);
     for (int i = 0; i < parts; ++i)
-      for (int j = 0; j < 2 * (parts - i) - 1; ++j) {  // the middles of the parts, upright and turned
+      for (int j = 0; j < 2 * (parts - i) - 1; ++j) {  // centroids of the parts, upright and inverted
         const double b1 = (i + (j % 2 ? 2.0 / 3.0 : 1.0 / 3.0)) / parts,
                      b2 = (j / 2 + (j % 2 ? 2.0 / 3.0 : 1.0 / 3.0)) / parts;
         dvec3 twice;

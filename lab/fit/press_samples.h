@@ -1,4 +1,5 @@
-// Places on a smooth surface (components/curved_patch.h), and the points around them that a press is taken at.
+// Places on a smooth surface (components/curved_patch.h), and the sample points around them at which a press is
+// measured.
 #pragma once
 
 #include <vector>
@@ -17,10 +18,10 @@ struct PressPlace {
 PressPlace place_at(const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric);
 
 struct SurfaceSample : PressPlace {
-  double area = 0.0;  // [m2] that it stands for
+  double area = 0.0;  // [m2] represented by the sample
 };
-// Of the triangles' own patches, about `apart` [m] from each other: all points within `within` [m] of the place on what
-// faces the same way as it (the other side of the object is another surface).
+// Samples of the curved patches with a spacing of about `apart` [m]: all points within `within` [m] of the place whose
+// normals face the same way (the opposite side of the object is another surface).
 std::vector<SurfaceSample> samples_around(const Mesh& mesh, const PressPlace& place, double within, double apart);
 
 }  // namespace pliant

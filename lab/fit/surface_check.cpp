@@ -7,9 +7,9 @@
 namespace pliant {
 namespace {
 
-constexpr int kCheckParts = 10;  // a depth is gone to in so many ticks, so that the contact's foot stays with it
-constexpr int kRecover = 400;    // [ticks] until the last dent has gone
-constexpr double kAbove = 1.0;   // [deepest press] where a probe waits
+constexpr int kCheckParts = 10;  // ticks in which a depth is reached, so that the contact point follows the probe
+constexpr int kRecover = 400;    // [ticks] until the last dent has recovered
+constexpr double kAbove = 1.0;   // [deepest press] height at which a probe waits
 
 MeshData data_of(const std::vector<Primitive>& primitives) {
   MeshData out;
@@ -38,7 +38,7 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
   scene.add_surface("surface", data_of(primitives), smooth);
   DeviceParameters device;
   device.max_force = 1e3;
-  // Each place has a probe of its own: one for all would go through the object on its way.
+  // Each place has its own probe: a single one would pass through the object on its way.
   const auto name = [](std::size_t i) { return "probe " + std::to_string(i); };
   const auto at_depth = [&](std::size_t i, double depth) {
     return places[i].place.position - depth * places[i].place.normal;

@@ -1,4 +1,4 @@
-// What the engine itself does at places that a fit has not seen: a session with the fitted surface and a point probe.
+// Evaluates the engine at places that the fit has not used: a session with the fitted surface and a point probe.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace pliant {
 
-// `primitives` in the object frame, painted; `built`: the mesh that the engine makes of them. At each place presses to
-// the depths of its own: the force along the place's normal before the safety layer, and the drawn surface's heights at
-// the points that it was seen at.
+// `primitives`: in the object frame, with painted stiffness. `built`: the mesh that the engine builds from them.
+// Presses each place to its own depths. Returns the force along the normal before the safety layer, and the heights of
+// the drawn surface at the place's sample points.
 Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<Primitive>& primitives,
                                                               const DeformableParameters& surface, const Mesh& built,
                                                               const std::vector<PressedPlace>& places);

@@ -14,12 +14,12 @@ namespace pliant {
 namespace {
 
 constexpr double kLeastContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
-constexpr double kLeastFittedReach = 1.5;                                       // [1] radii of the indenter
-constexpr int kReaches = 20;          // tried from there to the usual one, and from that to the widest
-constexpr double kGoodShape = 0.10;   // [1] of the depth: a wider reach is not looked for
-constexpr std::size_t kNearest = 10;  // painted places that a vertex takes its value from
+constexpr double kLeastFittedReach = 1.5;                                       // [1] in radii of the indenter
+constexpr int kReaches = 20;          // tried from the least reach to the usual one, and from that to the widest
+constexpr double kGoodShape = 0.10;   // [1] of the depth: below this error no wider reach is tried
+constexpr std::size_t kNearest = 10;  // painted places from which a vertex is interpolated
 
-// `contact` [1] of the reach.
+// `contact` [1]: contact radius as a share of the reach.
 FieldSource source_of(const PressPlace& place, Shape shape, double reach, double volume, double contact) {
   FieldSource source;
   source.center = vec3(place.position);
@@ -43,11 +43,11 @@ double next_share(std::uint64_t& state) {
   return static_cast<double>(next_random(state) >> 11) * 0x1p-53;
 }
 
-// What the shapes are compared with, gathered once.
+// Data for comparing shapes, gathered once.
 struct Sample {
   vec3 position, normal;
   double area = 0.0;
-  double share = 0.0, square = 0.0;  // of the depth: means over the presses, of the share and of its square
+  double share = 0.0, square = 0.0;  // share of the depth and its square: means over the presses
 };
 
 }  // namespace
@@ -82,7 +82,7 @@ SurfaceDifference radial_remainder(const std::vector<SurfaceSample>& seen, const
     out.size += area * h * h;
     out.area += area;
   }
-  normal.diagonal().array() += 1e-12 * out.area;  // a ring without a point takes nothing
+  normal.diagonal().array() += 1e-12 * out.area;  // keeps a ring without samples solvable
   const Eigen::VectorXd best = normal.ldlt().solve(right);
   out.off = std::max(0.0, out.size - 2 * best.dot(right) + best.dot(normal * best));
   return out;
@@ -203,7 +203,7 @@ std::vector<PressPlace> scatter(const Mesh& mesh, std::size_t count, std::uint64
   std::vector<PressPlace> out;
   if (!(total > 0)) return out;
   for (std::size_t i = 0; i < count; ++i) {
-    // One in each equal part of the area, which the mesh's order (a space-filling curve) spreads over the surface.
+    // Stratified by area. The mesh order, a space-filling curve, spreads the strata over the surface.
     const double at = total * (static_cast<double>(i) + next_share(seed)) / static_cast<double>(count);
     const auto triangle = static_cast<std::uint32_t>(std::upper_bound(sum.begin(), sum.end(), at) - sum.begin());
     double b1 = next_share(seed), b2 = next_share(seed);
@@ -245,7 +245,8 @@ std::vector<double> spread(const Mesh& mesh, const std::vector<PressPlace>& at, 
     }
     const std::size_t count = std::min(kNearest, near.size());
     std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
-    // A plane through the logarithms, in the distances' own size; a little of what keeps it from tilting without need.
+    // Fits a plane to the logarithms, with lengths scaled by the distance; a small regularisation keeps its slope
+    // small.
     const double size = std::sqrt(near[count - 1].first) + 1e-12;
     Eigen::Matrix4d normal = Eigen::Vector4d(1e-9, 0.02, 0.02, 0.02).asDiagonal();
     Eigen::Vector4d right = Eigen::Vector4d::Zero();

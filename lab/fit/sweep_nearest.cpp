@@ -12,13 +12,13 @@
 namespace pliant {
 namespace {
 
-constexpr double kOtherDepth = 0.02;  // [1] from which on a run did not press as the measurement did
-constexpr double kOtherSpan = 0.1;    // [1] the same of the time in contact
-constexpr int kParts = 2000;          // a parabola is searched in
+constexpr double kOtherDepth = 0.02;  // [1] depth difference from which a run's press counts as different
+constexpr double kOtherSpan = 0.1;    // [1] the same for the time in contact
+constexpr int kParts = 2000;          // grid points for the minimum of a parabola
 constexpr const char *kMaxDepth = "max_depth_m", *kMaxForce = "max_force_N", *kRmsContact = "rms_contact_N",
                      *kContactTime = "contact_s";
 
-// Of a probe in a row that was done; without those that it lacks.
+// Figures of a probe in a completed row; missing ones are left out.
 std::map<std::string, double> figures_of(const SweepRow& row, const std::string& probe) {
   std::map<std::string, double> out;
   if (!row.done()) return out;
@@ -28,7 +28,7 @@ std::map<std::string, double> figures_of(const SweepRow& row, const std::string&
   };
   for (const char* name : {kMaxDepth, kMaxForce, kContactTime})
     if (const double value = number(probe + "." + name); std::isfinite(value)) out[name] = value;
-  // The run's own is over all its ticks.
+  // The run's own RMS is taken over all ticks.
   const double rms = number(probe + ".rms_force_N"), ticks = number("ticks"),
                contact = number(probe + ".contact_ticks");
   if (std::isfinite(rms) && std::isfinite(ticks) && std::isfinite(contact))
@@ -36,7 +36,7 @@ std::map<std::string, double> figures_of(const SweepRow& row, const std::string&
   return out;
 }
 
-// Relative differences that count: depth and time in contact only say whether the presses are the same.
+// Only force differences count: depth and time in contact only show whether the presses are comparable.
 double distance_of(const std::map<std::string, double>& target, const std::map<std::string, double>& run) {
   double sum = 0.0, count = 0.0;
   for (const char* name : {kMaxForce, kRmsContact}) {
@@ -63,7 +63,7 @@ std::map<std::string, double> figures_of(const PressRecord& record) {
     if (!record.contact[i]) continue;
     out[kMaxDepth] = std::max(out[kMaxDepth], record.depth[i]);
     out[kMaxForce] = std::max(out[kMaxForce], record.force[i]);
-    // [s] Half the way to the rows beside it.
+    // [s] Half the interval to the adjacent rows.
     const double weight =
         record.time.empty() ? 1.0 : 0.5 * (record.time[std::min(i + 1, n - 1)] - record.time[i == 0 ? 0 : i - 1]);
     square += weight * record.force[i] * record.force[i];
@@ -119,7 +119,7 @@ Result<Nearest> nearest_run(const SweepTable& table, const PressRecord& target, 
   for (std::size_t axis = 0; axis < table.axes.size(); ++axis) {
     const AxisValues values = values_along(table, axis);
     if (!values.scale.words.empty()) continue;
-    // The nearest runs on both sides that differ in this axis only.
+    // The nearest runs on either side that differ only in this axis.
     std::size_t below = best, above = best;
     for (const std::size_t i : out.order) {
       bool same = true;

@@ -1,4 +1,4 @@
-// What a fit to finite elements came to: `pliant fit LEVEL --object NAME` fills it, and says, writes and draws it.
+// The result of a fit to finite elements: `pliant fit LEVEL --object NAME` fills, prints, writes and draws it.
 #pragma once
 
 #include <cmath>
@@ -13,32 +13,33 @@
 
 namespace pliant {
 
-// What a place not used in the fit came to.
+// Result at a place that was not used in the fit.
 struct HeldPlace {
   PressedPlace truth;
   Side side = Side::kTop;
   std::vector<PressedTissue> model;             // at the same depths
   double force_error = 0.0, force_worst = 0.0;  // [1] RMS and largest of the relative differences
-  double surface_error = 0.0;                   // [1] RMS difference over RMS of the dent, at the deepest
+  double surface_error = 0.0;                   // [1] RMS difference over RMS of the dent, at the greatest depth
   double surface_of_depth = 0.0;                // [1] RMS difference over the depth
-  double not_radial = 0.0;                      // [1] what no function of the distance could give, over the depth
+  double not_radial = 0.0;                      // [1] the part of the dent that no radial function can represent, over
+                                                // the depth
   bool near_edge = false;                       // of the object
 };
 
 struct TissueFit {
   std::string object;
   double radius = 0.0, cell = 0.0, young = 0.0, poisson = 0.0;
-  std::string why;             // the radius
-  double deepest = 0.0;        // [m] that is pressed: a quarter of the reach, of the usual one at most
-  double too_stiff = 1.0;      // [1] the elements' stiffness over that of a lattice without size
-  double too_stiff_off = 0.0;  // [1] how far single places are from that, RMS
+  std::string why;             // reason for the choice of radius
+  double deepest = 0.0;        // [m] deepest press: a quarter of the reach, at most of the usual reach
+  double too_stiff = 1.0;      // [1] stiffness of the elements over the limit of vanishing cell size
+  double too_stiff_off = 0.0;  // [1] RMS deviation of single places from that ratio
   std::size_t tets = 0;        // median over the bodies
   std::size_t mapped = 0, places = 0, left_out = 0;
   ShapeFit shape;
   ForceFit force;
   DeformableParameters surface;
   bool linear = false;                   // small strains
-  double softest = 0.0, stiffest = 0.0;  // [N/m] of the map
+  double softest = 0.0, stiffest = 0.0;  // [N/m] range of the map
   std::vector<HeldPlace> held;
 };
 
@@ -56,7 +57,7 @@ struct PlaceErrors {
   double rms(double sum) const { return count ? std::sqrt(sum / static_cast<double>(count)) : 0.0; }
 };
 
-// By region: "all", the side that the surface faces there, and, where some lie near an edge, all the others "inner".
+// By region: "all", the side that the surface faces there, and, if some places lie near an edge, the others as "inner".
 std::map<std::string, PlaceErrors> sums_of(const TissueFit& fitted);
 std::string verdict_of(const TissueFit& fitted);
 

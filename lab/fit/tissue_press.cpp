@@ -13,11 +13,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kForever = 1e6;  // [s] of a step in which inertia is nothing (systems/soft/fem/tissue_step.cpp)
-constexpr int kMostTissueIterations = 80;  // of one press
-constexpr double kRestTolerance = 1e-4;    // [1] of the load that may be left over
-constexpr std::size_t kMemory = 6;         // iterates that Anderson's acceleration mixes
-constexpr double kFinest = 6.0;            // samples over the indenter's radius
+constexpr double kForever = 1e6;           // [s] of a step with negligible inertia (systems/soft/fem/tissue_step.cpp)
+constexpr int kMostTissueIterations = 80;  // per press
+constexpr double kRestTolerance = 1e-4;    // [1] residual at equilibrium, relative to the load
+constexpr std::size_t kMemory = 6;         // iterates in Anderson's acceleration
+constexpr double kFinest = 6.0;            // samples per indenter radius
 constexpr std::size_t kMoments = 6;        // 1, x, y, x^2, xy, y^2
 constexpr double kFlattestTissue = 1e-6;   // [1] of the largest eigenvalue
 constexpr double kSmallTolerance = 1e-6;   // [1] of the solution: a small press' stiffness is right to its square
@@ -163,7 +163,7 @@ std::vector<PressedTissue> TissuePress::press_to(const Punch& it, const std::vec
   ASSERT(!iterative_);
   const std::vector<Embedding> held = embedding_of(seen, *tets_);
   std::vector<PressedTissue> out;
-  const Vector one = it.yields * (it.inverse * it.whole);  // moved by a small press, over its depth
+  const Vector one = it.yields * (it.inverse * it.whole);  // displacement of a small press over its depth
   Vector u = Vector::Zero(one.size()), before = u;
   for (int i = 1; i <= steps; ++i) {
     const double wanted = depth * i / steps;

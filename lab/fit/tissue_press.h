@@ -1,14 +1,16 @@
-// Presses into tissue by its finite elements: a smooth, rigid punch of radius a that fits the resting surface goes in
-// along the inward normal by the depth d.
+// Presses into FEM tissue: a smooth, rigid punch of radius a, congruent to the resting surface, moves along the inward
+// normal by the depth d.
 //
-// The punch is there in a weak sense: its pressure is p(x, y) = sqrt(1 - r^2 / a^2) times a polynomial of second order,
-// whose six coefficients make the surface's displacement under it d, as far as its six moments tell. The load goes
-// through points of the smooth surface, which ride on tetrahedra, so all of it changes smoothly with the place of the
-// press, however the elements lie, and no contact is searched for. With the six loads W and their moments of a
-// displacement of 1, s, a small press is one solution with the stiffness matrix of the resting tissue,
+// The punch is imposed weakly. Its pressure is p(x, y) = sqrt(1 - r^2 / a^2) times a polynomial of second order. The
+// six coefficients make the surface displacement under it equal d, measured by its six moments. The load acts on points
+// of the smooth surface that are attached to tetrahedra. The result is therefore smooth in the place of the press,
+// however the elements lie, and no contact search is needed.
+//
+// W: the six loads; s: their moments of a unit displacement. A small press is one solution with the stiffness matrix K
+// of the resting tissue:
 //   K u = W l,  W^T u = d s,  F = s . l.
-// A deep one is iterated with the same factors and the co-rotational forces f(u): u += K^-1 (f(u) + W l), l such that
-// W^T u = d s, with Anderson's acceleration (Walker & Ni 2011).
+// A deep press is iterated with the same factorisation and the co-rotational forces f(u): u += K^-1 (f(u) + W l), l
+// such that W^T u = d s, with Anderson's acceleration (Walker & Ni 2011).
 #pragma once
 
 #include <memory>
@@ -23,7 +25,7 @@
 
 namespace pliant {
 
-// What one press did. Heights are of points of the surface, along their normals, < 0: pushed in.
+// Result of one press. Heights are along the normals of the surface points; < 0: pushed in.
 struct PressedTissue {
   double force = 0.0;          // [N]
   double depth = 0.0;          // [m]
@@ -42,11 +44,11 @@ class TissuePress {
 
   // A punch of this radius [m] at a place of this surface.
   struct Punch {
-    Eigen::MatrixXd loads;                                           // W: on the moving nodes, a column a moment
+    Eigen::MatrixXd loads;                                           // W: on the free nodes, one column per moment
     Eigen::MatrixXd yields;                                          // K^-1 W [m/N]
     Eigen::MatrixXd inverse;                                         // (W^T K^-1 W)^-1
     Vector whole;                                                    // s
-    double stiffness() const { return whole.dot(inverse * whole); }  // [N/m] of a small press
+    double stiffness() const { return whole.dot(inverse * whole); }  // [N/m] for a small press
   };
   // Error: the matrix is not positive definite, which conjugate gradients did not see.
   Result<Punch> punch(const Mesh& surface, const PressPlace& place, double radius);

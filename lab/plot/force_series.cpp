@@ -14,10 +14,10 @@ namespace pliant {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kLongest = 4096;  // rows of a spectrum's window
+constexpr std::size_t kLongest = 4096;  // rows of the longest window of a spectrum
 constexpr std::size_t kShortest = 64;   // below it there is no spectrum
-constexpr double kUneven = 0.01;        // [1] of the usual distance of rows
-constexpr double kClosed = 1e-9;        // [1] of the work put in: rounding
+constexpr double kUneven = 0.01;        // [1] of the usual row interval
+constexpr double kClosed = 1e-9;        // [1] of the positive work: rounding
 constexpr double kFast = 20.0;          // [Hz]
 constexpr double kPiOfWindow = 3.14159265358979323846;
 
@@ -178,7 +178,7 @@ Spectrum spectrum_of(const ForceSeries& s) {
     hann[i] = 0.5 - 0.5 * std::cos(2 * kPiOfWindow * static_cast<double>(i) / static_cast<double>(window));
     energy += hann[i] * hann[i];
   }
-  // Evenly from the first row to the last, each over half of the one before or more.
+  // Windows are spread evenly from the first row to the last; each overlaps the previous one by half or more.
   const std::size_t left = n - window, windows = 1 + (left + window / 2 - 1) / (window / 2);
   std::vector<std::complex<double>> part(window);
   for (std::size_t k = 0; k < windows; ++k) {

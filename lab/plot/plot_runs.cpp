@@ -18,9 +18,9 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMostDrawn = 8;           // series; the table has all
-constexpr std::size_t kMostDrawnPoints = 4000;  // of a line
-constexpr double kLeastDensity = 1e-6;          // [1] of the largest: below it the spectrum's axis ends
+constexpr std::size_t kMostDrawn = 8;           // series; the table contains all
+constexpr std::size_t kMostDrawnPoints = 4000;  // per line
+constexpr double kLeastDensity = 1e-6;          // [1] of the largest: lower limit of the spectrum's axis
 
 struct Drawn {
   ForceSeries series;
@@ -29,7 +29,7 @@ struct Drawn {
   std::string name;
 };
 
-// What the runs' depths are: a probe's below the surface, a tool's from the device to the handle.
+// Labels of the plot: a probe's depth is below the surface, a tool's is the offset from device to handle.
 struct RunWords {
   std::string who, loop, depth, depth_head, force, spectrum;
 };
@@ -54,7 +54,7 @@ RunWords run_words(const std::vector<Drawn>& all) {
   return words;
 }
 
-// The least and the largest of every stretch, so that no peak is lost.
+// Keeps the minimum and maximum of every stretch, so that no peak is lost.
 void thin(const std::vector<double>& x, const std::vector<double>& y, std::vector<double>& out_x,
           std::vector<double>& out_y) {
   const std::size_t stretch = std::max<std::size_t>(1, 2 * x.size() / kMostDrawnPoints);
@@ -76,7 +76,7 @@ void thin(const std::vector<double>& x, const std::vector<double>& y, std::vecto
 struct Column {
   const char* csv;
   const char* head;  // null: RunWords::depth_head
-  double scale;      // of the picture and the terminal
+  double scale;      // to the units of the picture and the terminal
   double SeriesSummary::*value;
 };
 constexpr Column kSummaryColumns[] = {{"seconds", "time [s]", 1.0, &SeriesSummary::seconds},
@@ -117,7 +117,7 @@ std::string summary_csv(const std::vector<Drawn>& all) {
   return text;
 }
 
-// One after the other: runs of other lengths have other frequencies.
+// Series in sequence: runs of different lengths have different frequencies.
 std::string spectra_csv(const std::vector<Drawn>& all) {
   std::string text = "run,probe,frequency_Hz,density_N_per_sqrt_Hz\n";
   for (const Drawn& each : all)
@@ -137,7 +137,7 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
     const Drawn& d = all[i];
     seconds = std::max(seconds, d.series.time.back());
     for (std::size_t k = 0; k < d.series.time.size(); ++k) {
-      // Away from the surface the depth is how far away: only what presses is of interest.
+      // Out of contact the depth is a distance from the surface: only rows in contact set the range.
       if (d.series.normal[k] > 0) shallow = std::min(shallow, d.series.depth[k] * 1e3);
       depth = std::max(depth, d.series.depth[k] * 1e3);
       force = std::max(force, d.series.normal[k]);
@@ -178,7 +178,7 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
     for (const double value : s.depth) millimetres.push_back(value * 1e3);
     const std::size_t every = 1 + s.time.size() / kMostDrawnPoints;
     for (std::size_t k = 0; k < s.time.size(); k += every) {
-      // Lines end where the probe leaves: the way through the air is none of the law's.
+      // Lines are interrupted out of contact: the path through the air is not part of the law.
       const bool pressed = s.normal[k] > 0 || (k >= every && s.normal[k - every] > 0) ||
                            (k + every < s.time.size() && s.normal[k + every] > 0);
       x.push_back(pressed ? millimetres[k] : std::nan(""));
@@ -209,7 +209,7 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
     std::string name = all[i].name;
     while (name.size() > 4 && pen.width(13, name) > right - kColumn * (std::size(kSummaryColumns) - 1) - kFirst - 100)
       do name.erase(0, 1);
-      while (!name.empty() && (static_cast<unsigned char>(name[0]) & 0xc0) == 0x80);  // a whole character
+      while (!name.empty() && (static_cast<unsigned char>(name[0]) & 0xc0) == 0x80);  // a whole UTF-8 character
     pen.text(kFirst, y, 13, 0, name.size() < all[i].name.size() ? ".." + name : name);
     for (std::size_t c = 0; c < std::size(kSummaryColumns); ++c)
       pen.text(right - kColumn * static_cast<double>(std::size(kSummaryColumns) - 1 - c), y, 13, 1.0,
@@ -275,7 +275,7 @@ int plot_runs(const PlotOptions& options) {
       return fail(kUsage,
                   {"--probe " + name, "is in none of the runs; they have " + joined({known.begin(), known.end()})});
   const std::size_t shown = std::min(all.size(), kMostDrawn);
-  const Interrupt interrupt(kAllOrNothing);  // what is staged must not stay behind
+  const Interrupt interrupt(kAllOrNothing);  // removes staged files on interruption
   auto out = OutputFolder::create(options.out.empty() ? "out/plot" : options.out, options.force);
   if (!out) return fail(kFailed, out.error());
   interrupt.remove_if_forced(out->staging());

@@ -1,4 +1,4 @@
-// `pliant plot A B C`: runs over each other.
+// `pliant plot A B C`: plots several runs in one figure.
 #pragma once
 
 #include <string>

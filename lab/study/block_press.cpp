@@ -19,10 +19,10 @@ namespace pliant {
 namespace {
 
 constexpr double kRim = 1.5;         // [1] > 1: cells get smaller towards the rim
-constexpr int kMostIterations = 60;  // of co-rotational tissue, a depth
+constexpr int kMostIterations = 60;  // co-rotational iterations per depth
 
-// From 0 to `end` in `parts * cells` cells: as t^kRim near 0, the faster the farther away. The same curve for all
-// `cells`, so that errors fall evenly with their number.
+// Coordinates from 0 to `end` in `parts * cells` cells: t^kRim near 0, then increasing. The curve is the same for all
+// `cells`, so that errors decrease uniformly with their number.
 std::vector<double> away_from_rim(double radius, double end, int parts, int cells) {
   const double growth = std::log(end / (radius * std::pow(parts, kRim)));
   std::vector<double> at;
@@ -55,8 +55,8 @@ Grid grid_of(const BlockPress& p) {
 
 enum class Group { kFree, kPunch, kFloor };
 
-// Squares about the middle become circles at the punch's rim, and squares again at the block's sides: the punch is a
-// disc whatever the grid, but for the arcs between its nodes.
+// Maps squares around the centre to circles at the punch's rim, and back to squares at the block's sides. The punch is
+// then a disc on every grid, except for the arcs between its nodes.
 dvec3 rounded(dvec3 p, const BlockPress& press) {
   const double m = std::max(std::abs(p.x), std::abs(p.z)), a = press.radius;
   if (m == 0.0) return p;
@@ -65,7 +65,7 @@ dvec3 rounded(dvec3 p, const BlockPress& press) {
   return {scale * p.x, p.y, scale * p.z};
 }
 
-// Six tetrahedra a cell around its diagonal; neighbours mirror one another, so that no direction is preferred.
+// Six tetrahedra per cell around its diagonal; neighbours are mirrored, so that no direction is preferred.
 TetMesh tets_of(const Grid& grid, const BlockPress& p) {
   TetMesh mesh;
   mesh.name = "block";
@@ -114,9 +114,9 @@ TetMesh tets_of(const Grid& grid, const BlockPress& p) {
   return mesh;
 }
 
-// Positive: the surface gives way. Means over the top's rings.
+// Surface deflection, positive downwards: means over the rings of the top.
 void read_top(const TetMesh& mesh, const Tissue& tissue, double punch, PressedBlock& out) {
-  std::map<long, std::pair<double, double>> rings;  // by the radius: shares and how many
+  std::map<long, std::pair<double, double>> rings;  // by radius: sum of the shares and count
   for (std::uint32_t i = 0; i < mesh.node_count(); ++i) {
     const dvec3 x = mesh.nodes[i];
     if (x.y != 0.0) continue;

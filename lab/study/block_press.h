@@ -1,7 +1,7 @@
-// A flat, round punch bonded to the top of a block that is bonded below: the engine's own tetrahedra on a grid that is
-// fine at the punch's rim, where stress is singular. Frame: the punch's middle at the origin, the block below y = 0.
+// A flat, round punch bonded to the top of a block whose bottom is bonded. The engine's tetrahedra on a grid refined at
+// the punch's rim, where the stress is singular. Frame: the origin is the punch's centre, the block lies below y = 0.
 //
-// Grids of more cells follow the same curves, so that errors fall evenly and the limit can be extrapolated.
+// Grids of all sizes follow the same curves, so that errors decrease uniformly and the limit can be extrapolated.
 #pragma once
 
 #include <functional>
@@ -18,33 +18,33 @@ struct BlockPress {
   double radius = 0.005;                // [m] of the punch
   double thickness = 0.025;             // [m] of the block
   double half_width = 0.06;             // [m]
-  int cells = 4;                        // over the punch's radius
-  Strain strain = Strain::kLinear;      // small strains; corotational ones are settled to the end
+  int cells = 4;                        // per punch radius
+  Strain strain = Strain::kLinear;      // small strains, or co-rotational iterated to convergence
 };
 
 struct PressedBlock {
   double depth = 0.0;          // [m]
-  double force = 0.0;          // [N] that holds the punch down
+  double force = 0.0;          // [N] on the punch
   std::vector<double> radius;  // [m] of the top's rings, ascending from 0
-  std::vector<double> share;   // [1] of the depth that the surface gives way there, mean over the ring's nodes
+  std::vector<double> share;   // [1] deflection over the depth, mean over the ring's nodes
   std::size_t tets = 0;
-  double ms = 0.0;  // processor time of assembly, factorisation and solution; the analysis is not in it
-  int solves = 1;   // of them, each with a factorisation
+  double ms = 0.0;  // CPU time of assembly, factorisation and solution, without the analysis
+  int solves = 1;   // number of solves, each with a factorisation
 };
 
-// With small strains the answer is linear in `depth`.
+// With small strains the result is linear in `depth`.
 Result<PressedBlock> press_block(const BlockPress& press, double depth);
-// One after the other [m], each from where the last one ended. Ends with an error where `goes_on`, asked before each
-// with the share that is done, says no.
+// A sequence of depths [m], each starting from the previous solution. `goes_on` is called before each with the
+// completed share; if it returns false the function ends with an error.
 Result<std::vector<PressedBlock>> press_block(
     const BlockPress& press, const std::vector<double>& depths,
     const std::function<bool(double)>& goes_on = [](double) { return true; });
 
-// Richardson's extrapolation: value = limit + c cells^-order through the last three.
+// Richardson extrapolation: value = limit + c cells^-order through the last three values.
 struct GridLimit {
   double limit = 0.0;
-  double order = 0.0;    // [1] not a number: the values do not tend to one; then the limit is the last
-  double to_come = 0.0;  // [1] of the last change: limit = last + to_come (last - the one before)
+  double order = 0.0;    // [1] NaN: the values do not converge; the limit is then the last value
+  double to_come = 0.0;  // [1] of the last change: limit = last + to_come (last - previous)
 };
 GridLimit grid_limit(const std::vector<int>& cells, const std::vector<double>& values);
 

@@ -1,4 +1,4 @@
-// What a drawn frame costs: what changed is published, uploaded and drawn, at a picture so small that pixels count
+// Cost of a drawn frame: publishing, uploading and drawing what changed, into a picture so small that pixels cost
 // little.
 #pragma once
 
@@ -14,16 +14,16 @@ namespace pliant {
 
 inline constexpr int kDrawnWidth = 128, kDrawnHeight = 72;  // [pixel]
 
-// Whether an OpenGL renderer of that name draws with the CPU: its frames are measured by processor time of all
-// threads, a GPU's by the clock until the picture is complete.
+// True if the OpenGL renderer of that name draws on the CPU. Its frames are then measured by the CPU time of all
+// threads; a GPU's by wall time until the picture is complete.
 bool draws_with_cpu(const std::string& renderer);
 
-// Frames of a prepared world with one surface, which becomes drawable. Needs a current OpenGL context
-// (systems/visual/gpu/context.h) for as long as it lives.
+// Draws frames of a prepared world with one surface, which it makes drawable. Needs a current OpenGL context
+// (systems/visual/gpu/context.h) during its lifetime.
 class DrawnFrames {
  public:
   static Result<DrawnFrames> create(World& world, Entity surface, bool with_cpu);
-  // [us] of one frame with all that changed since the last.
+  // [us] One frame with all changes since the last.
   double draw(World& world, Tick tick);
   const Image& picture() const { return picture_; }  // the last
 

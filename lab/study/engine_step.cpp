@@ -10,9 +10,9 @@ namespace pliant {
 namespace {
 
 constexpr int kBallCells = 10;  // 1,200 triangles
-constexpr double kWide = 1.0;   // [m] of the ground, which is as thick
+constexpr double kWide = 1.0;   // [m] width and depth of the ground
 
-// It is as good as prescribed: a newton moves it by 10 um.
+// Nearly prescribed motion: a newton moves the ball by 10 um.
 Handle6 stiff_hold() {
   Handle6 handle;
   handle.translation = {1e5, 20.0};
@@ -33,7 +33,7 @@ StepTrace engine_trace(const TissueScene& scene, double step, double every, doub
   body.density = scene.material.density;
   body.rayleigh = {scene.material.alpha, scene.material.beta};
   body.friction_static = body.friction_sliding = 0.0;
-  // A first step under as much gravity as gives the nodes their speed, and takes them to where they begin.
+  // An initial step with the gravity that gives the nodes their initial velocity and position.
   const bool thrown = scene.velocity != dvec3(0);
   const Entity tissue = stage.add_soft(scene.mesh, body, {-step * scene.velocity});
   RigidBody rigid;

@@ -1,5 +1,5 @@
-// The motions of study_time_step.h with the soft step that levels take: contacts are constraints (without friction
-// here), and a ball is a rigid tool that its device leads.
+// The motions of study_time_step.h with the soft step of the engine: contacts are constraints (here without friction),
+// and a ball is a rigid tool with a prescribed device pose.
 #pragma once
 
 #include "lab/study/study_time_step.h"
@@ -8,7 +8,7 @@ namespace pliant {
 
 inline constexpr const char* kEngineStep = "a level's step";
 
-// As trace_of() does.
+// Same contract as trace_of().
 StepTrace engine_trace(
     const TissueScene& scene, double step, double every, double* ms = nullptr,
     const std::function<bool(double)>& goes_on = [](double) { return true; });

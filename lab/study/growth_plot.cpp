@@ -1,4 +1,4 @@
-// Costs over sizes, panel by panel: points, the fitted power as a line, and what it is.
+// Plot of costs over sizes, in panels: points, the fitted power law as a line, and its exponent.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ AxisRange range_of(double least, double most, double begin, double end) {
 
 void draw_axis(Pen& pen, const AxisRange& range, bool across, double from, double to) {
   const bool few = range.high - range.low > 2.2;
-  double free_from = -1e9;  // [pixel] where the next number across has room
+  double free_from = -1e9;  // [pixel] left end of the free space for the next number on the x axis
   for (int decade = static_cast<int>(std::floor(range.low)); decade <= range.high; ++decade)
     for (const int factor : {1, 2, 5}) {
       const double value = factor * std::pow(10.0, decade), e = std::log10(value);
@@ -68,7 +68,7 @@ void draw_panel(Pen& pen, double left, double top, const GrowthPanel& panel) {
   pen.text(left, top - 14, 17, 0, panel.title, true);
   pen.text((left + right) / 2, bottom + 44, 16, 0.5, panel.across);
   pen.upright_text(left - 68, (top + bottom) / 2, 16, panel.up);
-  // Names beside their last points, apart from one another.
+  // Curve names beside their last points, without overlap.
   std::vector<std::size_t> order(panel.curves.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

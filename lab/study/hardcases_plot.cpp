@@ -1,4 +1,4 @@
-// Every hard case as a line: how much of what it may be its figure is, and the verdict.
+// Plot of the hard cases, one per line: the figure as a share of its bound, and the verdict.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ Color color_of(const JudgedCase& each) {
   return each.verdict() == HardVerdict::kYes ? kGreen : each.verdict() == HardVerdict::kNo ? kVermilion : kGrey;
 }
 
-// Where a share of the bound stands.
+// x coordinate [pixel] of a share of the bound.
 double across(double share) {
   const double decade = share > 0.0 ? std::clamp(std::log10(share), double(kLeast), double(kMost)) : kLeast;
   return kBars + (kEnd - kBars) * (decade - kLeast) / (kMost - kLeast);

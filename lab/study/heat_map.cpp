@@ -17,7 +17,7 @@ constexpr double kMapLeft = 150, kMapRight = 20, kMapTop = 190, kMapBottom = 130
 constexpr double kGap = 10;                                                        // [pixel] between maps
 constexpr Color kFailedColor{0.80, 0.24, 0.10};
 
-// From dark to light as the error grows; even steps of lightness (a cut of viridis).
+// From dark to light as the error grows, in even steps of lightness (a subset of viridis).
 constexpr std::array kTones{Color{0.267, 0.005, 0.329}, Color{0.229, 0.322, 0.546}, Color{0.128, 0.567, 0.551},
                             Color{0.369, 0.789, 0.383}, Color{0.993, 0.906, 0.144}};
 
@@ -34,11 +34,11 @@ Color tone(double value, const HeatMaps& all) {
 
 void rectangle(Pen& pen, double x, double y, double w, double h, Color color) {
   pen.color(color);
-  cairo_rectangle(pen.get(), x, y, w + 0.4, h + 0.4);  // no hair between neighbours
+  cairo_rectangle(pen.get(), x, y, w + 0.4, h + 0.4);  // no gaps between neighbours
   cairo_fill(pen.get());
 }
 
-// Where whole powers of a thousand (or the values themselves, if few) stand, as places among the cells.
+// Tick positions among the cells: powers of a thousand, or all values if there are few.
 std::vector<std::size_t> ticks(const std::vector<double>& values) {
   std::vector<std::size_t> at;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -103,7 +103,7 @@ void draw(Pen& pen, const HeatMaps& all) {
     if (row + 1 == static_cast<std::size_t>(rows))
       for (const std::size_t i : ticks(all.x)) {
         if (all.columns > 4 && static_cast<int>(std::lround(std::log10(all.x[i]))) % 2 != 0) continue;
-        // At the ends within the map, so that neighbours' stay apart.
+        // End labels are aligned inside the map, so that those of neighbouring maps do not overlap.
         const double align = i == 0 ? 0.0 : i + 1 == all.x.size() ? 1.0 : 0.5;
         pen.text(x0 + cw * (static_cast<double>(i) + align), y0 + h + 19, kMapTick, align, decade_number(all.x[i]));
       }

@@ -1,4 +1,4 @@
-// The models of study_fidelity.h, pressed in sessions.
+// Presses the models of study_fidelity.h in sessions.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,14 +13,14 @@
 namespace pliant {
 namespace {
 
-constexpr double kBeginsAbove = 0.001;    // [m] that a press begins above the surface
+constexpr double kBeginsAbove = 0.001;    // [m] start height of a press above the surface
 constexpr double kSoftStep = 1.0 / 60.0;  // [s]
-constexpr double kFocus = 1.2;  // [1] of the punch's radius: half as wide is the box that a lattice is fine in
-constexpr double kEdges = 4.0;  // [1] of the surface a lattice cell: the punch's rim rests on edges, too
-constexpr double kTop = 0.98;   // [1] of the half width: beyond are the sides
+constexpr double kFocus = 1.2;            // [1] of the punch's radius: half width of the lattice's fine box
+constexpr double kEdges = 4.0;  // [1] surface edges per lattice cell, so that the punch's rim also rests on edges
+constexpr double kTop = 0.98;   // [1] of the half width: vertices beyond belong to the sides
 const dvec3 kDown(0, -1, 0);
 
-// The block's surface: squares of `edge` on the top; without `below`, the top alone.
+// The block's surface: squares of `edge` on the top. If `below` is false, only the top.
 MeshData slab(const Indented& what, double edge, bool below) {
   MeshData mesh;
   const int n = std::max(2, static_cast<int>(std::lround(2 * what.half_width / edge)));
@@ -49,7 +49,7 @@ MeshData slab(const Indented& what, double edge, bool below) {
   return mesh;
 }
 
-// A cylinder about y whose lower face is at y = 0.
+// A cylinder about the y axis with its lower face at y = 0.
 MeshData punch(double radius) {
   constexpr int kSides = 32;
   MeshData mesh;
@@ -78,7 +78,7 @@ DeviceParameters any_force() {
   return device;
 }
 
-// Led from above the surface to each depth in turn, and held there; what it costs while it touches.
+// Prescribes the probe from above the surface to each depth in turn and keeps it there; measures the cost in contact.
 template <class Note>
 Status press(Session& session, const std::string& effector, const Indented& what, const PressWish& wish,
              Indentation& out, const Note& note) {
@@ -103,7 +103,7 @@ Status press(Session& session, const std::string& effector, const Indented& what
   return note();
 }
 
-// How far the surface gave way, around the middle.
+// Reads the surface deflection around the centre.
 Status read_surface(Session& session, const std::string& object, const Indented& what, Indentation& out) {
   std::vector<vec3> at;
   if (const Status read = session.vertices(object, at); !read) return read;
@@ -179,7 +179,7 @@ Indentation as_indentation(const std::vector<PressedBlock>& blocks, const std::v
     out.force.push_back(block.force);
     ms += block.ms / block.solves;
   }
-  out.us = ms / static_cast<double>(out.force.size()) / kSoftStep;  // ms a step over the 1e3 ticks of a second
+  out.us = ms / static_cast<double>(out.force.size()) / kSoftStep;  // ms per step over the 1e3 ticks of a second
   return out;
 }
 

@@ -31,8 +31,9 @@ VertexState semi_implicit(const VertexProblem& p, const VertexState& s, double T
   return {s.h + T * v, v, p.solid() ? s.q + T * (p.k1 * v - s.q / p.tau) : 0.0};
 }
 
-// The root in d of  inertia d + spring(d) + constant = 0, which rises with d: Newton's method within a bracket, as the
-// spring only ever shortens the step that mass and damping alone would make. spring(d, slope) sets its slope too.
+// Solves inertia d + spring(d) + constant = 0 for d. The left side is monotonically increasing: Newton's method in a
+// bracket, since the spring only shortens the step that mass and damping alone give. spring(d, slope) also returns its
+// slope.
 template <class Spring>
 double solve_step(double inertia, double constant, double h0, const Spring& spring) {
   double slope = 0.0, d = 0.0, r = spring(0.0, slope) + constant;
@@ -64,7 +65,8 @@ VertexState implicit_euler(const VertexProblem& p, const VertexState& s, double 
   return {s.h + d, d / T, p.solid() ? (s.q + arm.gain * d) / arm.loss : 0.0};
 }
 
-// Both second-order schemes: the spring's mean over the step is its force at the middle, or its discrete gradient.
+// Both second-order schemes: the spring's mean force over the step is its force at the midpoint, or its discrete
+// gradient.
 VertexState middle(const VertexProblem& p, const VertexState& s, double T, bool gradient) {
   const Arm arm = p.solid() ? Arm{p.k1 / 2, 1 + T / (2 * p.tau)} : Arm{};
   const double inertia = 2 * p.m / (T * T) + p.b / T;
@@ -107,7 +109,7 @@ const char* name_of(Integrator integrator) {
 VertexProblem vertex_problem(SpringLaw law, double k, double zeta) {
   Deformable d;
   d.spring = law;
-  d.cubic *= k / d.stiffness;  // the law's shape stays what it is
+  d.cubic *= k / d.stiffness;  // scaled with k, so that the law keeps its shape
   const double arm = d.relaxation_stiffness / d.stiffness;
   d.stiffness = k;
   VertexProblem p;
@@ -193,7 +195,8 @@ std::vector<double> true_heights(const VertexProblem& p, double height, double d
   }
   const double fastest = std::sqrt(p.k * std::max(p.law.slope(height), p.law.slope(-height)) / p.m);
   const double longest = std::min(0.01 / fastest, 0.5 * p.m / std::max(p.b, 1e-300));
-  const int parts = std::max(8, static_cast<int>(std::ceil(dt / longest)));  // so that RK4 at dt is not its own truth
+  const int parts = std::max(8, static_cast<int>(std::ceil(dt / longest)));  // so that RK4 at dt is not compared with
+                                                                             // itself
   VertexState s{height, 0.0, 0.0};
   for (int i = 1; i <= count; ++i) {
     for (int k = 0; k < parts; ++k) s = runge_kutta(p, s, dt / parts);

@@ -1,5 +1,5 @@
-// Steps of one vertex's equation, m h'' = -b h' - k F(h) - q (methods.md 1.1, 1.2), by the schemes of any textbook and
-// by the engine's own, one vertex at a time in double. Only the standard linear solid has an arm:
+// Time steps of one vertex's equation, m h'' = -b h' - k F(h) - q (methods.md 1.1, 1.2), in double: textbook schemes
+// and the engine's. Only the standard linear solid has an arm:
 //   q' = k1 h' - q / tau.
 // Legend: h height [m], v = h' [m/s], q force of the arm [N], T step [s], d = h1 - h0 [m].
 #pragma once
@@ -18,9 +18,9 @@ enum class Integrator {
   kImplicit,          // backward Euler
   kRungeKutta,        // classic, of order 4
   kMidpoint,          // implicit
-  kDiscreteGradient,  // passive at any step
-  kExact,             // exponential of the linear laws; of the others' tangent at h0 (Rosenbrock)
-  kEngine,            // the zone kernel that ships: exact, or discrete gradient and backward Euler; single precision
+  kDiscreteGradient,  // passive for any step
+  kExact,             // matrix exponential: of the linear laws, or of a nonlinear law's tangent at h0 (Rosenbrock)
+  kEngine,            // the engine's zone kernel: exact, or discrete gradient and backward Euler; single precision
 };
 inline constexpr std::array kIntegrators{
     Integrator::kExplicit, Integrator::kSemiImplicit,     Integrator::kImplicit, Integrator::kRungeKutta,
@@ -37,10 +37,10 @@ struct VertexProblem {
   double k1 = 0.0, tau = 1.0;         // [N/m] [s] of the arm; k1 0: no arm
   bool solid() const { return law.kind == SpringLaw::kStandardLinearSolid; }
 };
-// Of this law with the parameters that a Deformable has by default, at stiffness k and damping ratio zeta.
+// This law with a Deformable's default parameters, stiffness k and damping ratio zeta.
 VertexProblem vertex_problem(SpringLaw law, double k, double zeta);
 
-// Steps of T [s], of vertices that all do the same; of a whole zone with kEngine.
+// Steps of T [s] for vertices in the same state; with kEngine, for a whole zone.
 class VertexStepper {
  public:
   VertexStepper(Integrator integrator, const VertexProblem& problem, double T, std::size_t vertices = 1);
@@ -60,8 +60,8 @@ class VertexStepper {
   HeightField field_;
 };
 
-// Heights at 0, dt, 2 dt, ... `count` of them after the first, released from rest at `height`: by the closed form of
-// the linear laws, else by Runge-Kutta with steps so short that they do not matter.
+// Heights at 0, dt, 2 dt, ...: `count` of them after the first, released from rest at `height`. By the closed form for
+// linear laws, else by Runge-Kutta with steps short enough to be exact.
 std::vector<double> true_heights(const VertexProblem& problem, double height, double dt, int count);
 
 }  // namespace pliant

@@ -14,7 +14,7 @@ void lead_tool(World& world, const Pose& now, const Pose& before, double T, doub
   input.device = {now, join((now.position - before.position) / T, turn / T)};
   input.placed = handle != nullptr;
   if (handle) input.handle = *handle;
-  input.impulse = tool.heard + T * tool.pending.force;  // expected: what the last step said
+  input.impulse = tool.heard + T * tool.pending.force;  // expected impulse: from the last step
   tool.input.publish();
 }
 

@@ -1,4 +1,4 @@
-// Where the next soft step has a tool's device, without a touch clock: for studies of the soft step itself.
+// Prescribes a tool's device for the next soft step, without a touch clock: for studies of the soft step itself.
 #pragma once
 
 #include "components/world.h"
@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-// The device of the world's first tool goes from `before` to `now` in a step of T [s] that ends at `time` [s].
-// `handle`: where the tool's handle is then, if that is known; otherwise it follows the device.
+// Moves the device of the world's first tool from `before` to `now` in a step of T [s] that ends at `time` [s].
+// `handle`: the tool's handle at that time, if known; otherwise it follows the device.
 void lead_tool(World& world, const Pose& now, const Pose& before, double T, double time,
                const RigidMotion* handle = nullptr);
 

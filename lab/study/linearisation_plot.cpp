@@ -13,10 +13,10 @@ namespace {
 
 constexpr Color kSky{0.337, 0.706, 0.914};
 constexpr double kForcesWidth = 1240, kForcesHeight = 620, kForcesLeft = 96;  // [pixel]
-constexpr double kAboveTruth = 1.5;                 // [1] of the largest true force, where the axis ends at the latest
+constexpr double kAboveTruth = 1.5;                 // [1] upper limit of the axis, relative to the largest true force
 constexpr double kForcesText = 17, kTickText = 16;  // [pixel]
 
-// The way's colour is the same in both panels.
+// A method has the same colour in both panels.
 struct Way {
   const char* name;
   Color color;
@@ -39,7 +39,7 @@ void frame(Pen& pen, const Area& area, const std::string& across, const std::str
   pen.upright_text(area.x - 62, area.y + area.h / 2, kForcesText, up);
 }
 
-// [N] The axis ends above the true force; `cut`: another way's goes beyond it.
+// [N] Upper end of the axis; `cut`: another method exceeds it.
 double top_of(const LinearisationFigures& figures, bool& cut) {
   double truth = 0.0, all = 0.0;
   for (const ForceSample& s : figures.samples) {
@@ -72,7 +72,7 @@ void draw_forces(Pen& pen, const Area& area, const LinearisationFigures& figures
   }
   frame(pen, area, "time [s]", "force on the handle [N]");
   cairo_save(pen.get());
-  cairo_rectangle(pen.get(), area.x, area.y, area.w, area.h);  // what lies above is cut off
+  cairo_rectangle(pen.get(), area.x, area.y, area.w, area.h);  // clip what lies above
   cairo_clip(pen.get());
   for (const Way& way : kWays) {
     pen.color(way.color, 0.9);

@@ -1,4 +1,4 @@
-// The log-log plot of a study: cost across, error up, the Pareto front as a band of its own, every point labelled.
+// The log-log plot of a study: cost on x, error on y, the Pareto front as a band, every point labelled.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,8 @@ namespace {
 constexpr double kParetoWidth = 1240, kParetoHeight = 900;          // [pixel]
 constexpr double kParetoLeft = 112, kParetoRight = 40, kEdge = 30;  // [pixel] margins of the axes and of text
 constexpr double kSmallText = 15, kRadius = 5.5;                    // [pixel]
-constexpr double kLabelText = 18, kText = 17, kLine = 22.0;         // [pixel] of titles and axes, of keys and sentences
+constexpr double kLabelText = 18, kText = 17, kLine = 22.0;         // [pixel] of titles and axes, of legend and
+                                                                    // sentences
 constexpr double kApart = 5;                                        // [pixel] between labels beside each other
 constexpr Color kParetoSky{0.337, 0.706, 0.914}, kFront{0.62, 0.62, 0.62};
 constexpr std::array kColors{kBlue, kVermilion, kGreen, kPurple, kOrange, kParetoSky, kInk, Color{0.55, 0.55, 0.0}};
@@ -37,7 +38,7 @@ struct ParetoAxis {
   }
 };
 
-// Quarters of decades around the positive, finite values.
+// Range of the positive, finite values, rounded to quarters of decades.
 ParetoAxis axis_of(const std::vector<double>& values, double begin, double end) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double v : values)
@@ -62,7 +63,7 @@ struct Plot {
   }
   bool failed(const ParetoRow& row) const { return !std::isfinite(row.error); }
   bool unresolved(const ParetoRow& row) const { return !failed(row) && row.error < row.floor; }
-  // 1: more than the axis has room for, -1: less, or nothing.
+  // 1: above the axis range, -1: below it or zero, 0: inside.
   int beyond(const ParetoRow& row) const {
     if (failed(row)) return 0;
     const double e = std::log10(std::max(row.resolved(), 1e-300));
@@ -100,13 +101,13 @@ std::vector<ParetoKey> keys_of(const Plot& plot) {
   return keys;
 }
 
-// A point, or an arrow's head where the value is beyond the axis.
+// A point, or an arrowhead if the value is outside the axis range.
 void draw_mark(Pen& pen, double x, double y, int beyond, double r) {
   cairo_new_path(pen.get());
   if (beyond == 0) {
     cairo_arc(pen.get(), x, y, r, 0, 6.283185307179586);
   } else {
-    const double tip = -beyond * 1.5 * r;  // upwards is less
+    const double tip = -beyond * 1.5 * r;  // the y axis points down
     cairo_move_to(pen.get(), x, y + tip);
     cairo_line_to(pen.get(), x - 1.2 * r, y - 0.5 * tip);
     cairo_line_to(pen.get(), x + 1.2 * r, y - 0.5 * tip);
@@ -114,7 +115,7 @@ void draw_mark(Pen& pen, double x, double y, int beyond, double r) {
   }
 }
 
-// Lays the keys out in lines from `y` on, draws them where `draw`, and says where the last line is.
+// Lays out the legend in lines from `y`, draws it if `draw`, and returns the position of the last line.
 double put_keys(Pen& pen, const Plot& plot, double y, bool draw) {
   double x = kEdge;
   for (const ParetoKey& key : keys_of(plot)) {
@@ -141,7 +142,7 @@ double put_keys(Pen& pen, const Plot& plot, double y, bool draw) {
   return y;
 }
 
-// What is written around the axes says how much room they have.
+// The text around the axes determines the space left for them.
 Plot plot_of(Pen& pen, const ParetoTable& table) {
   Plot plot{.table = table, .shown = table.drawn, .groups = {}, .title = {}, .foot = {}, .x = {}, .y = {}};
   if (plot.shown.empty())
@@ -158,7 +159,7 @@ Plot plot_of(Pen& pen, const ParetoTable& table) {
   plot.title = pen.lines(kLabelText, table.title, kParetoWidth - 2 * kEdge);
   for (const std::string& sentence : table.sentences)
     for (std::string& line : pen.lines(kText, sentence, kParetoWidth - 2 * kEdge)) plot.foot.push_back(std::move(line));
-  plot.y = axis_of(errors, 0.0, 1.0);  // which keys there are depends on its range
+  plot.y = axis_of(errors, 0.0, 1.0);  // the range determines which legend entries there are
   plot.top = put_keys(pen, plot, 80 + kLine * static_cast<double>(plot.title.size()), false) + 42;
   plot.bottom = kParetoHeight - 76 - kLine * static_cast<double>(plot.foot.size());
   plot.x = axis_of(costs, kParetoLeft, kParetoWidth - kParetoRight);
@@ -202,7 +203,7 @@ void draw_front(Pen& pen, const Plot& plot) {
     cairo_set_line_width(pen.get(), plot.table.front_by_group ? 5 : 9);
     cairo_set_line_join(pen.get(), CAIRO_LINE_JOIN_ROUND);
     cairo_new_path(pen.get());
-    // In steps: between two of its points the dearer one is not to be had yet.
+    // Drawn as steps: between two points of the front, the dearer one is not yet affordable.
     double y = plot.py(first);
     cairo_move_to(pen.get(), plot.px(first), y);
     for (const std::size_t i : front) {
@@ -248,7 +249,7 @@ void draw_points(Pen& pen, const Plot& plot) {
 
 struct Stretch {
   double x0, y0, x1, y1;                     // [pixel]
-  bool crosses(const LabelBox& box) const {  // the part of it within the box's width, and then within its height
+  bool crosses(const LabelBox& box) const {  // clips the line to the box's width, then to its height
     double from = 0.0, to = 1.0;
     for (const auto& [begin, way, low, high] :
          {std::array{x0, x1 - x0, box.x0, box.x1}, std::array{y0, y1 - y0, box.y0, box.y1}}) {
@@ -264,7 +265,7 @@ struct Stretch {
   }
 };
 
-// Of the joined points and of the fronts.
+// Segments of the joined points and of the fronts.
 std::vector<Stretch> drawn_lines(const Plot& plot) {
   std::vector<Stretch> lines;
   if (plot.table.joined)
@@ -289,10 +290,10 @@ std::vector<Stretch> drawn_lines(const Plot& plot) {
   return lines;
 }
 
-// Each label where it covers least of points, lines and other labels, near its point; a thin line leads to it from
-// afar.
+// Places each label near its point, where it covers the fewest points, lines and labels; a thin line connects a distant
+// label.
 void draw_labels(Pen& pen, const Plot& plot) {
-  constexpr double kLed = 12;  // [pixel] a line leads to a label that is farther away
+  constexpr double kLed = 12;  // [pixel] beyond this distance a line connects label and point
   std::vector<LabelBox> taken;
   for (const std::size_t i : plot.shown) {
     const double x = plot.px(plot.table.rows[i]), y = plot.py(plot.table.rows[i]);

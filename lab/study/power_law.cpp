@@ -21,7 +21,8 @@ constexpr std::size_t kLeastFitted = 5;
 struct Fit {
   double middle = 0.0;
   Eigen::VectorXd coefficient;  // ascending
-  double within = 0.0;          // of the last: half the width of its 95 % interval; infinite without a point to spare
+  double within = 0.0;          // half width of the 95 % interval of the last coefficient; infinite without degrees of
+                                // freedom
 };
 Fit least_squares(const std::vector<double>& x, const std::vector<double>& y, Eigen::Index coefficients) {
   const auto n = static_cast<Eigen::Index>(x.size());

@@ -1,4 +1,4 @@
-// What a study's costs are measured with: processor time, so that other work on the machine counts little. [ns]
+// CPU time [ns], the cost measure of studies: other work on the machine has little influence on it.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ inline std::uint64_t processor_ns(clockid_t whose = CLOCK_THREAD_CPUTIME_ID) {
   return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000u + static_cast<std::uint64_t>(now.tv_nsec);
 }
 
-// Of all threads of this program: of work that is shared among them.
+// CPU time of all threads of the process, for work shared among them.
 inline std::uint64_t process_ns() {
   return processor_ns(CLOCK_PROCESS_CPUTIME_ID);
 }

@@ -58,7 +58,7 @@ SmoothSurface smooth_torus() {
               }
             return built(p);
           },
-          // Around the ring once and through the hole once: convex and saddle-shaped in turn.
+          // A loop once around the ring and once through the hole: convex and saddle-shaped in turn.
           [](double s) { return on_torus(2 * M_PI * s + 0.3, 2 * M_PI * s + 0.5 * std::sin(4 * M_PI * s)); }};
 }
 

@@ -1,4 +1,4 @@
-// What a soft step costs, part by part, by tetrahedra and by contacts.
+// Cost of a soft step, by part, over the number of tetrahedra and of contacts.
 #pragma once
 
 #include <string>
@@ -16,9 +16,9 @@ const char* name_of(StepPart part);
 struct StepCost {
   std::size_t tetrahedra = 0;
   double contacts = 0.0;   // mean
-  std::vector<double> ms;  // of kStepParts, median over steps, processor time of this thread
+  std::vector<double> ms;  // per kStepParts, median over steps, CPU time of this thread
 };
-// A paddle of tissue that is pressed on studs and circles there (scenes/paddle.h).
+// A tissue paddle pressed on studs and moved in circles (scenes/paddle.h).
 StepCost measure_step(scenes::PaddleCells cells, scenes::StudBed bed, int steps);
 
 }  // namespace pliant

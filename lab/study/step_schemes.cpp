@@ -6,7 +6,7 @@ namespace pliant {
 namespace {
 
 constexpr int kMostIterations = 30;
-constexpr double kConvergedTo = 1e-9;  // [1] of the velocity
+constexpr double kConvergedTo = 1e-9;  // [1] of the velocity, for convergence
 
 int iterations_of(StepScheme scheme) {
   switch (scheme) {
@@ -50,8 +50,8 @@ TissueRun::TissueRun(const TissueScene& scene, StepScheme scheme)
   solver_->analyse(tissue_.inner());
 }
 
-// The obstacle at the stage's end: k (depth - n (x - guess)), x = begin + h u. Before the first solution the guess is
-// where the tissue would go by itself.
+// Penalty of the obstacle at the end of the stage: k (depth - n (x - guess)), x = begin + h u. In the first iteration
+// the guess is the tissue's free motion.
 void TissueRun::push(double h, const std::vector<dvec3>& begin, bool first, Vector& right) {
   BlockMatrix& A = tissue_.inner();
   for (std::uint32_t i = 0; i < tissue_.moving(); ++i) {
@@ -93,7 +93,7 @@ bool TissueRun::step(double T) {
       x[i] = (4.0 * x0[i] - x_before_[i]) / 3.0;
       v[i] = (4.0 * v0[i] - v_before_[i]) / 3.0;
     }
-  // The stage of BDF2 ends with the step, though it is shorter.
+  // The stage of BDF2 is shorter than the step but ends with it.
   const double h = midpoint ? T / 2 : two_steps ? 2 * T / 3 : T, now = time_;
   if (two_steps) time_ += T - h;
   Vector velocity = Vector::Zero(3 * tissue_.moving());

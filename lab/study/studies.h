@@ -1,6 +1,6 @@
-// The studies that ship. One line here and one file make a study: study_NAME.cpp defines
-// `Status study_NAME(OutputFolder& out, StudySize size, const Interrupt& interrupt)`. It stages NAME.csv, NAME.json,
-// NAME.svg and NAME.png in `out`, prints what they show, and ends with an error when `interrupt` is requested.
+// The list of studies. A study is one line here and one file: study_NAME.cpp defines `Status study_NAME(OutputFolder&
+// out, StudySize size, const Interrupt& interrupt)`. It stages NAME.csv, NAME.json, NAME.svg and NAME.png in `out`,
+// prints its conclusions, and ends with an error when `interrupt` is requested.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@
 
 namespace pliant {
 
-// Full: within ten minutes on two cores. Quick: within one. Small: what a test runs, of all parts the least.
+// Full: within ten minutes on two cores. Quick: within one. Small: the minimum of every part, for tests.
 enum class StudySize : std::uint8_t { kFull, kQuick, kSmall };
 
 #define STUDY(name, what) Status study_##name(OutputFolder& out, StudySize size, const Interrupt& interrupt);

@@ -29,9 +29,9 @@ int list() {
   return kDone;
 }
 
-// Into one folder, which has either the results of all of them or none.
+// Runs studies into one folder, which receives the results of all of them or of none.
 int run_all(const std::vector<const Study*>& studies, const StudyOptions& options) {
-  const Interrupt interrupt(kAllOrNothing);  // until all is in place: what is staged must not stay behind
+  const Interrupt interrupt(kAllOrNothing);  // until all files are in place: removes staged files on interruption
   auto out = OutputFolder::create(options.out.empty() ? "out/study" : options.out, options.force);
   if (!out) return fail(kFailed, out.error());
   interrupt.remove_if_forced(out->staging());

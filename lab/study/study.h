@@ -1,4 +1,4 @@
-// `pliant study`: speed against error, measured on what ships.
+// `pliant study`: speed against error, measured on the shipped code.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,10 @@
 namespace pliant {
 
 struct StudyOptions {
-  std::string name;  // of a study, or "all"
+  std::string name;  // name of a study, or "all"
   std::string out;   // folder; empty: out/study
   bool quick = false;
-  bool force = false;  // replaces what an earlier study wrote
+  bool force = false;  // replace an earlier study's files
   bool list = false;
 };
 int study(const StudyOptions& options);

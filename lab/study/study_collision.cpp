@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr double kStrictRoom = 1e-9;  // [1] of the mesh's size
 
-// Follows a way by one search.
+// Follows a path with one search method.
 class Searcher {
  public:
   Searcher(const Mesh& mesh, Search search, dvec3 start) : mesh_(mesh), search_(search), within_(mesh.box.diagonal()) {
@@ -38,7 +38,7 @@ class Searcher {
     foot_ = descend(mesh, flat.triangle, flat.barycentric, start);
     hint_ = flat.triangle;
   }
-  // How far it says that the surface is. [m]
+  // [m] Distance to the surface as found by the search.
   double operator()(dvec3 x) {
     switch (search_) {
       case Search::kWalk:
@@ -71,7 +71,7 @@ class Searcher {
   std::uint32_t hint_ = FlatPoint::kNone;
 };
 
-// "200k", "2M": triangles of a sphere.
+// Number of triangles of a sphere, as "200k", "2M".
 std::string short_count(std::uint32_t triangles) {
   return triangles >= 1'000'000 ? fmt::format("{}M", triangles / 1'000'000) : fmt::format("{}k", triangles / 1000);
 }
@@ -236,7 +236,7 @@ std::vector<dvec3> wander(const Mesh& mesh, std::size_t ticks) {
       next += flat.barycentric[i] * dvec3(mesh.position(t[i]));
       normal += flat.barycentric[i] * dvec3(mesh.normal(t[i]));
     }
-    if (length(next - on) > 0.1 * step) heading = next - on;  // else it ran into an edge: somewhere else
+    if (length(next - on) > 0.1 * step) heading = next - on;  // otherwise it hit an edge: new direction
     on = next;
     const double out = 0.01 * std::sin(0.02 * static_cast<double>(way.size())) - 0.005;
     way.push_back(on + out * L * normalize(normal));
@@ -320,7 +320,7 @@ Status study_collision(OutputFolder& out, StudySize size, const Interrupt& inter
     if (!mesh) return mesh.error();
     const std::vector<dvec3> way = wander(*mesh, full ? 20'000 : 5'000);
     if (interrupt.requested()) return interrupted();
-    // More are checked where brute force is cheap.
+    // More checks where brute force is cheap.
     const std::size_t most = full ? 4'000 : 1'000,
                       checks = std::clamp(40'000'000 / mesh->triangles.size(), most / 10, most);
     const Truth truth = truth_along(*mesh, way, checks);

@@ -1,5 +1,5 @@
-// How fast a place of touch is found on a mesh, and how often a nearer one is missed: by walking from the last place,
-// through the tree, and by looking at every triangle.
+// Speed and miss rate of contact searches on a mesh: walking from the last place, the tree, and brute force over every
+// triangle.
 #pragma once
 
 #include <cstdint>
@@ -12,42 +12,42 @@
 namespace pliant {
 
 enum class Search : std::uint8_t {
-  kWalk,         // P1's contact vertex, from the last one over edges
-  kPatches,      // downhill over curved patches from the last foot: what a contact does between two ticks
+  kWalk,         // P1's contact vertex, from the last one along edges
+  kPatches,      // descent over curved patches from the last foot: the search of a contact between two ticks
   kTree,         // P1's contact vertex, through the tree
   kClosest,      // the closest point of the flat triangles, through the tree
-  kClosestHint,  // the same from the last one
-  kBrute         // every triangle whose bounding sphere is near enough
+  kClosestHint,  // the same, starting from the last one
+  kBrute         // every triangle with a sufficiently near bounding sphere
 };
 inline constexpr Search kSearches[] = {Search::kWalk,    Search::kPatches,     Search::kTree,
                                        Search::kClosest, Search::kClosestHint, Search::kBrute};
 const char* name_of(Search search);
 
-// Where a probe is, tick by tick: it slides on over the surface, 0.05 % of the mesh's size a tick, from 1.5 % behind it
+// Path of a probe, tick by tick: it slides over the surface by 0.05 % of the mesh's size per tick, from 1.5 % behind it
 // to 0.5 % in front of it.
 std::vector<dvec3> wander(const Mesh& mesh, std::size_t ticks);
 
-// A miss is an answer that is farther than the nearest place by more than a quarter of a mean edge: curved patches
-// bulge from the facets by less, and every search is judged alike. Strictly: by more than 1e-9 of the mesh's size.
+// A miss is an answer farther than the nearest place by more than a quarter of a mean edge. Curved patches bulge from
+// the facets by less, so that one criterion serves every search. The strict criterion is 1e-9 of the mesh's size.
 inline constexpr double kMissRoom = 0.25;  // [1] of the mean edge
 struct SearchFigures {
-  double us = 0.0;          // a query, processor time
-  double misses = 0.0;      // [1] of those that were checked
-  double strict = 0.0;      // [1] the same, strictly; not a number: of patches, whose truth is another surface
+  double us = 0.0;          // CPU time per query
+  double misses = 0.0;      // [1] of the checked queries
+  double strict = 0.0;      // [1] the same with the strict criterion; NaN for patches, whose truth is another surface
   std::size_t checked = 0;  //
 };
-// Distances by brute force of every so many places of the way. [m]
+// [m] Brute-force distances at every `every`-th place of the path.
 struct Truth {
   std::size_t every = 1;
-  std::vector<double> vertex, flat;  // of P1's contact vertex, and of the closest point
-  double us = 0.0;                   // a query of the contact vertex
+  std::vector<double> vertex, flat;  // to P1's contact vertex, and to the closest point
+  double us = 0.0;                   // per query of the contact vertex
 };
 Truth truth_along(const Mesh& mesh, const std::vector<dvec3>& way, std::size_t checks);
-// Queries all along the way.
+// Queries along the whole path.
 SearchFigures search_along(const Mesh& mesh, Search search, const std::vector<dvec3>& way, const Truth& truth);
 
-// Queries of the closest point on a sphere of so many vertices, of points as FCPW was asked: anywhere near it, so that
-// none finds in the cache what the last one left there. `checks` of them are held against brute force.
+// Closest-point queries on a sphere of that many vertices, from random points near it as in FCPW's benchmark, so that
+// the cache does not contain the data of the last query. `checks` of them are compared with brute force.
 SearchFigures search_scattered(std::uint32_t vertices, std::size_t queries, std::size_t checks);
 // Published figures of FCPW (November 2026) on such spheres, one core of another machine. [us]
 struct PublishedQuery {

@@ -16,8 +16,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kLatticeSeconds = 0.15;  // [s] a press on the small block: a tenth of it lets the damping die away
-constexpr double kFieldAround = 5.0;      // [1] radii that a surface is compared over
+constexpr double kLatticeSeconds = 0.15;  // [s] per press on the small block: the damping decays in a tenth of it
+constexpr double kFieldAround = 5.0;      // [1] radii within which surfaces are compared
 constexpr SpringLaw kFidelityLaws[] = {SpringLaw::kCubic, SpringLaw::kExponential, SpringLaw::kStandardLinearSolid};
 
 double largest(double a, double b) {
@@ -41,20 +41,21 @@ double law_force(const DeformableParameters& law, double d) {
   return law.stiffness * law_shape(law.spring, shape, d);
 }
 
-// One model's row in three tables: the larger error, the force's, the surface's.
+// One model's row in three tables: by the larger error, by the force's, by the surface's.
 struct FidelityRow {
   std::string group, label;
   double us = 0.0, force = 0.0, surface = 0.0;
   std::size_t tets = 0;
-  double fit = std::numeric_limits<double>::quiet_NaN();  // [1] the force's error where the law was fitted
+  double fit = std::numeric_limits<double>::quiet_NaN();  // [1] force error at the fitted depths
 };
 
-// How much of it is done.
+// Extent of the study.
 struct FidelityPlan {
-  std::vector<int> cells;                  // of the block, over the punch's radius
-  std::vector<double> level_cells, focus;  // [m] of lattices: even ones, and such that are fine under the punch alone
-  std::vector<double> lattice, lens;       // [1] radii a cell, on the small block: the same
-  double seconds;                          // that a press in a level takes
+  std::vector<int> cells;                  // of the block, per punch radius
+  std::vector<double> level_cells, focus;  // [m] of lattices: uniform, and fine only under the punch
+  std::vector<double> lattice, lens;       // [1] radii per cell, on the small block: uniform, and fine only under the
+                                           // punch
+  double seconds;                          // [s] of a press in a level
   std::vector<Shape> shapes;               // of P1
 };
 FidelityPlan fidelity_plan(StudySize size) {
@@ -81,8 +82,8 @@ FidelityPlan fidelity_plan(StudySize size) {
   return {{1, 2, 3}, {0.01}, {0.004}, {2.0, 1.0}, {1.0}, 0.05, {Shape::kPunch, Shape::kGaussian}};
 }
 
-// A smaller one, in radii, so that fine lattices can be pressed. All lattices fit their block: it is a whole number of
-// cells wide and thick.
+// A smaller block, in radii, so that fine lattices are affordable. Its width and thickness are whole numbers of cells
+// for all lattices.
 Indented small_block() {
   Indented what;
   what.half_width = 3 * what.radius;
@@ -91,13 +92,13 @@ Indented small_block() {
   return what;
 }
 
-// A press at one depth, by grids of more and more cells, and their limit.
+// A press at one depth, on finer and finer grids, and the limit.
 struct DepthTruth {
   double depth = 0.0;               // [m]
-  std::vector<double> force;        // [N] of each grid
+  std::vector<double> force;        // [N] per grid
   GridLimit limit;                  // of the force
-  double sure = 0.0;                // [1] by how much the limit changed with the last grid; of three grids not a number
-  std::vector<PressTruth> surface;  // of each grid
+  double sure = 0.0;                // [1] relative change of the limit by the last grid; NaN with three grids
+  std::vector<PressTruth> surface;  // per grid
   PressTruth limit_surface() const { return limit_truth(surface[surface.size() - 2], surface.back(), limit); }
 };
 
@@ -113,12 +114,12 @@ class Fidelity {
     return press_lattices();
   }
   const std::vector<FidelityRow>& rows() const { return rows_; }
-  const std::vector<FidelityRow>& lattice_rows() const { return lattice_rows_; }  // even ones first
+  const std::vector<FidelityRow>& lattice_rows() const { return lattice_rows_; }  // uniform ones first
   const FidelityRow& finest_even() const { return lattice_rows_[plan_.lattice.size() - 1]; }
   const std::string& truth_words() const { return truth_words_; }
   const std::string& truth_csv() const { return truth_csv_; }
-  // [1] radii a cell of the even lattice whose force is off by `error`, between the two around it; not a number where
-  // none is as good.
+  // [1] Radii per cell at which a uniform lattice's force error equals `error`, interpolated; NaN if no lattice reaches
+  // it.
   double lattice_for(double error) const {
     for (std::size_t i = 0; i < plan_.lattice.size(); ++i) {
       if (lattice_rows_[i].force > error) continue;
@@ -136,11 +137,11 @@ class Fidelity {
     return Done{};
   }
 
-  // The limit at each depth of `depths`, ascending.
+  // The limit at each of the depths, ascending.
   Result<std::vector<DepthTruth>> limits_of(const Indented& what, std::vector<double> depths,
                                             std::vector<std::vector<PressedBlock>>& all, double from, double part) {
     std::vector<DepthTruth> out(depths.size());
-    // A grid takes as long as its cells to the sixth power, or nearly.
+    // Run time grows with nearly the sixth power of the cells.
     double done = 0.0, whole = 0.0;
     for (const int n : plan_.cells) whole += std::pow(n, 6);
     for (const int n : plan_.cells) {
@@ -235,7 +236,7 @@ class Fidelity {
       DeformableParameters its = usual;
       its.shape = shape;
       if (const Status done = add_surface("P1 from Young's modulus", word_of(shape), its); !done) return done;
-      // Of a half-space shape the contact radius is the punch's: the key `contact_radius`.
+      // For a half-space shape the contact radius is the punch's: the key `contact_radius`.
       for (double over = 1.1; over <= 8.0; over *= 1.05) {
         const double error = shape_error(engine_share(shape, what_.radius, over * what_.radius), fitted_to_).profile;
         if (error < least_row) least_row = error, nearest = shape, reach = over * what_.radius;
@@ -282,7 +283,7 @@ class Fidelity {
     return Done{};
   }
 
-  // What lattice a contact needs.
+  // Lattice resolution that a contact needs.
   Status press_lattices() {
     const Indented what = small_block();
     std::vector<std::vector<PressedBlock>> all;
@@ -313,7 +314,7 @@ class Fidelity {
   Indented what_;
   Indentation truth_;              // at what_.depths
   std::vector<double> fit_force_;  // [N] at what_.fit_depths
-  PressTruth judged_, fitted_to_;  // surfaces
+  PressTruth judged_, fitted_to_;  // surfaces at the judged and at the fitted depths
   std::string truth_words_, truth_csv_;
   std::vector<FidelityRow> rows_, lattice_rows_;
 };
@@ -338,7 +339,7 @@ ParetoTable table_of(const std::vector<FidelityRow>& rows, const std::string& na
   return table;
 }
 
-// The lattice's part: by radii a cell.
+// CSV of the lattices: radii per cell.
 std::string lattice_csv(const std::vector<FidelityRow>& rows) {
   std::string csv = "lattice,cell_over_radius,tetrahedra,force_error,surface_error,cost_us\n";
   for (const FidelityRow& row : rows)
@@ -348,7 +349,7 @@ std::string lattice_csv(const std::vector<FidelityRow>& rows) {
 }
 
 const FidelityRow& least_row(const std::vector<FidelityRow>& rows, const std::string& group) {
-  // Of those whose worse error is the same, the one whose other error is less.
+  // Of rows with equal larger error, the one with the smaller other error is first.
   const auto order = [](const FidelityRow& row) {
     return std::pair(largest(row.force, row.surface), row.force + row.surface);
   };
@@ -363,7 +364,7 @@ std::string words(const FidelityRow& row) {
                      two_digits(100 * row.surface), two_digits(row.us));
 }
 
-// What lattice is needed for 20 and 10 %, or what the finest does.
+// Lattice needed for errors of 20 and 10 %, or the error of the finest.
 std::string lattice_words(const Fidelity& study) {
   std::string out;
   for (const double error : {0.2, 0.1})
@@ -410,11 +411,12 @@ double surface_error(const Indentation& model, const PressTruth& truth) {
 
 DeformableParameters fitted_law(DeformableParameters law, const std::vector<double>& depths,
                                 const std::vector<double>& force) {
-  // The force is linear in k: F = k g(d). The shape of g, k3/k or alpha, from a list; k by least squares.
+  // The force is linear in k: F = k g(d). The shape of g, k3/k or alpha, is searched in a list; k follows by least
+  // squares.
   const double unit = 1 / depths.back();
   double least_row = 1e300;
   for (int i = 0; i <= 121; ++i) {
-    // [1] over the deepest; the exponential law may soften, too.
+    // [1] times the deepest depth; only the exponential law may be negative (softening).
     const double stiffening = (i % 2 ? -1 : 1) * 1e-3 * std::pow(10.0, i / 2 / 15.0);
     if (stiffening < 0 && law.spring != SpringLaw::kExponential) continue;
     const double shape = law.spring == SpringLaw::kCubic ? stiffening * unit * unit : stiffening * unit;

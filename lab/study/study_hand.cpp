@@ -25,13 +25,15 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kWindow = 25;   // ticks of the moving mean that is taken away: what is left is above about 20 Hz
+constexpr std::size_t kWindow = 25;   // ticks of the moving mean that is subtracted: the rest is above about 20 Hz
 constexpr double kTooStiff = 1500.0;  // [N/m]
-constexpr const char* kPlotted = "inverse3,hand=finger";  // little friction in a light hand: the hardest to hold
+constexpr const char* kPlotted = "inverse3,hand=finger";  // little friction in a light hand: the hardest case to
+                                                          // stabilise
 constexpr double kLast = 0.5;                             // [s]
-constexpr double kGrows = 2.0;                            // [1] of the buzz at the end over that of all: it is growing
+constexpr double kGrows = 2.0;                            // [1] fast motion at the end over that of the whole run:
+                                                          // above it, the motion is growing
 
-// Every force that is written, also between two ticks of the touch clock. It outlives its driver.
+// Records every written force, also between two ticks of the touch clock. It outlives its driver.
 struct Flicker {
   dvec3 before{0}, last{0};
   double squares = 0.0;
@@ -59,20 +61,20 @@ class Watched final : public Wrapper {
   Flicker& flicker_;
 };
 
-// A probe, the device in its hand, and what both did.
+// A probe, its device, and the record of both.
 struct Held {
   Entity probe, device;
   SimulatedDevice* simulated = nullptr;
-  dvec3 middle{0};                   // [m] world: of its workspace
-  std::unique_ptr<Flicker> flicker;  // of what is written
-  DriverLink link;                   // guarded: as in a run
-  std::unique_ptr<Driver> driver;    // else
+  dvec3 middle{0};                   // [m] world: centre of its workspace
+  std::unique_ptr<Flicker> flicker;  // of the written forces
+  DriverLink link;                   // guarded: the link of a run
+  std::unique_ptr<Driver> driver;    // otherwise
   std::vector<dvec3> way;            // [m] true
   std::vector<bool> touches;         // in contact
   dvec3 last_motor{0}, last_at{0};
 };
 
-// RMS of the fast part of the motion over ticks in contact.
+// RMS of the fast part of the motion over the ticks in contact.
 double fast_part(const Held& held, std::size_t from) {
   double sum = 0.0;
   std::size_t n = 0;
@@ -113,7 +115,7 @@ ParetoRow row_of(const HandRun& run, const std::string& group, const std::string
            run.limit, run.flicker}};
 }
 
-// `plotted`: pairs without and with the guard. Of the levels the plot shows what shakes most.
+// `plotted`: pairs without and with the guard. Of the levels, the plot shows the one with the largest fast motion.
 ParetoTable table_of(const std::vector<HandRun>& plotted, const std::vector<HandRun>& levels) {
   ParetoTable table;
   table.study = "hand";
@@ -189,7 +191,7 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
   if (!options) return options.error();
   const double rate = world->simulation.touch_rate;
   std::string words = fmt::format("{},delay={}s", profile, options->profile.delay + delay);
-  if (!guarded) words += fmt::format(",rate={}", rate);  // called by the touch clock
+  if (!guarded) words += fmt::format(",rate={}", rate);  // the touch clock calls it
   for (auto [entity, surface] : world->registry.view<const Deformable>())
     run.stiffest = std::max(run.stiffest, surface.stiffness);
   SimulatedHands hands;
@@ -268,7 +270,7 @@ Status plot_hand_runs(OutputFolder& out, const std::vector<HandRun>& runs) {
     pen.text(kLeft, 68, kWords, 0, fmt::format("{}: force of its motors and depth of the probe", runs.front().profile));
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const HandRun& run = runs[i];
-      double peak = 1e-3, deepest = 1e-6, begin = run.samples.back().time;  // each run has scales of its own
+      double peak = 1e-3, deepest = 1e-6, begin = run.samples.back().time;  // each run has its own scales
       for (const HandSample& s : run.samples) {
         peak = std::max(peak, s.force);
         deepest = std::max(deepest, s.depth);
@@ -326,7 +328,7 @@ Status study_hand(OutputFolder& out, StudySize size, const Interrupt& interrupt)
   const std::vector<std::string> levels =
       full ? std::vector<std::string>{"three_probes", "inclusion", "glass_heart", "chrome_cushion", "turning_ball"}
            : std::vector<std::string>{"three_probes"};
-  // The organ as it ships, and one that is too stiff for the device.
+  // The organ as shipped, and one that is too stiff for the device.
   const std::vector<std::pair<double, double>> wishes{{1e-3, 0.0}, {10e-3, 0.0}, {10e-3, kTooStiff}};
   const std::size_t profiles = size == StudySize::kSmall ? 2 : kDeviceProfiles;
   Progress progress("study hand");

@@ -21,14 +21,14 @@ std::string shown(double figure) {
   return std::isfinite(figure) ? fmt::format("{:.3g}", figure) : "failed";
 }
 
-// With the interval of one that scatters.
+// The figure, with its interval if it scatters.
 std::string shown(const HardFigure& figure) {
   if (figure.is_absent()) return "-";
   if (!figure.scatters()) return shown(figure.value());
   return fmt::format("{:.3g} ({:.3g} to {:.3g})", figure.value(), figure.low(), figure.high());
 }
 
-// The figure and its bound of a case that does not hold, or cannot be judged.
+// The figure and its bound, for a case that fails or cannot be judged.
 std::string with_bound(const JudgedCase& each) {
   return fmt::format("{} ({} {}, at most {:g})", words_of(each.hard.name), shown(each.figure), each.hard.unit,
                      each.hard.bound);
@@ -97,7 +97,7 @@ std::vector<std::string> sentences_of(const std::vector<JudgedCase>& cases) {
     absent += each.figure.is_absent();
     if (verdict == HardVerdict::kNo) list(failing, with_bound(each));
     if (verdict == HardVerdict::kNotJudged && !each.figure.is_absent()) list(undecided, with_bound(each));
-    // Where a figure may not be above one, being near it is no sign.
+    // A bound of one has no meaningful margin.
     if (verdict != HardVerdict::kYes || !(each.hard.bound > 0.0) || std::abs(each.hard.bound - 1.0) < 1e-6) continue;
     if (each.figure.value() / each.hard.bound > share) {
       share = each.figure.value() / each.hard.bound;

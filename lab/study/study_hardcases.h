@@ -1,4 +1,4 @@
-// The hard cases (hard/hard_case.h) judged, one after the other: a table of verdicts and figures.
+// Judges the hard cases (hard/hard_case.h) one after the other: a table of verdicts and figures.
 #pragma once
 
 #include <string>
@@ -19,10 +19,10 @@ const char* name_of(HardVerdict verdict);  // yes, no, not judged
 // "ASliverDisturbsNobody" as "a sliver disturbs nobody".
 std::string words_of(const std::string& name);
 std::string to_csv(const std::vector<JudgedCase>& cases);
-// Two: how many hold and which do not, and which is nearest to its bound.
+// Two sentences: which cases hold and fail, and which is nearest to its bound.
 std::vector<std::string> sentences_of(const std::vector<JudgedCase>& cases);
 
-// hardcases.svg and hardcases.png: each figure as a share of what it may be.
+// Writes hardcases.svg and hardcases.png: each figure as a share of its bound.
 Status plot_hardcases(OutputFolder& out, const std::vector<JudgedCase>& cases,
                       const std::vector<std::string>& sentences);
 

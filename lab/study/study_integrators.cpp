@@ -21,10 +21,11 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kVertexTick = 1e-3;  // [s]
 constexpr int kLeastSteps = 8;
-constexpr double kGone = 1e3;  // [1] a height beyond this many dents has left: a damped swing may grow before it decays
-constexpr double kRounding = 1.02;  // [1] a swing whose second half is larger than its first by no more does not grow
+constexpr double kGone = 1e3;       // [1] a height beyond this many dents is divergence: a damped oscillation may grow
+                                    // before it decays
+constexpr double kRounding = 1.02;  // [1] growth of the second half over the first that still counts as stable
 
-// Cost per vertex and millisecond simulated, measured at each row's own step. `done`: gets the share of each part.
+// Cost per vertex and simulated millisecond, measured at each row's step. `done` receives the share of each part.
 void put_costs(ParetoTable& table, SpringLaw law, const std::vector<double>& stiffness,
                const std::vector<double>& zetas, int batches, const std::function<void(double)>& done) {
   for (const Integrator integrator : kIntegrators) {
@@ -81,7 +82,7 @@ std::vector<std::string> sentences_of(const ParetoTable& table) {
   return out;
 }
 
-// RMS of the first steps' errors, those of `truth`; infinite where the swing is unstable.
+// RMS of the errors at the first steps, those of `truth`; infinite if unstable.
 double stable_error(Integrator integrator, const VertexProblem& problem, const std::vector<double>& truth) {
   return is_stable(integrator, problem, kVertexTick)
              ? integration_error(integrator, problem, kVertexTick, kVertexTick, truth)
@@ -184,7 +185,7 @@ std::vector<IntegratorCase> integrate_grid(const std::vector<double>& stiffness,
           progress->update(0.2 * done / static_cast<double>(std::size(kLaws) * stiffness.size() * zetas.size()));
         done += 1.0;
         const VertexProblem problem = vertex_problem(law, k, zeta);
-        // A step that leaves too few of them for the duration is watched for longer.
+        // If a step is so long that the duration has too few, the duration is extended.
         std::map<double, std::vector<double>> truth;
         for (const double dt : steps) {
           const double every = dt * kLeastSteps > kIntegrated ? dt : shortest;
@@ -290,7 +291,7 @@ Status study_integrators(OutputFolder& out, StudySize size, const Interrupt& int
     ParetoTable table = integrator_table(cases, law);
     put_costs(table, law, stiffness, zetas, full ? 9 : 3, costed);
     table.sentences = sentences_of(table);
-    table.study = "integrators";  // of tissue; the others' beside it
+    table.study = "integrators";  // the table of tissue; the others are written beside it
     if (law != SpringLaw::kExponential)
       table.study += fmt::format("_{}", law == SpringLaw::kStandardLinearSolid ? "solid" : name_of(law));
     if (const Status done = write_study(out, table); !done) return done;

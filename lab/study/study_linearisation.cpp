@@ -28,12 +28,12 @@ namespace pliant {
 namespace {
 
 constexpr const char* kLevel = "hand";
-constexpr double kSlow = 1.0, kSwift = 3.2, kBrisk = 4.0;  // [1] of the script's own pace; at 3.2 a held force is off
-                                                           // by a fifth
+constexpr double kSlow = 1.0, kSwift = 3.2, kBrisk = 4.0;  // [1] of the script's pace; at 3.2 a force kept constant is
+                                                           // off by a fifth
 // [s] at that pace
 constexpr double kSeconds = 6.0, kQuickSeconds = 1.0, kSmallSeconds = 0.2;
 
-// Its scripts played `pace` times as fast.
+// Opens a level whose scripts play `pace` times as fast.
 Result<World> open_paced(const std::string& name, double pace) {
   const auto file = find_level(name);
   if (!file) return file.error();
@@ -56,14 +56,14 @@ ToolTouchState& tool_of(World& world) {
   return *world.tools->tools[0];
 }
 
-// Where the script has the device.
+// The device's scripted pose.
 Pose device_at(const World& world, Entity device, double time) {
   const PathRow now = sample_path(world.paths[world.registry.get<HapticDevice>(device).path], std::max(0.0, time));
   return {now.position, now.rotation};
 }
 
-// A soft step of T [s] at whose end the device is where the script has it at `time`; its model is in `pending`.
-// `handle`: where it is then, if that is known; otherwise it follows the device.
+// A soft step of T [s] that ends with the device at its scripted pose of `time`; its model is in `pending`. `handle`:
+// its pose at that time, if known; otherwise it follows the device.
 void soft_step(World& world, Schedule<World>& schedule, std::uint64_t index, double T, double time,
                const RigidMotion* handle = nullptr) {
   const Entity device = tool_of(world).device;
@@ -86,7 +86,7 @@ class Stopwatch {
   std::vector<double> us_;
 };
 
-// (d): handle and wrench of every tick.
+// (d): handle and wrench in every tick.
 struct LinearTruth {
   std::vector<RigidMotion> handle;  // at the tick's end
   std::vector<Vector6> wrench;
@@ -107,14 +107,14 @@ Result<LinearTruth> full_solve(const std::string& level, double pace, double tic
     const HandleModel& model = tool_of(*world).pending;
     truth.handle.push_back(model.handle);
     truth.wrench.push_back(model.force);
-    const SoftTimes& times = world->soft->times;  // the truth needs no linear model
+    const SoftTimes& times = world->soft->times;  // the reference needs no linear model
     truth.cost.add(us * (1 - times.linearise / std::max(times.total, 1e-9)));
     progress.update(0.9 * i / ticks);
   }
   return truth;
 }
 
-// One model, published `late` ticks after its time, asked for `length` ticks along the true path.
+// Evaluates one model, published `late` ticks after its time, for `length` ticks along the true path.
 struct Followed {
   const HandleModel& model;
   CondensedState& state;
@@ -136,7 +136,7 @@ struct Followed {
       const std::uint64_t end = processor_ns();
       const Vector6 d = join(before.pose.position - model.handle.pose.position,
                              vector_of(before.pose.rotation * glm::conjugate(model.handle.pose.rotation)));
-      const std::uint64_t short_begin = now_ns();  // the processor's clock does not resolve these two
+      const std::uint64_t short_begin = now_ns();  // the CPU clock does not resolve these two
       const Vector6 linear = linear_tick(model.linear, model.handle.velocity, d, tick, same);
       const std::uint64_t between = now_ns();
       const Vector6 held = model.force;
@@ -151,7 +151,7 @@ struct Followed {
   }
 };
 
-// What is felt beyond the tissue's weight: a heavy tool must not make errors look small.
+// Squared force without the tissue's weight: a heavy tool must not make errors look small.
 double felt2(const ForceSample& sample, const Vector6& weight) {
   return (sample.full - weight).head<3>().squaredNorm();
 }
@@ -172,7 +172,7 @@ MethodFigures errors(const char* name, const LinearisationFigures& figures, cons
   return out;
 }
 
-// (a) to (c) from the soft clock at its own pace.
+// (a) to (c) with the soft clock at its own rate.
 Status follow_models(LinearTruth& truth, const std::string& level, std::size_t length, const Interrupt& interrupt,
                      LinearisationFigures& out) {
   auto world = open_paced(level, out.pace);
@@ -209,9 +209,9 @@ Status follow_models(LinearTruth& truth, const std::string& level, std::size_t l
   return Done{};
 }
 
-constexpr std::size_t kUpdateTicks = 6;  // an update's own tick and the five after it
+constexpr std::size_t kUpdateTicks = 6;  // an update's tick and the five after it
 
-// What touches and what slides of one model's contacts.
+// Which contacts of a model are closed, and which slide.
 struct ContactSet {
   std::uint64_t model = 0;
   std::vector<std::uint8_t> touches, slides;
@@ -223,14 +223,14 @@ struct ContactSet {
       slides.push_back(touches.back() && problem.sliding[static_cast<std::size_t>(i)]);
     }
   }
-  // Between ticks of one model: something touched, let go, or began or ceased to slide.
+  // True if, within one model, a contact closed, opened, or changed between sticking and sliding.
   bool differs(const ContactSet& other) const {
     return model == other.model && (touches != other.touches || slides != other.slides);
   }
 };
 
-// The force's changes in the ticks of each update, over the largest in the other ticks of the two steps around it.
-// `event`: of each tick, something about contacts that are felt changed in it or in the one before.
+// Force changes in the ticks of each update, relative to the largest change in the other ticks of the two steps around
+// it. `event`: per tick, a change of a felt contact in it or in the previous tick.
 void find_jumps(const std::vector<Vector6>& wrench, const std::vector<bool>& event, std::size_t length,
                 LinearisationFigures& out) {
   const auto change = [&](std::size_t i) { return (wrench[i] - wrench[i - 1]).head<3>().norm(); };
@@ -239,7 +239,7 @@ void find_jumps(const std::vector<Vector6>& wrench, const std::vector<bool>& eve
     std::size_t worst = at;
     for (std::size_t i = at - length + 1; i < at + length; ++i)
       if (i % length >= kUpdateTicks) slope = std::max(slope, change(i));
-    if (slope <= 1e-4) continue;  // [N] below: nothing is felt
+    if (slope <= 1e-4) continue;  // [N] below: no noticeable force
     for (std::size_t i = at; i < at + kUpdateTicks; ++i) {
       if (!(change(i) / slope > jump)) continue;
       jump = change(i) / slope;
@@ -252,7 +252,7 @@ void find_jumps(const std::vector<Vector6>& wrench, const std::vector<bool>& eve
   }
 }
 
-// All clocks in lockstep, contacts solved again in the touch tick.
+// All clocks in lockstep, with contacts solved again in the touch tick.
 Status run_together(const std::string& level, int ticks, std::size_t length, const Interrupt& interrupt,
                     LinearisationFigures& out) {
   auto world = open_paced(level, out.pace);
@@ -262,7 +262,7 @@ Status run_together(const std::string& level, int ticks, std::size_t length, con
   std::vector<Vector6> wrench;
   std::vector<bool> event;
   ContactSet last(tool_of(*world));
-  bool changed = false, felt = true;  // while a new model settles its contacts are not felt
+  bool changed = false, felt = true;  // contacts are not felt while a new model settles
   for (int i = 0; i < ticks; ++i) {
     if (interrupt.requested()) return interrupted();
     const auto index = static_cast<std::uint64_t>(i);

@@ -1,5 +1,5 @@
-// How costs grow: ticks and drawn frames with the size of a mesh and with what moves on it, soft steps with tetrahedra
-// and contacts. Powers are fitted to the measured times.
+// Growth of costs: ticks and frames with the size of a mesh and the number of moving vertices, soft steps with
+// tetrahedra and contacts. Powers are fitted to the measured times.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,29 +23,30 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kAwake = 500;  // vertices in the probe's reach; whole zones move, about a thousand
-// Cells and beds between those of bench/soft_step.cpp, so that a power has more points than a line needs.
+constexpr std::uint32_t kAwake = 500;  // vertices in the probe's reach; whole zones are awake, about a thousand
+                                       // vertices
+// Cells and beds between those of bench/soft_step.cpp, so that a power is fitted to more points than it needs.
 constexpr scenes::PaddleCells kCells[]{{9, 2, 5},   {11, 3, 6},  {14, 3, 8}, {18, 4, 11},
                                        {24, 5, 14}, {30, 6, 18}, {38, 8, 22}};
 constexpr scenes::StudBed kStuds[]{{1, 3, 3}, {1, 6, 3}, {1, 9, 3}, {2, 4, 5},
                                    {2, 3, 9}, {3, 4, 7}, {4, 4, 7}, {6, 4, 7}};
-constexpr int kFineCells = 15'000;  // tetrahedra: fewer steps from here on
+constexpr int kFineCells = 15'000;  // tetrahedra: fewer steps from this number
 constexpr int kMostQuick = 11'000;  // tetrahedra
 constexpr int kMostSmall = 1'500;   // tetrahedra
 constexpr const char* kMicroseconds = "time [us]";
 constexpr const char* kScaleTitle =
     "how costs grow, and the powers of the larger half of the sizes with their 95 % intervals";
 
-// What draws, if anything does.
+// The renderer, if there is one.
 struct Drawing {
   std::unique_ptr<HeadlessContext> context;
   std::string renderer;   // GL_RENDERER
-  std::string not_drawn;  // why no frames are drawn
-  std::string too_large;  // why those of large meshes are not
+  std::string not_drawn;  // reason why no frames are drawn
+  std::string too_large;  // reason why large meshes are not drawn
   bool with_cpu = true;
 
   DrawnCount count(int frames) const { return {not_drawn.empty() ? frames : 0, with_cpu}; }
-  // What a drawn frame is, or why there is none.
+  // Describes a drawn frame, or the reason why there is none.
   std::string words() const {
     if (!not_drawn.empty()) return "no frame was drawn: " + not_drawn;
     return fmt::format("{} x {} pixels on {}, {}{}", kDrawnWidth, kDrawnHeight, renderer,
@@ -145,7 +146,7 @@ nlohmann::ordered_json json_of(const std::vector<GrowthPanel>& panels, const std
     nlohmann::ordered_json one{{"title", panel.title}, {"across", panel.across}, {"up", panel.up},
                                {"size", panel.size},   {"also", panel.also},     {"also_size", panel.also_size}};
     for (const GrowthCurve& curve : panel.curves) {
-      const PowerLaw& law = curve.law;  // numbers that are not finite: null
+      const PowerLaw& law = curve.law;  // not finite: null
       one["curves"].push_back({{"name", curve.name},
                                {"cost", curve.cost},
                                {"fitted_from", law.from},
@@ -208,7 +209,7 @@ Status study_scale(OutputFolder& out, StudySize size, const Interrupt& interrupt
   std::vector<TickCost> by_size, by_awake;
   std::vector<StepCost> by_tets, by_contacts;
   double done = 0.0;
-  // `weight`: about how long a piece takes beside others.
+  // `weight`: approximate relative duration of a measurement.
   const auto measured = [&](double weight) { progress.update((done += weight) / (quick ? 23.0 : 96.0)); };
   const auto keep_reason = [&](const TickCost& cost) {
     if (!cost.not_drawn.empty()) drawing.too_large = cost.not_drawn;
@@ -254,7 +255,7 @@ Status study_scale(OutputFolder& out, StudySize size, const Interrupt& interrupt
   for (GrowthPanel& panel : panels)
     for (GrowthCurve& curve : panel.curves) {
       for (double& cost : curve.cost)
-        if (!std::isnan(cost)) cost = std::max(cost, 1e-3);  // what the clock does not resolve
+        if (!std::isnan(cost)) cost = std::max(cost, 1e-3);  // below the clock's resolution
       curve.law = fit_power(panel.size, curve.cost);
     }
   const std::vector<std::string> sentences = sentences_of(panels, drawing);

@@ -20,9 +20,9 @@ namespace pliant {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kRadius = 0.004;  // [m] of the punch: what the engine calibrates stiffness with
-constexpr double kAround = 5.0;    // [1] radii that a profile is compared over
-constexpr double kUsual = 5.0;     // [1] reach over the contact's radius that the engine takes (force_field.cpp)
+constexpr double kRadius = 0.004;  // [m] of the punch for which the engine calibrates stiffness
+constexpr double kAround = 5.0;    // [1] radii within which profiles are compared
+constexpr double kUsual = 5.0;     // [1] default reach over the contact radius (force_field.cpp)
 constexpr Shape kShapes[] = {Shape::kPunch,    Shape::kHertz,  Shape::kGaussian,
                              Shape::kWendland, Shape::kVolume, Shape::kKelvinlet};
 
@@ -37,7 +37,7 @@ FieldSource source_of(Shape shape, double inner, double reach) {
   return source;
 }
 
-// [ns] a vertex whose target is computed, in the kernel that ships.
+// [ns] per vertex whose target is computed, in the engine's kernel.
 double measure(Shape shape, int batches) {
   Mesh mesh;
   mesh.vertex_count = kZoneSize;
@@ -59,16 +59,17 @@ double measure(Shape shape, int batches) {
   return least;
 }
 
-// The force's side: P1's calibrated law against a truth at the same depth.
+// P1's calibrated force against a reference at the same depth.
 struct ForceRow {
   std::string truth;
   bool by_construction = false;           // the law is this closed form
   double model = 0.0, truth_force = 0.0;  // [N]
   // Of a block.
-  double bonded = std::numeric_limits<double>::quiet_NaN();  // [N] the law, times what bonding adds on a half-space
+  double bonded = std::numeric_limits<double>::quiet_NaN();  // [N] the law times the bonding factor of a half-space
   std::int64_t tets = 0;                                     // of the finest grid
-  double finest = std::numeric_limits<double>::quiet_NaN();  // [N] its force; `truth_force` is the grids' limit
-  double order = std::numeric_limits<double>::quiet_NaN();   // [1] that they approach it with
+  double finest = std::numeric_limits<double>::quiet_NaN();  // [N] force on it; `truth_force` is the limit over the
+                                                             // grids
+  double order = std::numeric_limits<double>::quiet_NaN();   // [1] order of convergence of the grids
   double finest_profile = std::numeric_limits<double>::quiet_NaN();  // [1] profile error of its surface
   double error() const { return model / truth_force - 1; }
 };
@@ -78,7 +79,7 @@ struct Blocks {
   std::vector<ForceRow> forces;
 };
 
-// [1] F of a bonded over a frictionless flat punch on a half-space (Mossakovskii, Spence).
+// [1] Force on a bonded over that on a frictionless flat punch on a half-space (Mossakovskii, Spence).
 double bonding(double poisson) {
   return (1 - poisson) * std::log(3 - 4 * poisson) / (1 - 2 * poisson);
 }
@@ -157,13 +158,13 @@ std::string csv_of(const std::vector<ForceRow>& rows) {
   return csv;
 }
 
-// The shape whose own closed form a truth is.
+// True if the reference is the shape's own closed form.
 bool by_construction(const PressTruth& truth, Shape shape) {
   return (truth.name == "half-space, punch" && shape == Shape::kPunch) ||
          (truth.name == "half-space, sphere" && shape == Shape::kHertz);
 }
 
-// Four truths are enough for one plot; the table has them all.
+// The plot shows four references; the table has all.
 bool is_drawn(const std::string& truth) {
   return truth.starts_with("half") || truth == "block 10 a thick, Poisson 0.3" ||
          truth == "block 2 a thick, Poisson 0.45";
@@ -271,7 +272,7 @@ double best_reach(Shape shape, const PressTruth& truth) {
   };
   double least = 1e30;
   for (double over = 1.0; over < 40.0; over *= 1.02) least = std::min(least, error(over));
-  // The least of those that are as good: not what rounding prefers among them.
+  // The smallest reach whose error is within a thousandth of the minimum, so that rounding does not decide.
   for (double over = 1.0; over < 40.0; over *= 1.02)
     if (error(over) <= 1.001 * least + 1e-6) return over * truth.inner;
   UNREACHABLE();

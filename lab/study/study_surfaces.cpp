@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kDepth = 0.003;  // [m]
 constexpr double kWobble = 0.002;
-constexpr double kSettled = 0.05;  // [1] a work that half of its samples change by less is settled
+constexpr double kSettled = 0.05;  // [1] relative change at half the samples below which the work has converged
 
-// Follows a point behind a surface and says what is felt there, per stiffness: the depth along its direction. [m]
+// Follows a point behind a surface and evaluates the felt force per stiffness: the depth along its direction. [m]
 class Follower {
  public:
   Follower(const Mesh& mesh, FeltSurface felt, dvec3 start) : mesh_(mesh), felt_(felt) {
@@ -58,7 +58,7 @@ class Follower {
   Foot foot_;
 };
 
-// How the force of a felt surface differs from the true one, over a loop.
+// Deviation of the felt force from the true one, over a loop.
 struct Loop {
   double least = 1e30, most = 0.0, square = 0.0, turned = 0.0, work = 0.0, us = 0.0;
 };
@@ -102,7 +102,7 @@ std::string size_of(std::size_t triangles) {
   return triangles >= 1000 ? fmt::format("{:.0f}k", static_cast<double>(triangles) / 1000) : std::to_string(triangles);
 }
 
-// A felt surface on a mesh of one shape, or the worst of all shapes.
+// A felt surface on a mesh of one shape, or the worst over all shapes.
 struct Felt {
   std::string shape;
   FeltSurface felt;
@@ -157,7 +157,7 @@ std::string words_of(const ParetoRow& row) {
   return fmt::format("{}{:.2g}", row.error < row.floor ? "at most " : "", row.resolved());
 }
 
-// How an error falls from the least mesh to the largest.
+// Error decrease from the smallest mesh to the largest.
 std::string falls_of(const ParetoTable& table) {
   std::string words;
   for (const FeltSurface felt : kFeltSurfaces) {
@@ -182,7 +182,7 @@ const char* name_of(FeltSurface felt) {
 FeltErrors feel(const Mesh& mesh, const SmoothSurface& surface, FeltSurface felt, int samples) {
   const Loop even = go_around(mesh, surface, felt, samples, 0.0);
   const Loop uneven = go_around(mesh, surface, felt, samples, kWobble);
-  // One small change may be chance; after two of them the sum is settled.
+  // One small change may be chance; after two of them the sum has converged.
   double work = uneven.work, change = 0.0, before = std::numeric_limits<double>::infinity();
   for (int more = 2; more <= kMostWork; more *= 2) {
     const double finer = go_around(mesh, surface, felt, more * samples, kWobble).work;
@@ -232,7 +232,7 @@ Status study_surfaces(OutputFolder& out, StudySize size, const Interrupt& interr
     table.sentences.push_back(fmt::format("From {} to {} triangles: {}.",
                                           size_of(static_cast<std::size_t>(sizes.front())),
                                           size_of(static_cast<std::size_t>(sizes.back())), falls_of(table)));
-    // Of the least errors that are resolved.
+    // Among the smallest errors that are resolved.
     const ParetoRow* least = nullptr;
     bool open = false;
     for (const ParetoRow& row : table.rows) {

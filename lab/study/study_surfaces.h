@@ -1,5 +1,5 @@
-// Which surface a probe feels on a mesh: flat facets, force shading, P1's interpolated contact vertex, curved patches,
-// each against the smooth surface that the mesh stands for.
+// Felt surfaces on a mesh: flat facets, force shading, P1's interpolated contact vertex, and curved patches, each
+// against the smooth surface that the mesh approximates.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,8 @@
 
 namespace pliant {
 
-// A surface with a closed form, a mesh of about so many triangles of it, and a loop on it, once around for s in [0, 1].
+// A surface with a closed form, a generator of meshes with about a given number of triangles, and a closed loop on it
+// for s in [0, 1].
 struct SmoothSurface {
   struct Point {
     dvec3 p{0}, n{0, 1, 0};  // [m], [1] outward
@@ -29,17 +30,17 @@ inline constexpr FeltSurface kFeltSurfaces[] = {FeltSurface::kFacets, FeltSurfac
                                                 FeltSurface::kVirtualVertex, FeltSurface::kPatches};
 const char* name_of(FeltSurface felt);
 
-// Of a loop at a depth of 3 mm, behind the true surface, and of one at depths from 1 to 5 mm.
+// On a loop at a depth of 3 mm behind the true surface, and on one at depths from 1 to 5 mm.
 struct FeltErrors {
-  double ripple = 0.0;     // [1] of the force's size, from least to most, over the true one
+  double ripple = 0.0;     // [1] range of the force magnitude over the true one
   double direction = 0.0;  // [degree] RMS angle to the true force
-  double turned = 0.0;     // [degree] the largest
-  double work = 0.0;       // [1] that a closed loop gives out or takes, over the energy stored at its deepest
-  double floor = 0.0;      // [1] how much that still changed when its samples were doubled: less is not resolved
-  double us = 0.0;         // a query that follows the probe, processor time
+  double turned = 0.0;     // [degree] largest angle
+  double work = 0.0;       // [1] net work over a closed loop, over the energy stored at its deepest
+  double floor = 0.0;      // [1] change of the work when the samples were last doubled: the resolution
+  double us = 0.0;         // CPU time of a query that follows the probe
 };
-// Ripple and direction from `samples` places; the work from twice as many again and again, until it no longer changes
-// or they are kMostWork times as many.
+// Ripple and direction from `samples` places. For the work the samples are doubled until it converges or they are
+// kMostWork times as many.
 inline constexpr int kMostWork = 16;
 FeltErrors feel(const Mesh& mesh, const SmoothSurface& surface, FeltSurface felt, int samples);
 

@@ -15,17 +15,17 @@
 namespace pliant {
 namespace {
 
-// The schemes, and what levels do.
+// The schemes, and the engine's step.
 const char* const kWays[] = {name_of(StepScheme::kEuler), name_of(StepScheme::kMidpoint),
                              name_of(StepScheme::kMidpointTwice), name_of(StepScheme::kBdf2), kEngineStep};
 constexpr StepScheme kSchemes[] = {StepScheme::kEuler, StepScheme::kMidpoint, StepScheme::kMidpointTwice,
                                    StepScheme::kBdf2};
-constexpr double kEvery = 1.0 / 30.0;  // [s] that traces are compared at
+constexpr double kEvery = 1.0 / 30.0;  // [s] interval at which traces are compared
 constexpr int kUsualRate = 60;         // [Hz] PLIANT_simulation's default soft_step
 
-// How much is measured.
+// Extent of the study.
 struct TimeStepPlan {
-  int cells;               // of a block's height
+  int cells;               // per height of a block
   std::vector<int> rates;  // [Hz] ascending
   int truth_rate;          // [Hz]
 };
@@ -34,7 +34,8 @@ TimeStepPlan time_step_plan(StudySize size) {
   return {size == StudySize::kFull ? 4 : 2, {30, 60, 120, 240, 480, 960}, size == StudySize::kFull ? 3840 : 1920};
 }
 
-// A block of cells, from the origin up, centred; the pinned nodes last. Neighbours mirror one another.
+// A block of cells above the origin, centred; pinned nodes last. Neighbours are mirrored, so that no direction is
+// preferred.
 TetMesh block(int nx, int ny, int nz, double cell, const std::function<bool(dvec3)>& pinned) {
   std::vector<dvec3> places;
   for (int i = 0; i <= nx; ++i)
@@ -105,7 +106,7 @@ ParetoRow row_of(const StepRow& row) {
   return {label_of(row), row.ms, row.error, row.way, {1.0 / row.rate, std::int64_t{row.rate}}};
 }
 
-// Of all scenes: the geometric mean of errors, the mean of costs.
+// Over all scenes: geometric mean of the errors, mean of the costs.
 std::vector<StepRow> means(const std::vector<StepRow>& rows, const std::vector<int>& rates) {
   std::vector<StepRow> out;
   for (const char* way : kWays)
@@ -152,13 +153,13 @@ std::vector<TissueScene> step_scenes(int cells) {
   std::vector<TissueScene> scenes(4);
   for (TissueScene& scene : scenes) scene.material = {.young = 5e3, .poisson = 0.4, .density = 1000, .beta = 1e-3};
   const double height = 0.04, cell = height / cells;
-  // A bar that is held at one end and let go.
+  // A bar pinned at one end and released.
   TissueScene& swing = scenes[0];
   swing.name = "free swing";
   swing.mesh = block(4 * cells, cells, cells, 0.03 / cells, [](dvec3 p) { return p.x < -0.0599; });
   swing.material.young = 1e5;
   swing.gravity = dvec3(0, -9.81, 0);
-  // A block that is bonded below, and a sphere.
+  // A block bonded at its bottom, and a sphere.
   const auto bonded = [&] { return block(2 * cells, cells, 2 * cells, cell, [](dvec3 p) { return p.y < 1e-9; }); };
   const double radius = 0.015, over = height + radius;
   TissueScene& press = scenes[1];
@@ -171,7 +172,7 @@ std::vector<TissueScene> step_scenes(int cells) {
   slide.obstacle = Ball{radius, [over](double t) {
                           return dvec3(-0.015 + 0.03 * smooth((t - 0.1) / 0.25), over - 0.006 * smooth(t / 0.1), 0.001);
                         }};
-  // A block that is thrown on the ground.
+  // A block thrown onto the ground.
   TissueScene& impact = scenes[3];
   impact.name = "impact";
   impact.mesh = block(cells, cells, cells, cell, [](dvec3) { return false; });
@@ -227,7 +228,7 @@ Status study_time_step(OutputFolder& out, StudySize size, const Interrupt& inter
       progress.update((done + from + part * share) / static_cast<double>(scenes.size()));
       return !interrupt.requested();
     };
-    // A level's contacts are not penalties: its truth is its own motion in short steps.
+    // The engine's contacts are not penalties: its reference is its own motion with short steps.
     StepTrace truth, engine_truth;
     for (const int rate : {plan.truth_rate, plan.truth_rate / 2}) {
       StepTrace trace = trace_of(scene, StepScheme::kConverged, 1.0 / rate, kEvery, nullptr, goes_on);

@@ -22,15 +22,15 @@ constexpr const char* kProfile = "omni";
 constexpr double kDelays[] = {0.0, 1e-3, 10e-3};                  // [s]
 constexpr double kSoftest = 10.0, kStiffest = 2e4, kMostB = 8.0;  // [N/m], [N s/m]
 constexpr double kPush = 0.7;                                     // [N]
-constexpr double kFadedShare = 0.9, kFadedFor = 0.05;             // [1] of what was wanted, [s]
-constexpr double kWarmUp = 0.4;                                   // [s] until a guard lets force through
-// Landing, and hitting it.
+constexpr double kFadedShare = 0.9, kFadedFor = 0.05;             // [1] of the wanted force, [s]
+constexpr double kWarmUp = 0.4;                                   // [s] until a guard passes the force
+// A slow and a fast approach.
 constexpr WallStart kStarts[] = {{-0.5e-3, 0.01}, {-0.5e-3, 0.3}};
 
-// The guard of devices/guard, on one axis: before the run it has seen the device at rest, so that it is active.
+// The guard of devices/guard on one axis. Before the run it sees the device at rest, so that it is active.
 class GuardOnWall {
  public:
-  // `faded`: set where it let less through than was wanted, for longer than its slew takes.
+  // `faded`: set if it passed less force than wanted, for longer than its slew takes.
   GuardOnWall(const DeviceCapabilities& can, const WallLoop& loop, double at, bool* faded)
       : guard_(can),
         T_(loop.plant.period),
@@ -50,7 +50,7 @@ class GuardOnWall {
   }
 
  private:
-  // As the servo does it: the model softened to what the device is stable with, then the guard.
+  // As in the servo: the model is softened to the device's stable limit, then guarded.
   double step(double position, double wanted) {
     DeviceSample sample;
     sample.position.x = position;
@@ -66,7 +66,7 @@ class GuardOnWall {
   bool* faded_;
 };
 
-// Its latency is the study's, and the wall may be anywhere.
+// The delay is the study's; the workspace is unlimited.
 DeviceCapabilities delayed(const DeviceProfile& profile, double delay) {
   DeviceCapabilities can = capabilities_of(profile);
   can.latency = delay;
@@ -114,7 +114,7 @@ WallCell measure(const WallFigures& figures, const DeviceProfile& profile, WallC
   return cell;
 }
 
-// Counts without friction, so that the balance says how fast a limit cycle may be.
+// Encoder counts without friction, so that the balance gives the largest speed of a limit cycle.
 std::vector<WallCycle> measure_cycles(double seconds) {
   std::vector<WallCycle> cycles;
   for (double K = 400.0; K <= 3600.0; K += 400.0) {
@@ -122,7 +122,7 @@ std::vector<WallCycle> measure_cycles(double seconds) {
     loop.plant = {.mass = 0.2, .damping = 2.0, .encoder = 50e-6};
     loop.wall = {K, 0.0};
     loop.both_ways = true;
-    loop.push = 20.5 * K * loop.plant.encoder;  // between two counts: no force of the wall holds it at rest
+    loop.push = 20.5 * K * loop.plant.encoder;  // between two counts: the wall has no force that balances the push
     const WallResult result = run_wall(loop, {.depth = 1.013e-3}, seconds);
     cycles.push_back({K, balance(loop.plant, K).speed, result.speed, result.amplitude});
   }
@@ -168,7 +168,7 @@ nlohmann::ordered_json to_json(const WallFigures& figures, const std::vector<std
   return json;
 }
 
-// What it shows.
+// Conclusions from the figures.
 std::vector<std::string> explain_figures(const WallFigures& figures) {
   const std::size_t cells = figures.stiffnesses.size() * figures.dampings.size();
   const auto bad = [&](WallModel model) {

@@ -22,9 +22,9 @@ double percentile(std::vector<double>& values, double q) {
 }
 
 constexpr int kTicksAFrame = 16;
-constexpr int kWarmFrames = 1;  // pays for compiling shaders
+constexpr int kWarmFrames = 1;  // includes shader compilation
 
-// [us] that asking for the time takes by itself.
+// [us] Overhead of reading the clock.
 double clock_us() {
   std::vector<double> times;
   for (int i = 0; i < 1000; ++i) {
@@ -41,7 +41,7 @@ TickCost measure_tick(std::uint32_t vertices, std::uint32_t awake, int ticks, in
   const int n = std::max(2, static_cast<int>(std::lround(std::sqrt((vertices - 2) / 6.0))));
   Stage stage;
   Deformable d;
-  // Zones overhang the disc, so the disc itself holds fewer than the awake vertices wanted.
+  // Zones extend beyond the disc, so the disc must contain fewer vertices than are wanted awake.
   d.reach = 2 * kRadius * std::sqrt(std::min(0.9, 0.315 * awake / (6.0 * n * n + 2)));
   const Entity surface = stage.add(scenes::sphere(n, kRadius), d);
   const Entity probe = stage.add_probe({0, kRadius + 0.001, 0});

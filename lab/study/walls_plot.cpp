@@ -37,7 +37,7 @@ Color color_of(const WallCell& cell) {
   return cell.fades ? kFades : color_of(cell.result.verdict);
 }
 
-// Stiffness across by powers of ten, damping up.
+// Stiffness on x (logarithmic), damping on y.
 class Map {
  public:
   Map(const WallArea& area, const WallFigures& figures)
@@ -49,7 +49,7 @@ class Map {
         half_b_(0.5 * top_ / static_cast<double>(figures.dampings.size() - 1)) {}
   double x(double log_k) const { return area_.x + area_.w * (log_k - low_ + half_k_) / (high_ - low_ + 2 * half_k_); }
   double y(double b) const { return area_.y + area_.h - area_.h * (b + half_b_) / (top_ + 2 * half_b_); }
-  // Cells of one model and delay, damping by damping, K ascending: what is alike stands in one rectangle.
+  // Cells of one model and delay, by damping, K ascending: equal neighbours are merged into one rectangle.
   void cells(Pen& pen, const std::vector<WallCell>& all, WallModel model, double delay) const {
     const WallCell* first = nullptr;
     const WallCell* last = nullptr;
@@ -71,7 +71,7 @@ class Map {
     }
     put();
   }
-  // K(B), where there is one; dashed where it is not the truth but a bound.
+  // The curve K(B) where it exists; dashed if it is a bound.
   template <class Limit>
   void curve(Pen& pen, Color color, bool dashed, const Limit& limit) const {
     const double dash[] = {9.0, 6.0};

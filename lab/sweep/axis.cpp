@@ -13,7 +13,8 @@
 namespace pliant {
 namespace {
 
-// Splitmix64 (Steele, Lea & Flood, OOPSLA 2014). The library's distributions differ from one to the next.
+// Splitmix64 (Steele, Lea & Flood, OOPSLA 2014). The distributions of the standard library differ between
+// implementations.
 class Stream {
  public:
   Stream(std::uint64_t seed, const std::string& name) {
@@ -29,7 +30,7 @@ class Stream {
     return x ^ (x >> 31);
   }
   double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }  // [0, 1)
-  // Below n, each as often: what would favour the low ones is drawn again.
+  // Uniform below n; biased values are drawn again.
   std::uint64_t below(std::uint64_t n) {
     const std::uint64_t unfair = (0 - n) % n;
     for (;;)
@@ -40,7 +41,7 @@ class Stream {
   std::uint64_t state_ = 0;
 };
 
-// Twelve digits: exp and log may differ in the last of sixteen from one machine to the next, and the ids with them.
+// Twelve digits: exp and log may differ between machines in the last of sixteen digits, and the ids would differ too.
 double rounded(double value) {
   return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr);
 }
@@ -116,7 +117,7 @@ PlanJson canonical(const PlanJson& value) {
 
 std::string brief(const PlanJson& value) {
   constexpr std::size_t kLongest = 80;  // [byte]
-  // Of a large one no more is written than is shown.
+  // Large values are not formatted beyond what is shown.
   if (value.is_structured() && value.size() > kLongest) return value.is_array() ? "a long list" : "a large object";
   std::string text = value.dump(-1, ' ', true, PlanJson::error_handler_t::replace);
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";

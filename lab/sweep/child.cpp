@@ -19,15 +19,15 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kError = "pliant: error: ";
-constexpr std::size_t kLongestSaid = 2000;  // [byte] of a sentence in a line
-constexpr std::size_t kMostRead = 1 << 20;  // [byte] of all that it said: the end
+constexpr std::size_t kLongestSaid = 2000;  // [byte] longest message in a line
+constexpr std::size_t kMostRead = 1 << 20;  // [byte] last part of its stderr that is kept
 
-// What the new process does before it is `pliant`: nothing but calls to the system. The error goes to `told`.
+// Runs in the new process before exec: system calls only. An error is written to `told`.
 [[noreturn]] void become(char* const* argv, const char* from, int said, pid_t parent, int told) {
-  // However its parent ends it ends as well: SIGKILL of a sweep leaves nothing that goes on.
+  // Ends with the parent, however that ends: SIGKILL of a sweep leaves no process behind.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(1);
-  // A group of its own: Ctrl-C is for the sweep, which ends its runs itself.
+  // A separate process group: Ctrl-C reaches the sweep only, which ends its runs itself.
   ::setpgid(0, 0);
   const int in = ::open("/dev/null", O_RDONLY), out = ::open("/dev/null", O_WRONLY);
   if (in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 && ::dup2(out, STDOUT_FILENO) >= 0 &&
@@ -60,7 +60,7 @@ Result<Child> Child::start(const std::vector<std::string>& arguments, const fs::
 
   child.said_ = ::memfd_create("pliant-said", MFD_CLOEXEC);
   if (child.said_ < 0) return not_started(errno);
-  int ends[2];  // closed by what begins well
+  int ends[2];  // closed by a successful exec
   if (::pipe2(ends, O_CLOEXEC) != 0) return not_started(errno);
   child.begun_ = Clock::now();
   const pid_t parent = ::getpid();
@@ -101,7 +101,7 @@ Child::~Child() {
   if (said_ >= 0) ::close(said_);
 }
 
-// With all that it has started (the importers' processes).
+// Kills the whole group, with the importer processes that it has started.
 void Child::end() {
   if (process_ < 0) return;
   ::kill(-process_, SIGKILL);

@@ -14,7 +14,8 @@ namespace pliant {
 namespace fs = std::filesystem;
 namespace {
 
-// [N] of each probe, in the order of the report: every tick has a row for each, and names may repeat.
+// [N] of each probe, in the order of the report. Rows are matched by position: every tick has a row per probe, and
+// names may repeat.
 std::vector<double> rms_forces(const fs::path& file, std::size_t probes) {
   std::ifstream in(file);
   std::string line;
@@ -38,7 +39,7 @@ std::vector<double> rms_forces(const fs::path& file, std::size_t probes) {
   return sum;
 }
 
-// Names of nodes need not differ.
+// Node names need not be unique.
 std::string free_name(const PlanJson& figures, const std::string& name, const std::string& figure) {
   std::string key = name + "." + figure;
   for (int n = 2; figures.contains(key); ++n) key = name + "#" + std::to_string(n) + "." + figure;
@@ -50,7 +51,7 @@ void add_probe(const PlanJson& probe, const double* rms, double rate, PlanJson& 
   const auto put = [&](const char* figure, const PlanJson& value) {
     figures[free_name(figures, name, figure)] = value;
   };
-  // A tool is not pressed in by so much: its device is led past its handle.
+  // A tool's value is the offset of its device from its handle, not a depth.
   const bool tool = probe.contains("tool_force");
   if (probe.contains("max_depth_m")) put(tool ? "max_offset_m" : "max_depth_m", probe["max_depth_m"]);
   if (probe.contains("max_force_N")) put("max_force_N", probe["max_force_N"]);
@@ -59,7 +60,7 @@ void add_probe(const PlanJson& probe, const double* rms, double rate, PlanJson& 
        {"net_work_J", "contact_ticks", "max_torque_Nm", "late_ticks", "stale_ticks", "missed_by_m"})
     if (probe.contains(figure)) put(figure, probe[figure]);
   if (rate > 0.0 && probe.contains("contact_ticks")) put("contact_s", probe["contact_ticks"].get<double>() / rate);
-  // The report has those that happened; a share stands only beside ticks.
+  // The report lists limits that acted; a share is given only beside ticks.
   const auto put_limit = [&](const PlanJson& of, const std::string& limit, const std::string& name_of_it, bool always) {
     const PlanJson ticks = of.contains(limit) ? of[limit]["ticks"] : PlanJson(0);
     if (always || ticks != 0) put((name_of_it + "_ticks").c_str(), ticks);

@@ -1,5 +1,5 @@
-// What of a run's results goes into its line: figures that are the same every time, and apart from them those that are
-// measured by the clock.
+// The part of a run's results that goes into its line: reproducible figures, and separately those measured by the
+// clock.
 #pragma once
 
 #include <filesystem>
@@ -12,9 +12,9 @@ namespace pliant {
 struct RunResult {
   PlanJson figures;  // name -> number, and "hash"
   PlanJson timing;   // name -> number
-  PlanJson notes;    // sentences: what the run did differently than one might expect
+  PlanJson notes;    // sentences: where the run did something unexpected
 };
-// Of report.json and forces.csv in a run's folder. Figures of a probe or tool have its name before them:
+// Reads report.json and forces.csv in a run's folder. Figures of a probe or tool are prefixed with its name:
 // tip.max_force_N.
 Result<RunResult> read_run(const std::filesystem::path& folder);
 

@@ -26,7 +26,7 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-// A line that a sweep wrote, whole.
+// True if the line is a complete line of a sweep.
 bool is_line(const PlanJson& json) {
   const auto text = [&](const char* key) { return json.contains(key) && json[key].is_string(); };
   const auto object = [&](const char* key) { return json.contains(key) && json[key].is_object(); };
@@ -35,13 +35,14 @@ bool is_line(const PlanJson& json) {
          (!json.contains("attempt") || json["attempt"].is_number_unsigned());
 }
 
-// What came of a run: not what was measured, nor which values of the plan meant it, of which there may be several.
+// The reproducible part of a line: without timing, and without the axis values, of which several may denote the same
+// run.
 std::string compared(PlanJson line) {
   for (const char* key : {"timing", "axes", "attempt", "notes"}) line.erase(key);
   return dump(line);
 }
 
-// flock(), whatever signals come; 0 or errno.
+// flock() that retries on signals; returns 0 or errno.
 int lock(int file) {
   while (::flock(file, LOCK_EX | LOCK_NB) != 0)
     if (errno != EINTR) return errno;
@@ -78,7 +79,7 @@ std::string sweep_json(const SweepPlan& plan, const ExpandedPlan& expanded) {
     if (!axis.sampled) one["values"] = axis.values;
     json["axes"].push_back(std::move(one));
   }
-  // A line for each run: a person may look for one, and a plan may have many.
+  // One line per run, readable and searchable even in a large plan.
   std::string text = dump(json);
   text.pop_back();
   text += ",\n\"runs\":[";

@@ -1,5 +1,5 @@
-// What a sweep keeps: sweep.json with every run of the plan, and a file for each shard with a line for each run that
-// was done, failures too.
+// Files of a sweep: sweep.json with every run of the plan, and a file per shard with one line for each run that ended,
+// failures included.
 #pragma once
 
 #include <filesystem>
@@ -14,18 +14,18 @@ namespace pliant {
 
 inline constexpr const char* kSweepFile = "sweep.json";
 
-// The plan with all its runs, in its order: the same bytes on every machine.
+// The plan with all its runs, in order: identical bytes on every machine.
 std::string sweep_json(const SweepPlan& plan, const ExpandedPlan& expanded);
-// Puts it into the folder, which is made where it is missing. Another plan's takes its place, and `note` says so; a
-// file of that name that no sweep wrote stays and is an error.
+// Writes it into the folder, which is created if missing. Another plan's file is replaced, and `note` says so. A file
+// of that name that no sweep wrote is kept and causes an error.
 Status keep_sweep(const std::filesystem::path& folder, const std::string& json, std::string& note);
 Result<PlanJson> read_sweep(const std::filesystem::path& folder);
 
-// A file of lines that this process adds to. Each line is one write at the end of the file, and on the disk before the
-// next. One process at a time has it, by a lock; a file system without locks is refused.
+// A file of lines that this process appends to. Each line is one write at the end of the file, and is on disk before
+// the next. A lock gives one process exclusive access; a file system without locks is rejected.
 class LineFile {
  public:
-  // `torn`: the file ended in the middle of a line, which stays behind on a line of its own.
+  // `torn`: the file ended within a line; the fragment is kept on a separate line.
   static Result<LineFile> open(const std::filesystem::path& file, bool& torn);
   LineFile(LineFile&& other) noexcept : path_(std::move(other.path_)), file_(std::exchange(other.file_, -1)) {}
   LineFile& operator=(LineFile&&) = delete;
@@ -38,18 +38,18 @@ class LineFile {
   int file_ = -1;
 };
 
-// The lines of all shards in a folder, one for each id: what was done goes before what failed, a later attempt before
-// an earlier one, and of several the one that comes first as text, whatever file it stands in.
+// The lines of all shards in a folder, one per id. A completed run takes precedence over a failed one, a later attempt
+// over an earlier one; among equals the line that is first in text order, independent of its file.
 struct Lines {
   std::map<std::string, PlanJson> runs;  // by id
-  std::size_t torn = 0;                  // lines that are none
-  std::vector<std::string> disagree;     // ids that were done more than once, with other figures
+  std::size_t torn = 0;                  // malformed lines
+  std::vector<std::string> disagree;     // ids completed more than once, with different figures
 };
-// A folder that is not there has none.
+// A missing folder has no lines.
 Status read_lines(const std::filesystem::path& folder, Lines& lines);
 
 bool is_done(const PlanJson& line);
-std::uint64_t attempt_of(const PlanJson& line);           // at a run that failed: the first is 1
-std::vector<std::string> notes_of(const PlanJson& line);  // what the run said; of an older sweep none
+std::uint64_t attempt_of(const PlanJson& line);           // attempt number at a failed run, from 1
+std::vector<std::string> notes_of(const PlanJson& line);  // notes of the run; none from an older sweep
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// pliant sweep merge: the lines of all shards become tables, a report and plots.
+// pliant sweep merge: combines the lines of all shards into tables, a report and plots.
 #include "lab/console/exit.h"
 #include "lab/console/interrupt.h"
 #include "lab/console/print.h"
@@ -35,7 +35,7 @@ int merge_sweep(const MergeOptions& options) {
   auto table = read_table(folders);
   if (!table) return fail(kFailed, table.error());
   const SweepNotes notes = find_notes(*table);
-  const Interrupt interrupt(kAllOrNothing);  // what is staged must not stay behind
+  const Interrupt interrupt(kAllOrNothing);  // removes staged files on interruption
   auto out = OutputFolder::create(options.out, options.force);
   if (!out) return fail(kFailed, out.error());
   interrupt.remove_if_forced(out->staging());

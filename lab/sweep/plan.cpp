@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr Limit kPlanFile{16 * limits::kMiB, "bytes", "a plan is held in memory"};
-constexpr int kDeepestNesting = 16;  // what a plan says lies at most 5 deep
+constexpr int kDeepestNesting = 16;  // a valid plan is nested at most 5 deep
 
-// Options of `pliant run` that a sweep decides itself, and why.
+// Options of `pliant run` that the sweep sets itself, with the reason.
 constexpr std::pair<const char*, const char*> kRefused[] = {
     {"--out", "is the sweep's own; runs write into a folder that goes again"},
     {"--force", "replaces results, and a run of a sweep has a folder of its own; leave it out"},
@@ -41,9 +41,9 @@ std::string argument(const std::string& name, const PlanJson& value) {
   return value.is_boolean() ? name : name + "=" + text_of(value);
 }
 
-// "" or what `pliant run` would say of this option.
+// Empty, or the error of `pliant run` for this option.
 std::string wrong_option(CheckArguments check, const std::string& name, const PlanJson& value) {
-  // A value in the name would pass by what is refused.
+  // A value in the name would bypass the list of refused options.
   if (name.find('=') != std::string::npos || name == "--")
     return "'" + name + "' is no name of an option; write the name alone, and its value behind the colon";
   for (const auto& [refused, why] : kRefused)
@@ -76,7 +76,7 @@ Result<PlanJson> parse(const fs::path& file) {
     if (event == PlanJson::parse_event_t::key && !keys.empty() && !keys.back().insert(parsed.get<std::string>()).second)
       twice = parsed.get<std::string>();
     wide = wide || (!keys.empty() && keys.back().size() > kMostKeys);
-    return !deep && !wide;  // what is passed over here is not held
+    return !deep && !wide;  // skipped values are not stored
   };
   try {
     PlanJson json = PlanJson::parse(text, look);
@@ -91,7 +91,7 @@ Result<PlanJson> parse(const fs::path& file) {
   } catch (const PlanJson::parse_error& error) {
     return syntax_error(file, text, error.byte);
   } catch (const PlanJson::out_of_range& error) {
-    // Its sentence ends with the number in quotes.
+    // The library's message ends with the number in quotes.
     const std::string said = error.what();
     const std::size_t quote = said.find('\'');
     return Error{file.string(), "has a number that no computer's number holds" +
@@ -100,7 +100,7 @@ Result<PlanJson> parse(const fs::path& file) {
   }
 }
 
-// Reads the parts of one plan, in turn, into `plan`. Errors have the JSON pointer; the caller puts the file before it.
+// Reads the parts of one plan, in turn, into `plan`. Errors contain the JSON pointer; the caller prepends the file.
 class Reader {
  public:
   Reader(const PlanJson& json, SweepPlan& plan, CheckArguments check) : json_(json), plan_(plan), check_(check) {}
@@ -159,7 +159,7 @@ class Reader {
     return Done{};
   }
 
-  // The same thing twice would leave it to chance which one holds.
+  // Duplicates are rejected: which one counts would be arbitrary.
   Status check_name(const std::string& name, const std::string& pointer) {
     for (const SweepAxis& axis : plan_.axes)
       if (axis.name == name)
@@ -175,7 +175,7 @@ class Reader {
     return Done{};
   }
 
-  // Before anything is made of them.
+  // Checked before the values are created.
   Status check_count(const std::string& pointer, std::size_t more_axes, std::size_t times) {
     const std::size_t axes = plan_.axes.size() + more_axes, runs = plan_.count() * times;
     if (axes > kMostAxes)
@@ -255,7 +255,7 @@ class Reader {
     return Done{};
   }
 
-  // A text or a list of them: there may be more to keep one day.
+  // A text or a list of texts, so that more kinds can be added.
   Status keep() {
     if (!json_.contains("keep")) return Done{};
     const PlanJson& keep = json_["keep"];
@@ -324,7 +324,7 @@ ArgumentFile file_in(const SweepPlan& plan, const std::string& argument) {
   if (!source || source->file.empty()) return {};
   std::size_t begin = kProbe.size() + source->name.size() + 1;
   if (!source->held) return at(begin + kScript.size(), std::string::npos);
-  // One of the hand's words: between commas, blanks aside.
+  // One of the hand's comma-separated words, with optional blanks.
   begin += kHand.size();
   for (std::size_t found = argument.find(source->file, begin); found != std::string::npos;
        found = argument.find(source->file, found + 1)) {

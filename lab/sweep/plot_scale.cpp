@@ -13,7 +13,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kLogFactor = 30.0;  // [1] from the least to the most
+constexpr double kLogFactor = 30.0;  // [1] ratio of largest to smallest value
 constexpr int kTicks = 5;
 
 std::string unit_of(const std::string& name) {

@@ -28,8 +28,8 @@ Status add_file(Hash& hash, const fs::path& file) {
   return Done{};
 }
 
-// scene_hash(), and what else a run goes by: scripts of devices, error budgets, and which keys they do not choose
-// because the level says them.
+// scene_hash() and the other inputs of a run: device scripts, error budgets, and the keys that are excluded from the
+// choice of models because the level sets them.
 std::string hash_level(const Level& level) {
   Hash hash;
   hash.add(scene_hash(level));
@@ -47,12 +47,12 @@ std::string hash_level(const Level& level) {
   return fmt::format("{:016x}", hash.value());
 }
 
-// Of what arguments name: the bytes of a file, each read once.
+// Hashes of files that arguments name; each file is read once.
 class FileHashes {
  public:
   FileHashes(const SweepPlan& plan, const Level& level) : plan_(plan), folder_(level.path.parent_path()) {}
 
-  // An argument as it counts for an id: of a file what it holds instead of where it lies.
+  // Adds an argument to an id: for a file its contents, not its location.
   Status add(Hash& hash, const std::string& argument) {
     const ArgumentFile file = file_in(plan_, argument);
     if (!file.path.empty()) {
@@ -73,7 +73,7 @@ class FileHashes {
   }
 
  private:
-  // NODE.EXT.KEY=VALUE, where the value may be a file beside the level.
+  // NODE.EXT.KEY=VALUE; the value may be a file beside the level.
   void add_setting(Hash& hash, const std::string& setting) {
     const std::size_t equals = setting.find('=');
     const Key* key = equals == std::string::npos ? nullptr : find_key_of_path(setting.substr(0, equals));
@@ -90,11 +90,11 @@ class FileHashes {
 
   const SweepPlan& plan_;
   fs::path folder_;                             // of the level
-  std::map<std::string, std::uint64_t> read_;   // by path: of options
-  std::map<std::string, std::uint64_t> named_;  // by value of a key
+  std::map<std::string, std::uint64_t> read_;   // by path, for options
+  std::map<std::string, std::uint64_t> named_;  // by value, for keys
 };
 
-// What settings are tried on: a level without its meshes.
+// A level without its meshes, on which settings are checked.
 Level keys_of(const Level& level) {
   Level out;
   out.nodes = level.nodes;
@@ -105,7 +105,7 @@ Level keys_of(const Level& level) {
   return out;
 }
 
-// As `pliant run` would take these arguments; the error is the run's.
+// Checks these arguments as `pliant run` does; the error is the same.
 Status try_arguments(const Level& level, bool bare, const std::vector<std::string>& arguments) {
   Level tried = level;
   std::vector<ProbeSource> sources;
@@ -128,8 +128,8 @@ Status try_arguments(const Level& level, bool bare, const std::vector<std::strin
   return set_keys(tried, sets);
 }
 
-// What is wrong with the plan's own settings, then with a value of an axis: where it fits no run, neither beside the
-// first values of the other axes nor beside the last nor alone.
+// Reports an error in the plan's own settings, then an axis value that is valid in no run: neither with the first
+// values of the other axes, nor with the last, nor alone.
 Status try_values(const SweepPlan& plan, const Level& level, bool bare) {
   const auto wrong = [&](const std::vector<PlanJson>& values) {
     return try_arguments(level, bare, arguments_of(plan, values));
@@ -156,7 +156,7 @@ Status try_values(const SweepPlan& plan, const Level& level, bool bare) {
   return Done{};
 }
 
-// The limit that the plan gives its runs holds for the level that it is tried on; then what it was.
+// Applies the plan's limit factor while its level is checked, then restores the previous one.
 class LimitFactor {
  public:
   explicit LimitFactor(const SweepPlan& plan) : before_(limit_factor()) {

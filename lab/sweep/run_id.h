@@ -1,5 +1,5 @@
-// What makes two runs of sweeps the same run: the level as it is felt, its error budgets and what they leave open, the
-// arguments, what is in the files that these name (not where they lie), the version.
+// Identity of a run across sweeps: the level's scene hash, its error budgets and the keys that it sets itself, the
+// arguments, the contents (not the locations) of the files they name, and the version.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace pliant {
 struct SweepRun {
   std::string id;                      // 16 hexadecimal digits
   std::vector<PlanJson> values;        // of the axes
-  std::vector<std::string> arguments;  // after LEVEL; files from the plan's folder
+  std::vector<std::string> arguments;  // after LEVEL; file names relative to the plan's folder
 };
 
 struct ExpandedPlan {
@@ -23,8 +23,8 @@ struct ExpandedPlan {
   std::vector<SweepRun> runs;
 };
 
-// Loads the level once. Settings and probes are tried on it: the first value of an axis that no run can have is an
-// error with its place in the plan.
+// Loads the level once and checks settings and probes on it. The first axis value that is valid in no run is an error
+// with its place in the plan.
 Result<ExpandedPlan> expand_plan(const SweepPlan& plan);
 
 }  // namespace pliant

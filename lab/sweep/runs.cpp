@@ -15,10 +15,10 @@ namespace pliant {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr auto kLook = std::chrono::milliseconds(2);  // a run takes 20 ms at least
+constexpr auto kLook = std::chrono::milliseconds(2);  // polling interval; a run takes at least 20 ms
 
-// Where runs write; gone at the end. Whoever makes one has the shard's file locked, so that what has its name was left
-// by a sweep that was killed.
+// Working folder of the runs, removed at the end. Its owner holds the lock of the shard's file, so an existing folder
+// of that name was left by a killed sweep.
 class WorkFolder {
  public:
   static Result<WorkFolder> create(const fs::path& folder, const Shard& shard) {
@@ -49,13 +49,13 @@ class WorkFolder {
   fs::path path_;
 };
 
-// A run that is under way.
+// A running run.
 struct Slot {
   std::size_t run;
   Child child;
 };
 
-// Sentences that are the same wherever the plan lies.
+// Removes the plan's location from sentences, so that they are the same everywhere.
 PlanJson without_folder(PlanJson notes, const fs::path& folder) {
   const std::string begin = folder.string() + "/";
   for (PlanJson& note : notes) {
@@ -67,7 +67,7 @@ PlanJson without_folder(PlanJson notes, const fs::path& folder) {
   return notes;
 }
 
-// "" or why not.
+// Empty, or the reason of the failure.
 std::string keep_curve(const fs::path& run, const fs::path& curve) {
   std::error_code error;
   fs::create_directory(curve.parent_path(), error);
@@ -75,7 +75,7 @@ std::string keep_curve(const fs::path& run, const fs::path& curve) {
   return error ? curve.string() + ": cannot be put in place: " + error.message() + "; check the folder" : "";
 }
 
-// Whether the disk of a folder has no room for the results of a run.
+// True if the folder's disk has no room for a run's results.
 bool is_full(const fs::path& folder) {
   constexpr std::uintmax_t kRoom = 256 << 10;  // [byte]
   std::error_code error;
@@ -172,12 +172,12 @@ Result<RunsDone> do_runs(const SweepPlan& plan, const ExpandedPlan& expanded, co
       any = true;
       const SweepRun& run = expanded.runs[slots[i].run];
       const PlanJson line = line_of(plan, run, slots[i].child, before, folder);
-      // A full disk says nothing of the run: it is to be done when there is room.
+      // A full disk is not a failure of the run: it is repeated when there is room.
       if (!is_done(line) && !interrupt.requested())
         if (const auto why = line["error"].get<std::string>(); wants_room(why) || is_full(folder))
           return Error{folder.string(), "run " + run.id + " could not write its results (" + why +
                                             "); with more room the same command goes on with it"};
-      // A batch system may signal the sweep and its runs alike: one that this has ended is to be done again.
+      // A batch system may signal the sweep and its runs together: a run ended by that signal is repeated.
       if (is_done(line) || !interrupt.requested()) {
         if (Status ok = lines.add(line); !ok) return ok.error();
         ++(is_done(line) ? done.done : done.failed);

@@ -18,7 +18,7 @@ std::optional<std::size_t> whole(std::string_view text) {
   return value;
 }
 
-// Two variables that belong together: this one's number, from 0, and how many there are.
+// Number (from 0) and count from a pair of environment variables.
 struct ShardPlace {
   std::size_t number = 0, count = 1;
   std::string from;
@@ -26,7 +26,7 @@ struct ShardPlace {
 
 using Variable = std::function<const char*(const char*)>;
 
-// A batch system may set them to nothing.
+// A batch system may set them to the empty string.
 std::string read(const Variable& variable, const std::string& name) {
   const char* text = variable(name.c_str());
   return text ? text : "";
@@ -56,19 +56,19 @@ Result<ShardPlace> rank_of(const Variable& variable, const char* rank_name, cons
   return ShardPlace{*rank, *size, std::string(rank_name) + " and " + size_name};
 }
 
-// Whether srun started this: the batch script itself, of which there is one whatever --ntasks says, has SLURM_PROCID 0
-// and SLURM_NTASKS as well, but no step; nor has an interactive shell, or one with a number from the end of the range.
+// True in a task started by srun. The batch script itself (one, whatever --ntasks is) also has SLURM_PROCID 0 and
+// SLURM_NTASKS, but no step. An interactive shell has no step either, or a step id from the reserved end of the range.
 bool in_step(const Variable& variable) {
   constexpr std::size_t kSpecial = 0xfffffff0;
   const auto step = whole(read(variable, "SLURM_STEP_ID"));
   return step && *step < kSpecial && !read(variable, "SLURM_PROCID").empty();
 }
 
-// MPI's own variables come first: mpirun may run within a step, and start several processes in each of its tasks.
+// MPI's variables take precedence: mpirun may run within a step and start several processes in each task.
 Result<ShardPlace> in_ranks(const Variable& variable) {
   for (const auto& [rank, size] : {std::pair("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"), {"PMI_RANK", "PMI_SIZE"}})
     if (!read(variable, rank).empty()) return rank_of(variable, rank, size);
-  // SLURM_NTASKS may be the job's, of which the step is a part.
+  // SLURM_NTASKS may be that of the whole job, of which the step is a part.
   if (in_step(variable))
     return rank_of(variable, "SLURM_PROCID",
                    read(variable, "SLURM_STEP_NUM_TASKS").empty() ? "SLURM_NTASKS" : "SLURM_STEP_NUM_TASKS");

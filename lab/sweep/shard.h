@@ -1,4 +1,4 @@
-// Which share of a plan's runs this process does.
+// The share of a plan's runs that this process executes.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,13 @@ namespace pliant {
 
 struct Shard {
   std::size_t number = 1, count = 1;  // number in [1, count]
-  std::string from;                   // the variables that said so; empty: an argument, or nobody
+  std::string from;                   // source variables; empty: an argument, or no shard given
   bool has(std::size_t run) const { return run % count == number - 1; }
-  std::string file() const;  // of its lines
+  std::string file() const;  // file name of its lines
 };
 
-// I/N where `argument` has it. Else a Slurm array's task, a rank (of MPI, or a task of srun), or both (each task of the
-// array has its own ranks), by `variable`, which is the environment; nullptr is a variable that is not set. Else
-// everything.
+// I/N from `argument` if given. Else, from the environment `variable` (nullptr: not set), a Slurm array task, a rank
+// (of MPI, or a task of srun), or both (each array task has its own ranks). Else all runs.
 Result<Shard> choose_shard(const std::string& argument, const std::function<const char*(const char*)>& variable);
 
 }  // namespace pliant

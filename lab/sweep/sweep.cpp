@@ -15,23 +15,23 @@ namespace {
 enum class State { kToDo, kDone, kFailed };
 
 struct Work {
-  std::vector<State> states;                   // of every run of the plan
-  std::vector<std::size_t> wanted;             // runs of this shard that are to be done, in the plan's order
+  std::vector<State> states;                   // per run of the plan
+  std::vector<std::size_t> wanted;             // runs of this shard still to execute, in the plan's order
   std::size_t mine = 0, done = 0, failed = 0;  // of this shard's
-  std::size_t without_curve = 0;               // done, but to be done again for their curves
+  std::size_t without_curve = 0;               // completed, but to be repeated for their curves
 };
 
-// A run that a full disk ended is not one that failed: older sweeps gave it a line.
+// A run ended by a full disk has not failed: older sweeps wrote a line for it.
 State state_of(const PlanJson& line) {
   if (is_done(line)) return State::kDone;
   return wants_room(line["error"].get<std::string>()) ? State::kToDo : State::kFailed;
 }
 
-// `curves`: the folder of a sweep that keeps them; empty: it does not.
+// `curves`: the folder of kept curves; empty: curves are not kept.
 Work find_work(const ExpandedPlan& expanded, const Lines& lines, const Shard& shard, bool retry_failed,
                const fs::path& curves) {
   Work work;
-  std::map<std::string, bool> chosen;  // values that differ may mean the same run
+  std::map<std::string, bool> chosen;  // different values may denote the same run
   for (std::size_t i = 0; i < expanded.runs.size(); ++i) {
     const auto line = lines.runs.find(expanded.runs[i].id);
     State state = line == lines.runs.end() ? State::kToDo : state_of(line->second);
@@ -66,7 +66,7 @@ void print_list(const SweepPlan& plan, const ExpandedPlan& expanded, const Work&
             settings_of(plan, expanded.runs[i]));
 }
 
-// As a shell takes it.
+// Quoted for a shell.
 std::string quoted(const std::string& word) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+@%";
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
@@ -93,7 +93,7 @@ std::string shard_text(const Shard& shard) {
                           : " in shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count);
 }
 
-// What the runs of this shard had to say, earlier ones too.
+// Prints the notes of this shard's runs, including earlier ones.
 void say_notes(const fs::path& folder, const Shard& shard) {
   auto table = read_table({folder});
   if (!table) return;
@@ -150,7 +150,7 @@ int sweep(const SweepOptions& options) {
   if (const Status kept = keep_sweep(folder, sweep_json(*plan, *expanded), replaced); !kept)
     return fail(kFailed, kept.error());
   if (!replaced.empty()) note(replaced);
-  // What there is to do is looked up under the lock: whoever had it before may just have added lines.
+  // The work is determined under the lock: the previous holder may just have added lines.
   bool torn = false;
   auto file = LineFile::open(folder / shard->file(), torn);
   if (!file) return fail(kFailed, file.error());

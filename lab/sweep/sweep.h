@@ -1,5 +1,5 @@
-// `pliant sweep`: one level over many settings, each a run of its own, in as many processes and on as many machines as
-// there are (docs/sweep.md).
+// `pliant sweep`: one level with many settings, one run each, in parallel processes and on several machines
+// (docs/sweep.md).
 #pragma once
 
 #include <string>
@@ -12,18 +12,18 @@ namespace pliant {
 struct SweepOptions {
   std::string plan;   // file
   std::string out;    // folder of the lines; empty: out/<plan's name>
-  std::string shard;  // I/N; empty: from the environment, else all
+  std::string shard;  // I/N; empty: from the environment, else all runs
   bool retry_failed = false;
   bool list = false, dry_run = false;  // write nothing
-  unsigned jobs = 1;                   // runs at a time
-  CheckArguments check = nullptr;      // of the command that does them
+  unsigned jobs = 1;                   // concurrent runs
+  CheckArguments check = nullptr;      // of the command that executes them
 };
 int sweep(const SweepOptions& options);
 
 struct MergeOptions {
-  std::vector<std::string> folders;  // of lines
+  std::vector<std::string> folders;  // folders with lines
   std::string out;
-  bool force = false;  // replaces what an earlier merge wrote
+  bool force = false;  // replace an earlier merge's files
 };
 int merge_sweep(const MergeOptions& options);
 

@@ -14,11 +14,11 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kNamedNotes = 12;  // that are said; the report has all
+constexpr std::size_t kNamedNotes = 12;  // most notes printed; the report has all
 
-// A limit by its figure, and the words by which a run's own sentence of it is known.
+// A limit: its figure, and the words that identify a run's sentence about it.
 struct LimitKind {
-  const char *key, *figure;  // a figure's end where it begins with a dot
+  const char *key, *figure;  // figure: a suffix if it begins with a dot
   const char *what, *cure, *mark;
 };
 constexpr LimitKind kLimits[] = {
@@ -56,7 +56,7 @@ bool is_figure_of(const LimitKind& kind, const std::string& name) {
   return name.ends_with("." + figure) || name.ends_with(".torque_" + figure);
 }
 
-// How bad it was: the share where the run has one, else the figure itself.
+// Severity in a run: the share if there is one, else the figure itself.
 std::pair<double, std::string> severity(const PlanJson& figures, const std::string& name) {
   constexpr std::string_view kTicks = "_ticks";
   if (name.ends_with(kTicks)) {
@@ -69,7 +69,7 @@ std::pair<double, std::string> severity(const PlanJson& figures, const std::stri
 void find_limits(const SweepTable& table, SweepNotes& out) {
   for (const LimitKind& kind : kLimits) {
     SweepLimit limit{kind.key, kind.what, kind.cure, 0, 0.0, {}, 0};
-    std::vector<std::pair<const char*, const std::string*>> names;  // where it stands in a line
+    std::vector<std::pair<const char*, const std::string*>> names;  // its names in a line
     for (const std::string& name : table.figures)
       if (is_figure_of(kind, name)) names.emplace_back("figures", &name);
     for (const std::string& name : table.timings)
@@ -80,7 +80,7 @@ void find_limits(const SweepTable& table, SweepNotes& out) {
       for (const auto& [part, name] : names) {
         const PlanJson& figures = table.rows[row].line[part];
         if (!(number_in(figures, *name) > 0.0)) continue;
-        // What creeps more slowly than this, nobody sees, and the run does not say it either.
+        // Creep below this is invisible, and the run does not report it either.
         if (kind.key == std::string_view("unconverged") && number_in(figures, "soft.residual") < 1e-4) continue;
         acted = true;
         const auto [worst, figure] = severity(figures, *name);
@@ -92,7 +92,7 @@ void find_limits(const SweepTable& table, SweepNotes& out) {
   }
 }
 
-// A sentence without its numbers: runs say the same of other ticks and newtons.
+// The sentence without its numbers: runs report the same with other numbers.
 std::string without_numbers(const std::string& sentence) {
   std::string out;
   const char *at = sentence.data(), *const end = at + sentence.size();
@@ -114,7 +114,7 @@ bool is_limit(const std::string& sentence) {
 }
 
 void find_other_notes(const SweepTable& table, SweepNotes& out) {
-  std::map<std::string, std::size_t> known;  // by the sentence without its numbers: place in out.notes
+  std::map<std::string, std::size_t> known;  // sentence without its numbers -> index in out.notes
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     if (!table.rows[row].done()) continue;
     std::vector<std::size_t> here;
@@ -127,7 +127,7 @@ void find_other_notes(const SweepTable& table, SweepNotes& out) {
       ++out.notes[place->second].runs;
     }
   }
-  // Runs in which nothing was touched are counted as such.
+  // Runs without contact are counted separately.
   std::erase_if(out.notes, [&](const SweepNote& note) {
     return note.runs <= out.untouched && note.sentence.find("never touched anything") != std::string::npos;
   });
@@ -135,9 +135,9 @@ void find_other_notes(const SweepTable& table, SweepNotes& out) {
                    [](const SweepNote& a, const SweepNote& b) { return a.runs > b.runs; });
 }
 
-// Whether runs that differ in this axis alone have the same figures, rounding aside; false where no two tell.
+// True if runs that differ in this axis alone have equal figures up to rounding; false if no two runs can be compared.
 bool is_idle(const SweepTable& table, std::size_t axis, const std::vector<std::vector<double>>& figures) {
-  std::unordered_map<std::string, std::size_t> first;  // by the values of all other axes: a row
+  std::unordered_map<std::string, std::size_t> first;  // values of all other axes -> row
   bool told = false;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     if (!table.rows[row].done()) continue;

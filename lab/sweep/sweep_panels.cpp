@@ -12,17 +12,18 @@ namespace pliant {
 namespace {
 
 constexpr double kBar = 16, kBarRoom = 86;  // [pixel]
-constexpr std::size_t kLongWord = 14;       // letters of a tick
-// Dots of a panel: beyond the first as many as stand for the rest, beyond the second as pixels in a vector file, where
-// each takes some 300 bytes.
+constexpr std::size_t kLongWord = 14;       // letters of a tick label
+// Above this number of dots a vector file embeds them as pixels, since each dot takes some 300 bytes. Above kMostDots
+// they are subsampled.
 constexpr std::size_t kMostVectorDots = 500;
-constexpr double kDotRoom = 6;  // [pixel] that dots reach beyond their panel
+constexpr double kDotRoom = 6;  // [pixel] margin for dots beyond their panel
 
 Color mixed(Color a, Color b, double t) {
   return {a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t};
 }
 
-// Viridis (van der Walt & Smith 2015), by six of its colours: even in lightness, in print and to nearly all eyes.
+// Viridis (van der Walt & Smith 2015) by six of its colours: uniform in lightness, in print and for most colour vision
+// deficiencies.
 Color heat(double share) {
   constexpr Color kStops[] = {{0.267, 0.005, 0.329}, {0.254, 0.265, 0.530}, {0.164, 0.471, 0.558},
                               {0.135, 0.659, 0.518}, {0.478, 0.821, 0.318}, {0.993, 0.906, 0.144}};
@@ -36,7 +37,7 @@ std::string short_word(const std::string& word) {
   return word.size() <= kLongWord ? word : word.substr(0, kLongWord - 2) + "..";
 }
 
-// Ticks that would lie on each other are thinned.
+// Overlapping tick labels are thinned out.
 void draw_ticks(Pen& pen, const PlotArea& area, const std::vector<std::pair<double, std::string>>& ticks, bool across,
                 bool grid) {
   double last = -1e9;
@@ -72,7 +73,7 @@ void draw_frame(Pen& pen, const PlotArea& area, const std::string& title, const 
   pen.text(area.x + area.w / 2, area.y + area.h + 42, 14, 0.5, across);
 }
 
-// Calls draw(pen, row) of every row that has the figure; of very many, of each n-th.
+// Calls draw(pen, row) for every row that has the figure; for every n-th if there are very many.
 template <class Draw>
 void draw_run_dots(Pen& pen, const PlotArea& area, const Figure& figure, const Draw& draw) {
   std::vector<std::size_t> rows;
@@ -123,7 +124,7 @@ void draw_bar(Pen& pen, const PlotArea& area, double least, double most) {
   pen.text(x + kBar + 5, area.y + area.h, 13, 0, short_number(least));
 }
 
-// Of two axes of steps a cell for each pair, row by row from below; of samples one for each run.
+// For two axes of steps one cell per pair, row by row from below; for samples one per run.
 std::vector<Cell> cells_of(const Figure& figure, const AxisValues& across, const AxisValues& up, bool sampled) {
   const std::size_t w = across.steps.size(), h = up.steps.size();
   std::vector<Cell> cells(sampled ? figure.of_row.size() : w * h);

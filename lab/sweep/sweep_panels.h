@@ -1,4 +1,4 @@
-// One figure of a sweep in one panel of a plot: along an axis, or over two.
+// One panel of a plot: a figure of a sweep along an axis, or over two.
 #pragma once
 
 #include <string>
@@ -15,17 +15,17 @@ struct PlotArea {
 
 struct Figure {
   std::string name;
-  std::vector<double> of_row;  // NaN where a run has none
+  std::vector<double> of_row;  // NaN for a run without it
 };
 
-inline constexpr std::size_t kMostDots = 2000;  // of a panel, which they cover
+inline constexpr std::size_t kMostDots = 2000;  // per panel, which they cover
 
-// Mean over the other axes at each step, and the range in which they lie; of samples every run is a dot.
+// Steps: the mean over the other axes at each step, and its range. Samples: a dot per run.
 void draw_curve(Pen& pen, const PlotArea& area, const Figure& figure, const AxisValues& axis, bool sampled);
-// Cells of two axes of steps, each the mean over the other axes; of samples a dot for each run.
+// Axes of steps: cells with the mean over the other axes. Samples: a dot per run.
 void draw_map(Pen& pen, PlotArea area, const Figure& figure, const AxisValues& across, const AxisValues& up,
               bool sampled);
-// A map of it would have one colour.
+// True if its map would have one colour.
 bool is_flat(const Figure& figure, const AxisValues& across, const AxisValues& up, bool sampled);
 
 }  // namespace pliant

@@ -21,11 +21,11 @@ constexpr double kSheetWidth = 1600, kSheetTitle = 84, kSheetRow = 330, kSheetFo
                  kSheetRight = 28, kSheetBetween = 100;
 constexpr double kAbovePlot = 36, kBelowPlot = 66;
 constexpr int kPlotColumns = 3;
-constexpr std::size_t kMostPanels = 24;  // of a picture
+constexpr std::size_t kMostPanels = 24;  // per picture
 constexpr std::size_t kMostMaps = 10;    // pairs of axes
 constexpr std::size_t kMostCurves = 10;  // axes
 
-// Numbers that are not the same in every run, rounding aside.
+// Numbers that differ between runs by more than rounding.
 std::vector<Figure> figures_of(const SweepTable& table) {
   std::vector<Figure> out;
   for (const std::string& name : table.figures) {
@@ -45,7 +45,7 @@ std::vector<Figure> figures_of(const SweepTable& table) {
 
 using DrawPanel = std::function<void(Pen&, const PlotArea&, const Figure&)>;
 
-// A panel for each figure, row by row, as name.png and name.svg.
+// One panel per figure, row by row, as name.png and name.svg.
 Status draw_picture(OutputFolder& out, const std::string& name, const std::string& title, const std::string& subtitle,
                     const std::vector<Figure>& figures, const DrawPanel& draw) {
   const std::size_t shown = std::min(figures.size(), kMostPanels);
@@ -69,7 +69,7 @@ Status draw_picture(OutputFolder& out, const std::string& name, const std::strin
   return draw_png_and_svg(png, svg, width, height, all);
 }
 
-// As a file's name has it.
+// The axis name as part of a file name.
 std::string plain(const std::string& axis) {
   std::string out = axis.starts_with("--") ? axis.substr(2) : axis;
   if (out.starts_with("*.")) out = "all" + out.substr(1);

@@ -1,5 +1,5 @@
-// Plots of a sweep, as .png and .svg: a curve of each figure along each axis, and a map of each figure over each two
-// axes.
+// Plots of a sweep, as .png and .svg: a curve of each figure along each axis, and a map of each figure over each pair
+// of axes.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace pliant {
 
-// Figures that are the same in every run are not drawn. How many plots were staged; `left_out` says what a picture had
-// no room for. Ends early, with what was drawn, when that is requested.
+// Figures equal in every run are not drawn. Returns the number of staged plots; `left_out` names what did not fit.
+// Stops early on interruption, with what was drawn.
 Result<std::size_t> plot_sweep(const SweepTable& table, OutputFolder& out, const Interrupt& interrupt,
                                std::string& left_out);
 

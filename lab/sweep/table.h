@@ -1,4 +1,4 @@
-// A sweep's runs and what came of them, in the order of the plan: what tables and plots are made from.
+// The runs of a sweep with their results, in the order of the plan: input of tables and plots.
 #pragma once
 
 #include <filesystem>
@@ -19,19 +19,19 @@ struct SweepRow {
 };
 
 struct SweepTable {
-  PlanJson sweep;               // sweep.json, without the runs
-  std::vector<SweepAxis> axes;  // of sampled ones without values
+  PlanJson sweep;               // sweep.json without the runs
+  std::vector<SweepAxis> axes;  // sampled axes have no values
   std::vector<SweepRow> rows;
-  std::vector<std::string> figures;  // names, in the order in which rows first have them
+  std::vector<std::string> figures;  // names, in order of first appearance
   std::vector<std::string> timings;
   std::vector<std::string> disagree;  // ids
-  std::size_t torn = 0, foreign = 0;  // lines that are none; lines of runs that the plan does not have
+  std::size_t torn = 0, foreign = 0;  // malformed lines; lines of runs that are not in the plan
 };
 
-// How many of the runs that were done have probes, none of which ever touched anything.
+// Number of completed runs that have probes but no contact.
 std::size_t untouched(const SweepTable& table);
 
-// Of all folders, which must be of one plan.
+// Reads all folders, which must belong to one plan.
 Result<SweepTable> read_table(const std::vector<std::filesystem::path>& folders);
 
 std::string results_csv(const SweepTable& table);

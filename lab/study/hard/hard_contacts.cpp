@@ -14,7 +14,7 @@ namespace {
 
 using scenes::WorkMeter;
 
-// Two fingers on one dent hold it up together: the tissue pushes back as hard as against one.
+// Two fingers in one dent share its reaction: its sum equals the force on a single finger.
 HardFigure one_vertex(const HardSetting&) {
   HardFigure worst;
   for (const SpringLaw kind : {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential}) {
@@ -34,8 +34,8 @@ HardFigure one_vertex(const HardSetting&) {
   return worst;
 }
 
-// From both sides; walls of 4 and 1 mm are pressed by three quarters, so that the probes pass each other. A sheet of no
-// thickness has two sides at the same place.
+// Probes press from both sides. Walls of 4 and 1 mm are pressed by three quarters, so that the probes pass each other.
+// A sheet without thickness has both sides at the same place.
 HardFigure opposed(const HardSetting&) {
   HardFigure worst;
   const Deformable d = frictionless();
@@ -68,7 +68,7 @@ HardFigure opposed(const HardSetting&) {
   return worst;
 }
 
-// Pressed deeper than a wall is thick, beyond it, and lifted: the side it went in at holds it all the way.
+// Pressed deeper than the wall's thickness and lifted: the contact stays on the side of entry throughout.
 HardFigure through_a_wall(const HardSetting&) {
   HardFigure worst;
   const Deformable d = frictionless();
@@ -95,7 +95,7 @@ HardFigure through_a_wall(const HardSetting&) {
           go({0.003, radius - kPress, 0.002});
           go({0.013, radius - kPress, -0.004});
           go({0.013, 0.01 + radius, -0.004});
-          stage.wait(0.5);  // the surface has come back
+          stage.wait(0.5);  // until the surface has recovered
         }
         worst.need(meter.most > 0.5 * law(d, kPress) * kPress * 0.99, "not pressed");
       }
@@ -121,7 +121,7 @@ HardFigure disconnect(const HardSetting&) {
     worst.add(length(stage.read(probe).force), where);
     worst.need(((stage.world.dropped & kDroppedStale) != 0) == stale, where + ": not said so");
     stage.device(probe).status = DeviceStatus::kReady;
-    for (int i = 0; i < 10; ++i) {  // the gate is shut while the computed force is large
+    for (int i = 0; i < 10; ++i) {  // the gate is closed while the computed force is large
       stage.tick();
       worst.add(length(stage.read(probe).force), where + ", back again");
     }
@@ -132,9 +132,9 @@ HardFigure disconnect(const HardSetting&) {
   return worst;
 }
 
-// Pressed four times as hard as its motors can push, slid over and left, in ticks of 1/rate.
+// Pressed to four times the device's maximum force, slid and released, in ticks of 1/rate.
 struct Saturated {
-  double work = 0.0, stored = 0.0;  // [J] of what is sent
+  double work = 0.0, stored = 0.0;  // [J] of the sent force
 };
 Saturated saturate(HardFigure& worst, double rate, bool judge) {
   Stage stage(rate);
@@ -175,8 +175,8 @@ HardFigure saturation(const HardSetting&) {
   return worst;
 }
 
-// A force that depends on the depth alone is one still where it is cut short. What the trapezoid is off by falls by
-// four where the ticks are half as long.
+// A force that depends on the depth alone is still conservative when it is clamped. The trapezoid rule's error falls by
+// four if the ticks are halved.
 HardFigure saturated_loop(const HardSetting&) {
   HardFigure worst;
   const Saturated coarse = saturate(worst, 1000, false), fine = saturate(worst, 2000, false);

@@ -1,5 +1,5 @@
-// What a touch tick and the query for the nearest place may cost. Processor time scatters: each figure is the median of
-// batches, with the interval that holds their true median.
+// Cost limits of a touch tick and of a nearest-point query. CPU time scatters: each figure is the median of batches
+// with a confidence interval.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::size_t kBatches = 12;
 
-// Of 12 batches, the true median lies between the third least and the third largest with 96 %, whatever their
-// distribution: 1 - 2 (1 + 12 + 66) / 2^12.
+// The true median of 12 batches lies between the third smallest and the third largest with 96 %, for any distribution:
+// 1 - 2 (1 + 12 + 66) / 2^12.
 struct Median {
   double value, low, high;
 };
@@ -41,9 +41,9 @@ HardFigure figure_of(const Median& median, const std::string& where) {
   return figure;
 }
 
-// 2,000 vertices awake on a surface of 1e6, or of 1e5 where the study is brief.
+// 2,000 vertices awake on a surface of 1e6 vertices, or 1e5 in a brief study.
 HardFigure tick(const HardSetting& setting, std::vector<double> TickCost::*batches) {
-  const int ticks = setting.brief ? 1000 : 10'000;  // a batch
+  const int ticks = setting.brief ? 1000 : 10'000;  // per batch
   const TickCost cost = measure_tick(setting.brief ? 100'000 : 1'000'000, 2000, static_cast<int>(kBatches) * ticks,
                                      static_cast<int>(kBatches));
   return figure_of(median_of(cost.*batches), fmt::format("{} vertices, {:.0f} awake", cost.vertices, cost.awake));
@@ -55,8 +55,8 @@ HardFigure most_ticks(const HardSetting& setting) {
   return tick(setting, &TickCost::batch_p99_us);
 }
 
-// On spheres of 1e5 and 1e6 vertices, of points as FCPW was asked: anywhere within 4 mm of it, so that none finds in
-// the cache what the last one left there. The time over FCPW's, of the sphere where it is larger.
+// On spheres of 1e5 and 1e6 vertices, from random points within 4 mm as in FCPW's benchmark, so that the cache does not
+// contain the data of the last query. The figure is the time over FCPW's on the sphere where the ratio is larger.
 template <class Query>
 HardFigure queries(const HardSetting& setting, Query query) {
   HardFigure worst;

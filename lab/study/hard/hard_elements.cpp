@@ -1,4 +1,4 @@
-// Elements: tissue that is turned inside out, and files whose tetrahedra are none.
+// Elements: inverted tissue, and files with degenerate tetrahedra.
 #include <fmt/format.h>
 
 #include <array>
@@ -60,15 +60,15 @@ HardFigure inverted(const HardSetting&) {
   return worst;
 }
 
-// A sound block and the same with `spoil` done to it must move alike under their weight. `twin`: a node beside node 0;
-// where it hangs there by a sliver, it stays.
+// A sound block, and the same block with a defect added by `spoil`, must move alike under gravity. `twin`: a node
+// beside node 0; if a sliver connects it to node 0, it stays there.
 HardFigure beside_a_sound_one(const std::function<void(TetMesh&, std::uint32_t loose, std::uint32_t twin)>& spoil,
                               bool twin_hangs) {
   HardFigure worst;
   TetMesh sound = tets::box(2, 2, 2, dvec3(0), dvec3(0.1));
   tets::hold(sound, [](dvec3 p) { return p.y < 1e-9; });
   TetMesh broken = sound;
-  const std::uint32_t loose = sound.free_count, twin = loose + 1;  // new nodes; pinned ones move up by two
+  const std::uint32_t loose = sound.free_count, twin = loose + 1;  // new nodes; pinned node indices shift by two
   for (Tet& t : broken.tets)
     for (std::uint32_t& n : t) n += n >= loose ? 2 : 0;
   broken.nodes.insert(broken.nodes.begin() + loose, {dvec3(0.05, 0.2, 0.05), sound.nodes[0] + 1e-7 * dvec3(1, 1, 1)});
@@ -91,7 +91,7 @@ HardFigure sliver(const HardSetting&) {
   return beside_a_sound_one(
       [](TetMesh& mesh, std::uint32_t, std::uint32_t twin) {
         mesh.tets.push_back({0, 1, 4, twin});
-        std::swap(mesh.tets[3][0], mesh.tets[3][1]);  // and one listed inside out
+        std::swap(mesh.tets[3][0], mesh.tets[3][1]);  // one tetrahedron with the wrong orientation
       },
       true);
 }

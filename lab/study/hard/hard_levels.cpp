@@ -1,5 +1,4 @@
-// What ships and what people bring, touched by the built-in orbit: no tick in which the safety layer had to withhold a
-// force.
+// Shipped and user levels, touched by the built-in orbit: the safety layer must not withhold a force in any tick.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kOrbit = 4.2;          // [s] a turn of the orbit and a little
-constexpr double kLeastContact = 0.05;  // [1] of the ticks of a run: less, and nothing was judged
+constexpr double kOrbit = 4.2;          // [s] slightly more than one turn of the orbit
+constexpr double kLeastContact = 0.05;  // [1] of the ticks of a run: with less contact nothing was judged
 
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> found;
@@ -31,7 +30,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return found;
 }
 
-// A file may name several objects alike, a session does not.
+// A file may repeat object names, a session may not.
 void tell_apart(Level& level) {
   std::set<std::string> names;
   for (LevelNode& node : level.nodes)
@@ -51,7 +50,7 @@ void without_friction(Level& level) {
   }
 }
 
-// What was judged of many files.
+// Result over many files.
 struct Judged {
   HardFigure worst;
   int files = 0, refused = 0, left_out = 0;
@@ -66,7 +65,7 @@ struct Judged {
   }
 };
 
-// Every probe and tool follows its orbit: ticks in which a force was withheld from any of them.
+// Every probe and tool follows its orbit; counts the ticks in which any of their forces was withheld.
 void orbit(Judged& judged, const Level& level, const std::string& where) {
   HardFigure& worst = judged.worst;
   auto session = Session::open(Scene(level));
@@ -97,7 +96,7 @@ void orbit(Judged& judged, const Level& level, const std::string& where) {
   worst.add(withheld, where);
 }
 
-// `sound`: it must load; else it may be refused, in a sentence that names it.
+// `sound`: the file must load; otherwise it may be rejected with a sentence that names it.
 void judge(Judged& judged, const fs::path& file, bool sound, bool bodies) {
   const std::string name = file.filename().string();
   auto loaded = load_level(file);

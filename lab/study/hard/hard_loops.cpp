@@ -1,4 +1,4 @@
-// Closed loops: no hand gets more work out of a surface than it put in.
+// Closed loops: a hand must not gain energy from a surface.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::uint64_t withheld(const Stage& stage) {
   return ticks;
 }
 
-// Along a path at a speed [m/s]; work of the raw force over the energy stored at most.
+// Follows a path at a speed [m/s]; figure: work of the raw force over the largest stored energy.
 void go_around(HardFigure& worst, Stage& stage, Entity probe, const std::vector<dvec3>& path, double speed,
                const std::string& where) {
   RawMeter meter;
@@ -55,7 +55,7 @@ HardFigure boxes(const HardSetting&) {
       stage.add(scenes::slab(cells, 0.08, 0.08), frictionless());
       const Entity probe = stage.add_probe({0, 0.02, 0});
       stage.prepare();
-      // Over the top, out over an edge, down beside the wall, in through it, out again, and home.
+      // Over the top, out over an edge, down beside the wall, in through it, out again, and back.
       std::vector<dvec3> path{{0, 0.02, 0},
                               {0.005, -0.003, 0.004},
                               {0.03, -0.006, 0.011},
@@ -95,8 +95,8 @@ HardFigure spheres(const HardSetting&) {
   return worst;
 }
 
-// A point is pressed into an organ where it is, and led around a loop beside that place, both ways. Ticks of 1/8 ms:
-// the trapezoid's own error must not hide the surface's.
+// A point pressed into an organ moves around a loop beside that place, in both directions. Ticks of 1/8 ms, so that the
+// trapezoid rule's error does not hide the surface's.
 HardFigure organs(const HardSetting& setting) {
   HardFigure worst;
   const fs::path folder = setting.corpus / "meshes-valid" / "hra";
@@ -173,8 +173,8 @@ HardFigure organs(const HardSetting& setting) {
   return worst;
 }
 
-// Press, slide and let go, three times over, in ticks of 1/rate: the raw force's work after the worst of them, over the
-// most that was stored.
+// Press, slide and release, three times, in ticks of 1/rate. Figure: work of the raw force after the worst of them,
+// over the largest stored energy.
 struct Press {
   SpringLaw law;
   double friction, speed;  // [1], [m/s]
@@ -214,8 +214,8 @@ double work_of(HardFigure& worst, const Press& press, double rate, const std::st
   return most;
 }
 
-// Where nothing dissipates, work is what the trapezoid is off by, which falls by four where the ticks are half as long:
-// extrapolated, nothing is left. Elsewhere it is below zero.
+// Without dissipation the work is the trapezoid rule's error, which falls by four if the ticks are halved:
+// extrapolated, it vanishes. With dissipation it is below zero.
 HardFigure every_law(const HardSetting& setting) {
   HardFigure worst;
   for (const SpringLaw kind : kLaws)

@@ -1,4 +1,4 @@
-// Meshes that are not sound, and walls too thin to be seen in a tick.
+// Defective meshes, and walls that a probe crosses within one tick.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,17 +11,19 @@
 namespace pliant {
 namespace {
 
-// The depth 3 mm behind a coarse sphere, or a bowl felt from within, as it is after slow steps: however the last step
-// begins, in front of triangle and curved surface, between the two or right on one of them.
+// The depth 3 mm behind a coarse sphere, or inside a bowl, must equal that of slow steps. The last step begins in front
+// of the triangle and the curved surface, between them, or exactly on one of them.
 void pass_through_curved(HardFigure& worst) {
   constexpr double kRadius = 0.05;
   for (const bool hollow : {false, true}) {
     const Primitive p = hollow ? scenes::bowl(4, kRadius) : scenes::sphere(4, kRadius);
-    const double inward = hollow ? 1.0 : -1.0;  // the way of a press, along the radius
+    const double inward = hollow ? 1.0 : -1.0;  // direction of the press along the radius
     for (const dvec3 towards : {dvec3(0.1, -1, 0.23), dvec3(-0.4, -1, 0.1), dvec3(0.31, -1, -0.37)}) {
       const dvec3 u = normalize(towards);
       std::vector<double> steps{5e-5};
-      for (int i = 0; i <= 40; ++i) steps.push_back(0.003 + 2.5e-5 * i);  // the last one, from 3 to 4 mm long
+      for (int i = 0; i <= 40; ++i)
+        steps.push_back(0.003 + 2.5e-5 * i);  // start of the last step, which is 3 to 4 mm
+                                              // long
       double slow = 0.0;
       for (const double last : steps) {
         Stage stage;
@@ -71,7 +73,7 @@ HardFigure pass_through(const HardSetting&) {
   return worst;
 }
 
-// The forces of one press, slide and lift on two surfaces that should feel the same.
+// Compares the forces of one press, slide and lift on two surfaces that should feel the same.
 double difference(const Primitive& one, const Primitive& other) {
   std::vector<dvec3> first;
   double most = 0;
@@ -94,13 +96,13 @@ double difference(const Primitive& one, const Primitive& other) {
   }
   for (const dvec3& f : first)
     if (f.y > 1.0) return most;
-  return INFINITY;  // it was not pressed
+  return INFINITY;  // the surface was not pressed
 }
 
 HardFigure duplicate_vertices(const HardSetting&) {
   HardFigure worst;
   const Primitive welded = scenes::sheet(10, 0.1);
-  Primitive soup;  // every triangle has corners of its own
+  Primitive soup;  // triangles share no vertices
   for (const std::uint32_t i : welded.index) {
     soup.index.push_back(static_cast<std::uint32_t>(soup.position.size()));
     soup.position.push_back(welded.position[i]);
@@ -113,7 +115,7 @@ HardFigure zero_area(const HardSetting&) {
   HardFigure worst;
   const Primitive sound = scenes::sheet(10, 0.1);
   Primitive broken = sound;
-  const std::uint32_t across = 11;  // vertices in a row
+  const std::uint32_t across = 11;  // vertices per row
   for (const std::uint32_t v : {24u, 60u, 71u}) {
     const std::uint32_t flat[] = {v, v, v + 1, v, v, v, v, v + 1, v + 2, v, v + across, v + 2 * across};
     broken.index.insert(broken.index.begin() + 30, std::begin(flat), std::end(flat));
@@ -122,7 +124,7 @@ HardFigure zero_area(const HardSetting&) {
   return worst;
 }
 
-// A fin hangs under the middle line of a sheet: three triangles an edge.
+// A fin under the centre line of a sheet: three triangles share each edge.
 HardFigure non_manifold(const HardSetting&) {
   HardFigure worst;
   Primitive p = scenes::sheet(10, 0.1);

@@ -1,4 +1,4 @@
-// Numerics: springs and steps of every size, parameters that are none.
+// Numerics: springs and steps of every size, and invalid parameters.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ HardFigure without_mass(const HardSetting&) {
       const double k = 300, f = 0.6, decay = std::exp(-k * T / b), want = f / k + (0.01 - f / k) * decay;
       const std::string where = fmt::format("T {:g} s, b {:g}", T, b);
       worst.add(std::abs(step_oscillator({0.01, 5}, 0, b, k, f, T).height - want) / 0.01, where);
-      // Nor does a mass that is hardly one differ from none.
+      // A tiny mass must agree with zero mass.
       worst.add(std::abs(step_oscillator({0.01, 0}, 1e-24, b, k, f, T).height - want) / 0.01, where + ", m 1e-24 kg");
     }
   worst.add(std::abs(step_oscillator({1, 5}, 0, 0, 2, 4, 0.1).height - 2.0), "a spring alone");
@@ -85,7 +85,7 @@ HardFigure without_spring(const HardSetting&) {
   return worst;
 }
 
-// The same number in every place of a key's value; null: the key holds none.
+// The same number in every component of a key's value; null: the key has no numbers.
 Json filled(const Key& key, double number) {
   const Json point = Json::array({number, number, number});
   switch (key.type) {
@@ -110,7 +110,7 @@ Json filled(const Key& key, double number) {
   UNREACHABLE();
 }
 
-// One of each thing that has keys.
+// A level with one object of each kind that has keys.
 Level everything() {
   const Primitive ball = scenes::sphere(4, 0.03);
   const MeshData mesh{ball.position, ball.index};
@@ -132,7 +132,7 @@ bool is_said(const Status& status, const std::string& key, const std::string& na
 constexpr double kBadNumbers[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                                   -std::numeric_limits<double>::infinity()};
 
-// Every key of the level format that holds numbers, set in code to what is none: the session must refuse the scene.
+// Every numeric key of the level format is set in code to an invalid number: the session must reject the scene.
 HardFigure bad_parameters(const HardSetting&) {
   HardFigure passed;
   passed.add(0);
@@ -167,7 +167,7 @@ HardFigure bad_parameters(const HardSetting&) {
   return passed;
 }
 
-// What the touch clock takes: the last check before it, and values that are set between ticks.
+// Values that reach the touch clock: the last check before it, and values set between ticks.
 HardFigure bad_edits(const HardSetting&) {
   HardFigure passed;
   passed.add(0);
@@ -176,7 +176,7 @@ HardFigure bad_edits(const HardSetting&) {
   LevelNode node;
   node.deformable.emplace().reach = 0.02;
   passed.need(check(*node.deformable, "organ").ok(), "a sound one was refused");
-  // Spawn has used these up: they are of the mesh, and make `stiffness` and the model.
+  // Consumed by spawn: they define the mesh, `stiffness` and the model.
   const std::set<std::string> used_up{"crease_angle", "young", "poisson", "thickness", "error"};
   for (const Key& key : find_extension("deformable")->keys) {
     if (key.alias || filled(key, 0.0).is_null() || used_up.count(key.name)) continue;
@@ -225,7 +225,7 @@ HardFigure bad_poses(const HardSetting&) {
     stage.wait(0.3);
   }
   worst.need((stage.world.dropped & kDroppedNonFinite) != 0, "nothing said so");
-  // A rotation too: no tip is anywhere without one.
+  // A rotation is needed too: without it no tip has a position.
   stage.move(probe, {0, -0.004, 0}, 0.1);
   worst.need(stage.read(probe).normal_force > 1.0, "not pressed");
   for (const dquat bad : {dquat(NAN, 0, 0, 0), dquat(0, 0, 0, 0), dquat(1, INFINITY, 0, 0)}) {
@@ -264,8 +264,8 @@ HardFigure uneven_steps(const HardSetting&) {
   return worst;
 }
 
-// The lightest surface that a level may have, in steps that are long for it. The linear law's are exact: a tick after
-// its release nothing is left. The others take backward Euler's here: some is left, and it must not swing over.
+// The lightest surface that a level may have, with steps that are long for it. The linear laws are exact: nothing is
+// left a tick after release. The others use backward Euler here: some deflection is left, and it must not overshoot.
 HardFigure lightest_surface(const HardSetting&) {
   HardFigure worst;
   constexpr double kPress = 0.005;  // [m]
@@ -289,14 +289,15 @@ HardFigure lightest_surface(const HardSetting&) {
     for (int i = 0; i < 10; ++i) {
       double rise = 0.0;
       for (const vec4& s : stage.field(sheet).stream) rise = std::max(rise, static_cast<double>(s.w));
-      worst.need(rise < 0.25 * left * kPress + 1e-9, where + ": it swings over");  // the rim's share stands above
+      worst.need(rise < 0.25 * left * kPress + 1e-9, where + ": it swings over");  // vertices at the rim are above the
+                                                                                   // surface by their share
       stage.tick();
     }
   }
   return worst;
 }
 
-// Painted to no stiffness on one side: pressed there, slid to the stiff side, lifted.
+// Stiffness is painted to zero on one side: pressed there, slid to the stiff side, lifted.
 HardFigure painted_to_none(const HardSetting&) {
   HardFigure worst;
   const Deformable d = frictionless();

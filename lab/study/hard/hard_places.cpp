@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kPress = 0.003;  // [m]
 
-// Pressed 3 mm deep, held there, and held by a hand that trembles by 0.01 mm: how far the force is off, of the law's.
+// Pressed 3 mm deep and kept there, first still, then with a tremor of 0.01 mm. Figure: deviation of the force from the
+// law, relative.
 void press(HardFigure& worst, const char* name, const Primitive& surface, dvec3 at) {
   Stage stage;
   const Deformable d = frictionless();
@@ -50,7 +51,7 @@ HardFigure in_a_sheet(const HardSetting&) {
   return worst;
 }
 
-// Along lines from vertex to vertex of a coarse sphere, 3 mm deep: the foot meets vertices and edges exactly.
+// Along lines between vertices of a coarse sphere, 3 mm deep: the foot meets vertices and edges exactly.
 HardFigure from_vertex_to_vertex(const HardSetting&) {
   HardFigure worst;
   Stage stage;
@@ -82,15 +83,15 @@ HardFigure from_vertex_to_vertex(const HardSetting&) {
   return worst;
 }
 
-// A solid with flat sides, and the closest point on it of a place outside.
+// A solid with flat sides, and the closed form of its point closest to a place outside.
 struct Solid {
   const char* name;
   Primitive surface;
-  dvec3 corner, out;                    // [m] that probes are led around; [1] its axis
+  dvec3 corner, out;                    // [m] corner that probes move around; [1] its axis
   std::function<dvec3(dvec3)> closest;  // in closed form
 };
 
-constexpr double kHalf = 0.04;  // [m] of a box's side; where an octahedron's corners are
+constexpr double kHalf = 0.04;  // [m] half of a box's side; distance of an octahedron's corners
 
 Solid box() {
   const dvec3 low(-kHalf, -2 * kHalf, -kHalf), high(kHalf, 0, kHalf);
@@ -114,7 +115,7 @@ Primitive octahedron(double size) {
   return p;
 }
 
-// |x| + |y| + |z| <= kHalf: a projection on the simplex in the place's octant.
+// |x| + |y| + |z| <= kHalf: projection onto the simplex in the point's octant.
 Solid octahedron() {
   return {"octahedron", octahedron(kHalf), {0, kHalf, 0}, {0, 1, 0}, [](dvec3 x) {
             std::array<double, 3> sorted{std::abs(x.x), std::abs(x.y), std::abs(x.z)};
@@ -128,7 +129,7 @@ Solid octahedron() {
           }};
 }
 
-// Round about the Y axis, its tip at the origin, pointing up.
+// A cone about the y axis with its tip at the origin, pointing up.
 Primitive cone(int sides, double radius, double height) {
   Primitive p;
   p.position = {vec3(0), vec3(0, -static_cast<float>(height), 0)};
@@ -143,7 +144,7 @@ Primitive cone(int sides, double radius, double height) {
   return p;
 }
 
-// A sphere is led over a corner, the edges and the sides around it, 3 mm deep: its force is that of its distance.
+// A sphere moves over a corner and the edges and sides around it, 3 mm deep: its force is that of its distance.
 HardFigure over_corners(const HardSetting&) {
   HardFigure worst;
   constexpr double kRadius = 0.008;
@@ -173,7 +174,7 @@ HardFigure over_corners(const HardSetting&) {
   return worst;
 }
 
-// Minus the gradient of the stored energy, by central differences. [N]
+// Negative gradient of the stored energy, by central differences. [N]
 dvec3 by_differences(Stage& stage, Entity probe, dvec3 x) {
   constexpr double kStep = 1e-6;  // [m]
   dvec3 force(0);
@@ -188,7 +189,7 @@ dvec3 by_differences(Stage& stage, Entity probe, dvec3 x) {
   return force;
 }
 
-// Points below a corner, a tip, a ridge, where the surface has no normal of its own, and spheres over a tip.
+// Points below a corner, a tip and a ridge, where the surface has no unique normal, and spheres over a tip.
 HardFigure by_energy(const HardSetting&) {
   HardFigure worst;
   struct Under {
@@ -196,7 +197,7 @@ HardFigure by_energy(const HardSetting&) {
     Primitive surface;
     double radius;
     dvec3 from;
-    std::function<dvec3(double, double, double)> at;  // of three numbers from 0 to 1
+    std::function<dvec3(double, double, double)> at;  // of three numbers in [0, 1]
   };
   const dvec3 tip(0, kHalf, 0);
   const std::array<Under, 5> places{{
@@ -210,7 +211,7 @@ HardFigure by_energy(const HardSetting&) {
          const double y = 0.002 + 0.006 * a;
          return tip + y * dvec3(0.45 * (2 * b - 1), -1, 0.45 * (2 * c - 1));
        }},
-      // Deeper than its radius of curvature the nearest side changes at once.
+      // Deeper than the radius of curvature, the nearest side switches at once.
       {"a point under a cone's tip",
        cone(24, 0.04, 0.04),
        0,
@@ -260,7 +261,7 @@ HardFigure by_energy(const HardSetting&) {
   return worst;
 }
 
-// Held 3 mm under the line of a ridge both sides are nearer, and share the push.
+// 3 mm under a ridge line, both sides are nearest and share the reaction.
 HardFigure under_a_ridge(const HardSetting&) {
   HardFigure worst;
   constexpr double kSlope = 0.7;  // [rad]
@@ -285,7 +286,7 @@ HardFigure under_a_ridge(const HardSetting&) {
 
 constexpr double kBorder = 0.05;  // [m] half of a sheet
 
-// A sphere is led over the border or a corner of an open sheet, and trembles there: the closest point is on the sheet.
+// A sphere moves over the border or a corner of an open sheet, with tremor: the closest point is on the sheet.
 HardFigure sphere_over_a_border(const HardSetting&) {
   HardFigure worst;
   constexpr double kRadius = 0.008;
@@ -319,8 +320,8 @@ HardFigure sphere_over_a_border(const HardSetting&) {
   return worst;
 }
 
-// A point behind an open sheet is held up to the border. Beyond it nothing is felt, and a hand that trembles over the
-// border is let go once.
+// A point behind an open sheet is in contact up to the border. Beyond it there is no force, and a hand that trembles
+// over the border is released once.
 HardFigure point_over_a_border(const HardSetting&) {
   HardFigure worst;
   for (const dvec3 out : {dvec3(1, 0, 0), dvec3(0, 0, -1), dvec3(1, 0, 1)})
@@ -341,7 +342,7 @@ HardFigure point_over_a_border(const HardSetting&) {
         meter.add(stage, probe, x);
         const bool beyond = std::max(std::abs(x.x), std::abs(x.z)) > kBorder;
         if (held && beyond && x.y < 0) held = false, ++let_go;
-        if (!held && x.y > 0) held = true;  // it may come in again from above
+        if (!held && x.y > 0) held = true;  // it may enter again from above
         const double want = held && x.y < 0 ? law(d, -x.y) : 0.0;
         worst.add(length(f - dvec3(0, want, 0)) / law(d, kPress), where);
       };
@@ -365,7 +366,7 @@ HardFigure point_over_a_border(const HardSetting&) {
 
 HardFigure in_a_crease(const HardSetting&) {
   HardFigure worst;
-  // Of all places the line of the crease is the nearest.
+  // The line of the crease is nearest to all of these places.
   press(worst, "valley", scenes::valley(10, 0.1, 0.7), {0, -kPress, 0.003});
   return worst;
 }

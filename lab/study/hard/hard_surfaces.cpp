@@ -1,4 +1,4 @@
-// What a surface must feel like, against closed forms and quadrature: methods.md section 3 item 10.
+// Required feel of a surface, against closed forms and quadrature: methods.md section 3 item 10.
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
@@ -96,7 +96,7 @@ HardFigure ridge(const HardSetting&) {
     stage.move(probe, {-0.02, -0.02 * slope - 0.006 / std::cos(degrees * M_PI / 180), 0.003}, 1.0);
     dvec3 before = raw_force(stage, probe);
     worst.need(std::abs(length(before) - 1.8) < 0.02, "not pressed");
-    // 6 mm below the ridge's line and on, at 50 mm/s.
+    // From 6 mm below the ridge line onwards, at 50 mm/s.
     for (const dvec3 to :
          {dvec3(0, -0.006, 0.003), dvec3(0.02, -0.02 * slope - 0.006, 0.003), dvec3(-0.01, -0.015, 0.003)}) {
       const dvec3 from = stage.read(probe).position;
@@ -131,7 +131,7 @@ HardFigure groove(const HardSetting&) {
   return worst;
 }
 
-// B goes down into A's dent until it meets it and 0.1 mm more, rests, and lifts the same way.
+// B moves down into A's dent until 0.1 mm past contact, rests, and lifts the same way.
 HardFigure in_anothers_dent(const HardSetting&) {
   HardFigure worst;
   for (const Shape shape : {Shape::kVolume, Shape::kWendland, Shape::kHertz}) {
@@ -191,14 +191,14 @@ HardFigure painted_step(const HardSetting&) {
   go({0.02, -0.004, 0}, 0.8, [&] { sideways = std::max(sideways, std::abs(raw_force(stage, probe).x)); });
   worst.need(std::abs(sideways - 0.25) < 0.01, "sideways it is not -d^2/2 grad k");
   go({0.02, 0.001, 0}, 0.1, [&] {
-    const double depth = -stage.read(probe).position.y;  // what is sent, not only raw
+    const double depth = -stage.read(probe).position.y;  // from the sent force, not only the raw one
     if (depth > 0) worst.add(std::abs(stage.read(probe).normal_force - 600 * depth) / full, "lifted");
   });
   worst.add(std::abs(meter.work) / meter.most, "work over the path");
   return worst;
 }
 
-// Two boxes side by side, their tops level: one surface to a probe.
+// Two adjacent boxes with level tops feel like one surface to a probe.
 HardFigure seam(const HardSetting&) {
   HardFigure worst;
   for (const double mu : {0.0, 0.3})
@@ -212,7 +212,7 @@ HardFigure seam(const HardSetting&) {
       const Entity probe = stage.add_probe({-0.03, radius + 0.002, 0.0037}, radius);
       stage.prepare();
       stage.move(probe, {-0.03, y, 0.0037}, 0.2);
-      stage.move(probe, {-0.025, y, 0.0037}, 0.1);  // the bristle is loaded
+      stage.move(probe, {-0.025, y, 0.0037}, 0.1);  // loads the friction bristle
       for (const double to : {0.025, -0.025})
         stage.move(probe, {to, y, 0.0037}, 1.0, [&](const ProbeReading& r) {
           const dvec3 f = raw_force(stage, probe);
@@ -225,12 +225,13 @@ HardFigure seam(const HardSetting&) {
   return worst;
 }
 
-// F / (E* sqrt(R) d^1.5) of a rigid paraboloid on an elastic half-space, without Hertz: rings of constant pressure, the
-// displacement of each by Boussinesq's kernel (of a loaded disc of radius a: 4 a/(pi E*) E(r/a) within, and
-// 4 r/(pi E*) (E(a/r) - (1 - a^2/r^2) K(a/r)) beside it; E, K elliptic integrals), and pressures that do not pull.
+// F / (E* sqrt(R) d^1.5) of a rigid paraboloid on an elastic half-space, computed independently of Hertz. Rings of
+// constant pressure; the displacement of each by Boussinesq's kernel (of a loaded disc of radius a: 4 a/(pi E*) E(r/a)
+// inside, and 4 r/(pi E*) (E(a/r) - (1 - a^2/r^2) K(a/r)) outside; E, K elliptic integrals). Pressures are not
+// negative.
 double boussinesq_factor() {
   constexpr int kRings = 200;
-  constexpr double kReach = 1.2;  // of the rings: Hertz says that contact ends at sqrt(R d), here 1
+  constexpr double kReach = 1.2;  // of the rings: by Hertz contact ends at sqrt(R d), here 1
   const auto edge = [](int i) { return kReach * i / kRings; };
   const auto middle = [&](int i) { return 0.5 * (edge(i) + edge(i + 1)); };
   const auto disc = [](double r, double a) {
@@ -269,7 +270,7 @@ double boussinesq_factor() {
   }
 }
 
-// From the keys to what a hand is sent, through a session.
+// From the keys to the sent force, through a session.
 HardFigure hertz(const HardSetting&) {
   HardFigure worst;
   constexpr double kYoung = 5400, kPoisson = 0.5;  // [Pa], [1]

@@ -1,4 +1,4 @@
-// Time that does not pass evenly: ticks that are missed, samples that are early, late or absent, and stalls.
+// Uneven time: missed ticks; samples that are early, late or absent; stalls.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kStall = 0.05;  // [s]
 
-// A clock that misses ticks and a device that is sampled when the machine gets to it: some poses are old, some ticks
-// have none, some have two of which the later one counts.
+// The clock misses ticks, and the device is sampled irregularly: some poses are old, some ticks have none, some have
+// two, of which the later one counts.
 HardFigure uneven_ticks(const HardSetting&) {
   HardFigure worst;
   std::mt19937 random(5);
@@ -67,12 +67,13 @@ HardFigure uneven_ticks(const HardSetting&) {
   return worst;
 }
 
-// What a device with limits is sent around a stall of the touch clock.
+// The force sent to a device with limits around a stall of the touch clock.
 class Sent {
  public:
   Sent(HardFigure& worst, double slew, double dt)
       : worst_(worst), rise_(slew * dt), change_(std::max(slew, kLeastFall) * dt) {}
-  // What its size rises by over the slew limit, or all that changes over the limit of what is let go.
+  // The larger of two ratios: the increase of the magnitude over the slew limit, and any change over the limit of
+  // release.
   void add(dvec3 force, const std::string& where) {
     worst_.need(std::isfinite(length(force)), where + ": no number");
     const double rise = length(force) - length(last_);
@@ -91,7 +92,7 @@ class Sent {
   bool started_ = false;
 };
 
-// The clock misses 49 ticks in the middle of a press. The hand has gone on meanwhile: deeper, or out of the surface.
+// The clock misses 49 ticks during a press. Meanwhile the hand has moved deeper, or out of the surface.
 HardFigure stalled_ticks(const HardSetting&) {
   HardFigure worst;
   for (const bool out : {false, true})
@@ -130,7 +131,7 @@ HardFigure stalled_ticks(const HardSetting&) {
   return worst;
 }
 
-// No sample came in the stall either: the pose is old in the first tick after it.
+// No sample arrived during the stall either: the pose is old in the first tick after it.
 HardFigure stalled_samples(const HardSetting&) {
   HardFigure worst;
   Stage stage;
@@ -152,16 +153,16 @@ HardFigure stalled_samples(const HardSetting&) {
   return worst;
 }
 
-// A device in a hand that goes to where it is sent at 50 mm/s of real time, and everything that it was written.
+// A device in a hand that moves to its target at 50 mm/s of real time, with a record of all written forces.
 struct RealHand {
   struct Write {
     std::uint64_t ns;
     dvec3 force;
   };
   std::atomic<double> target{0.002};  // [m] height
-  std::atomic<double> force{0.0};     // [N] upwards, as written last
+  std::atomic<double> force{0.0};     // [N] upwards, last written
   double rate = 0.0;
-  std::vector<Write> writes;  // of the thread that writes, until it has ended
+  std::vector<Write> writes;  // owned by the writing thread until it has ended
 };
 class RealDevice final : public Driver {
  public:
@@ -173,7 +174,7 @@ class RealDevice final : public Driver {
     const double most = at_ > 0 ? 0.05e-9 * static_cast<double>(now - at_) : 0.0, to = hand_.target;
     at_ = now;
     height_ += std::clamp(to - height_, -most, most);
-    // A hand is never quite still.
+    // The hand trembles slightly.
     tremor_ = -tremor_;
     sample.position = {0, height_ + tremor_, 0};
     return true;
@@ -197,16 +198,16 @@ bool within(double seconds, Done done) {
   return true;
 }
 
-constexpr double kLate = 6.0;  // [ms] between two ticks, or two of a servo's periods: the machine was late by itself
+constexpr double kLate = 6.0;  // [ms] between two ticks, or two servo periods: above it the machine itself was late
 constexpr int kTries = 5;
 
 enum class RealRun : std::uint8_t { kJudged, kLateElsewhere };
 
-// The clocks of a session run; its touch clock is kept from going on for 50 ms. Without a servo the first tick after it
-// goes on from there; a device with one is let go of as soon as the model is old, and its hand must let go too.
+// The clocks of a session run; the touch clock is blocked for 50 ms. Without a servo the first tick after it continues.
+// With a servo the device is released as soon as the model is old, and its force must end too.
 RealRun real_stall(HardFigure& worst, double rate) {
   const std::string where = rate > 0 ? "servo" : "no servo";
-  RealHand hand;  // outlives the session, which writes it zero at its end
+  RealHand hand;  // outlives the session, which writes zero at its end
   hand.rate = rate;
   Scene scene;
   const Primitive sheet = scenes::sheet(20, 0.2);
@@ -258,7 +259,7 @@ RealRun real_stall(HardFigure& worst, double rate) {
   const bool missed = session->figures().overruns >= 40;
   for (std::size_t i = 1; rate > 0 && i < hand.writes.size(); ++i)
     late += 1e-6 * static_cast<double>(hand.writes[i].ns - hand.writes[i - 1].ns) > kLate;
-  if (late > 0) return RealRun::kLateElsewhere;  // the machine itself
+  if (late > 0) return RealRun::kLateElsewhere;  // delayed by the machine itself
   worst.need(stopped.ok(), where + ": it does not stop");
   worst.need(held, where + ": the law before it");
   worst.need(missed, where + ": there was no stall");
@@ -269,7 +270,7 @@ RealRun real_stall(HardFigure& worst, double rate) {
   if (rate > 0) {
     for (const RealHand::Write& write : hand.writes)
       worst.need(std::isfinite(length(write.force)), where + ": a number");
-    // From the last tick's model on it holds for kModelHolds; then nothing leaves.
+    // The last tick's model is valid for kModelHolds; after that no force is sent.
     for (const RealHand::Write& write : hand.writes) {
       const double since = 1e-9 * (static_cast<double>(write.ns) - static_cast<double>(begin));
       if (since > 0.02 && since < 0.2) worst.need(write.force == dvec3(0), where + ": a force that nobody renews");
