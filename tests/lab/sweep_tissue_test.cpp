@@ -1,7 +1,7 @@
 // A sweep's runs share their soft bodies: each is made once, and every run is the one it is alone, to the bit.
 #include <algorithm>
 
-#include "tests/player/sweep_command.h"
+#include "tests/lab/sweep_command.h"
 
 namespace pliant::testing {
 namespace {
