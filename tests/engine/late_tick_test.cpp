@@ -223,6 +223,7 @@ TEST(LateTick, DriversWithoutAServoAreToldNoBlowWhateverWasMissed) {
   compare("instrument.glb", Led::kDriver, 1500);
   compare("hand.glb", Led::kDriver, 1500);
   compare("turning_ball.glb", Led::kDriver, 1500);
+  compare("stack.glb", Led::kDriver, 1500);
 }
 
 // Every period of the servo is judged, those in the stall among them.
@@ -235,6 +236,7 @@ TEST(LateTick, DriversWithAServoAreToldNoBlowWhateverWasMissed) {
 TEST(LateTick, AMouseThatWasNotHeardForLongIsNoBlow) {
   compare("instrument.glb", Led::kMouse, 1500);
   compare("hand.glb", Led::kMouse, 1500);
+  compare("stack.glb", Led::kMouse, 1500);
 }
 
 }  // namespace
