@@ -67,7 +67,7 @@ class FirstLevelWindowTest : public CommandTest {
     ASSERT_EQ(run.status, 0) << run.err;
     const auto [force, depth] = felt(folder / "out" / "forces.csv");
     EXPECT_GT(force, 0.02) << organ << ' ' << tool << ": nothing is felt\n" << run.out;
-    // As deep as the keys say, 5 mm; of a tool, depth is how far its coupling is drawn.
+    // As deep as the keys, 5 mm; for a tool, depth is the extension of its coupling.
     if (!soft) {
       EXPECT_LT(depth, 0.0052) << organ << ' ' << tool;
       EXPECT_GT(depth, 0.004) << organ << ' ' << tool;

@@ -1,5 +1,5 @@
-// The touch clock is late: ticks are missed, and whatever moves has gone on meanwhile. On the levels as they ship, with
-// their scripts and with orbits, in a virtual clock that jumps: what leaves is what would have left without the jump.
+// A late touch clock: ticks are missed while everything moves on. On the shipped levels, with their scripts and with
+// orbits, in a virtual clock that jumps: the force is the same as without the jump.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -77,7 +77,7 @@ void compare(const std::string& level, bool orbits, std::uint64_t ticks, DriverK
       if (is_missed(i, missed, between)) continue;
       const std::vector<dvec3> forces = late.tick(i);
       for (std::size_t d = 0; d < forces.size(); ++d) {
-        // In time, about now: a force that is late by as much as was missed is none too many.
+        // On time, within the delay: a force delayed by the missed time is acceptable.
         double most = 0.0, rise = 0.0;
         const std::uint64_t from = i > 2 * missed + 30 ? i - 2 * missed - 30 : 0;
         for (std::uint64_t k = from; k < std::min<std::uint64_t>(ticks, i + 30); ++k) {
@@ -89,7 +89,8 @@ void compare(const std::string& level, bool orbits, std::uint64_t ticks, DriverK
       }
       last = forces;
     }
-    // What is in contact goes on, after a long stall, from where nobody has seen it: it is bounded, and not the same.
+    // After a long stall, an object in contact continues from an unobserved state: the force is bounded, but not the
+    // same.
     const double most_over = missed < 50 ? 0.1 : 0.3;  // [N]
     EXPECT_LT(worst, most_over) << level << ", " << missed << " ms, orbits " << orbits;
     EXPECT_LT(step, most_over) << level << ", " << missed << " ms, orbits " << orbits;

@@ -1,5 +1,5 @@
-// What hidapi and sysfs show of devices that umockdev makes: run it by ctest, or under umockdev-wrapper. A node is a
-// pseudo terminal: good for one report at a time, not for timing.
+// Devices emulated by umockdev, seen through hidapi and sysfs: run by ctest, or under umockdev-wrapper. A node is a
+// pseudo terminal: it supports one report at a time, and no timing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-// What every study writes: the front of cost against error, and files that leave nothing out.
+// Output common to all studies: the Pareto front of cost against error, and complete files.
 #include "player/study/pareto.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The study `fidelity` against what is known: P1's own law and shape, and small strains.
+// The study `fidelity` against known results: P1's own law and shape, and small strains.
 #include "player/study/study_fidelity.h"
 
 #include <gtest/gtest.h>

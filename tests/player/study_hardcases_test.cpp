@@ -1,5 +1,5 @@
-// Every hard case of the table (player/study/hard) holds, or is a known defect and exactly that. The whole of what the
-// study does, but for costs; under a sanitizer the part of --quick.
+// Every hard case of the table (player/study/hard) passes, or has exactly its known defect. The whole study except for
+// costs; under a sanitizer the part of --quick.
 #include "player/study/study_hardcases.h"
 
 #include <gmock/gmock.h>
@@ -78,7 +78,7 @@ TEST(HardTable, HasEveryEntryOfBothListsByNameAndNoOther) {
   EXPECT_THAT(entries, ::testing::ContainerEq(wanted));
 }
 
-// A figure that is no number, or a condition that fails, must never look like a small one.
+// A figure that is NaN, or a failed condition, must never look like a small value.
 TEST(HardFigure, IsTheWorstAndFailuresAreWorse) {
   HardFigure figure;
   figure.add(0.5, "a");

@@ -1,5 +1,5 @@
-// Tetrahedral meshes that others made, as they are, slivers included: each stands on its lowest nodes and settles under
-// its own weight.
+// Tetrahedral meshes from other sources, including slivers: each is pinned at its lowest nodes and settles under its
+// own weight.
 #include "tests/scenes/tet_corpus.h"
 
 #include <gtest/gtest.h>
