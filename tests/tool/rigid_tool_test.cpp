@@ -99,7 +99,7 @@ TEST(RigidTool, ThroughARigidCubeOnTheFloorItsCouplingIsFelt) {
   }
 }
 
-// Pressed obliquely, within the friction cone: nothing creeps, and the new models at 60 Hz cause no audible change.
+// Pressed obliquely, within the friction cone: nothing creeps, and the new models at 60 Hz cause no perceptible change.
 TEST(RigidTool, OnATowerTheForceIsStillForAsLongAsItIsHeld) {
   ToolStage stage(kRigidToolStep);
   add_floor(stage);
