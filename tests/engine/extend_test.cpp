@@ -183,7 +183,7 @@ TEST(Extend, ASolverFromOutsideMovesABodyAsTheBuiltInOneDoes) {
   EXPECT_THAT(session.error().message(), HasSubstr("factory makes none"));
 }
 
-// Whatever it returns for deep presses, alone and in a shared dent: no force, and a report of the cause.
+// Invalid values for deep presses, alone and in a shared dent, give zero force and a report of the cause.
 TEST(Extend, ALawThatIsNoNumberGivesNoForceAndIsSaid) {
   static bool broken = false;
   struct Broken final : SpringFunction {

@@ -77,7 +77,7 @@ void compare(const std::string& level, bool orbits, std::uint64_t ticks, DriverK
       if (is_missed(i, missed, between)) continue;
       const std::vector<dvec3> forces = late.tick(i);
       for (std::size_t d = 0; d < forces.size(); ++d) {
-        // On time, within the delay: a force delayed by the missed time is acceptable.
+        // Bounds from the on-time run around this tick: the force may be late by the missed time.
         double most = 0.0, rise = 0.0;
         const std::uint64_t from = i > 2 * missed + 30 ? i - 2 * missed - 30 : 0;
         for (std::uint64_t k = from; k < std::min<std::uint64_t>(ticks, i + 30); ++k) {
