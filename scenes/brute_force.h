@@ -1,4 +1,4 @@
-// The place of touch and the closest point of a mesh without a tree: the truth that searches are held against.
+// Touch point and closest point of a mesh without a tree: the reference for searches.
 #pragma once
 
 #include <algorithm>

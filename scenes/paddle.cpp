@@ -8,9 +8,9 @@ namespace pliant::scenes {
 namespace {
 
 const dvec3 kPaddle(0.084, 0.018, 0.048);      // [m]
-const dvec3 kBed(0.072, 0, 0.036);             // [m] where studs stand
+const dvec3 kBed(0.072, 0, 0.036);             // [m] extent of the studs
 constexpr double kStud = 0.003;                // [m] wide and high
-constexpr double kDepth = 1.5e-3;              // [m] how far the device leads the paddle into the studs
+constexpr double kDepth = 1.5e-3;              // [m] depth to which the device presses the paddle into the studs
 constexpr double kCircle = 3e-3, kTurn = 2.0;  // [m] radius, [s] once around
 constexpr double kFriction = 0.4;              // [1]
 

@@ -1,5 +1,5 @@
-// A paddle of tissue, its upper face a rigid handle, that is pressed on a bed of studs and circles there with friction:
-// one contact a stud, however fine the tissue.
+// A paddle of tissue with a rigid handle on its upper face, pressed on a bed of studs and moved in circles there with
+// friction: one contact per stud, however fine the tissue.
 #pragma once
 
 #include "scenes/tool_stage.h"
@@ -29,7 +29,7 @@ inline constexpr dvec3 kPaddleStart{0, 0.5e-3, 0};  // [m] above the studs
 // The tool.
 Entity add_paddle(ToolStage& stage, PaddleCells cells);
 void add_bed(ToolStage& stage, StudBed bed);
-// Where its device is led. [m]
+// Path of its device. [m]
 dvec3 paddle_path(double time);
 
 }  // namespace pliant::scenes

@@ -182,7 +182,7 @@ const Contact& Stage::contact(Entity probe, std::size_t object) const {
   for (auto [entity, contact] : world.registry.view<Contact>())
     if (contact.probe == probe && i++ == object) return contact;
   static const Contact none;
-  if (i == 0) return none;  // nothing is touched
+  if (i == 0) return none;  // no contact
   ASSERT(false && "no such contact");
   std::abort();
 }

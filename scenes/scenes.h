@@ -54,7 +54,7 @@ class Stage {
   HapticDevice& device(Entity probe) { return world.registry.get<HapticDevice>(probe); }
   double time() const { return static_cast<double>(ticks_) * dt_; }
   double dt() const { return dt_; }
-  const Schedule<World>& schedule() const { return schedule_; }  // what each system costs
+  const Schedule<World>& schedule() const { return schedule_; }  // with the cost of each system
   std::uint64_t hash() const;
 
   World world;

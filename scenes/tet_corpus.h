@@ -1,4 +1,4 @@
-// Tetrahedral meshes of the corpus, ready to stand in a test. Where the corpus is absent there are none: skip.
+// Tetrahedral meshes of the corpus, prepared for tests. Without the corpus there are none: skip.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,12 @@
 
 namespace pliant::scenes {
 
-inline constexpr double kCorpusSize = 0.1;  // [m] what every mesh is scaled to
+inline constexpr double kCorpusSize = 0.1;  // [m] size to which every mesh is scaled
 
 // `corpus`: the folder.
 std::vector<std::filesystem::path> corpus_tets(const std::filesystem::path& corpus);
 
-// Scaled, from the origin up, each piece held by the lowest quarter of its height: one topples otherwise.
+// Scaled, placed on the origin, each piece pinned at the lowest quarter of its height: one would topple otherwise.
 TetMesh stand(TetFile file);
 
 }  // namespace pliant::scenes

@@ -35,7 +35,7 @@ std::vector<Embedding> embed(const TetMesh& tets, const Mesh& collision_mesh) {
   return all;
 }
 
-// A device of its own that can do anything.
+// A separate device without limits.
 void hold(Registry& registry, Entity entity, const Handle6& handle, const Pose& pose) {
   registry.add(entity, handle);
   HapticDevice device;

@@ -1,4 +1,4 @@
-// A stage (scenes.h) with soft and rigid bodies on it, and the soft clock beside the touch clock, in lockstep.
+// A stage (scenes.h) with soft and rigid bodies, and the soft clock in addition to the touch clock, in lockstep.
 #pragma once
 
 #include "components/soft_body.h"
@@ -17,7 +17,7 @@ class ToolStage : public Stage {
  public:
   explicit ToolStage(double soft_step, double rate_hz = 1000.0);
 
-  // The collision mesh is the border. With `handle` it is a tool, with a device of its own that can do anything.
+  // The collision mesh is the border. With `handle` it is a tool with its own unlimited device.
   Entity add_soft(TetMesh tets, SoftBody body, Pose pose, const Handle6* handle = nullptr);
   Entity add_rigid(const Primitive& primitive, RigidBody body, Pose pose, const Handle6* handle = nullptr);
   void prepare();

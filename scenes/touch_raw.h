@@ -1,4 +1,4 @@
-// The force of a touch before any safety, what is stored, and the work that a hand gets.
+// The force of a touch before any safety, the stored energy, and the work on a hand.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,5 @@
-// The touch clock is late: ticks are missed, and whatever moves has gone on meanwhile. On the levels as they ship, with
-// their scripts and with orbits, by a mouse, and through drivers with and without a servo, in a virtual clock that
-// jumps: what leaves is what would have left without the jump, and in free air there is none.
+// A late touch clock: ticks are missed while everything moves on. On the shipped levels, with their scripts and with
+// orbits, in a virtual clock that jumps: the force is the same as without the jump.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// `pliant fit` on measured presses: what data were made with comes back, within the intervals that are said.
+// `pliant fit` on measured presses: the parameters of synthetic data are recovered, within the reported intervals.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -84,7 +84,8 @@ TEST(FitPress, TheTruthIsWithinTheNinetyPercentIntervalForAboutNinetySeedsInAHun
         inside[i] += p.low <= values[i] && values[i] <= p.high;
       }
     }
-    // Of 400 trials at 0.9: mean 360, standard deviation 6; four of these, which intervals of any width do not reach.
+    // Of 400 trials at 0.9: mean 360, standard deviation 6; tolerance four of these, which intervals of a wrong width
+    // do not meet.
     for (const int count : inside) EXPECT_NEAR(count, 360, 24) << law;
   }
 }
@@ -101,7 +102,7 @@ TEST(FitPress, TheLawThatTheDataHaveIsTheOneThatIsTaken) {
 }
 
 TEST(FitPress, ABoxHoldsAndWhatStandsOnItHasNoInterval) {
-  // A force that falls behind a line cannot stiffen: the exponent goes to its least.
+  // A force that falls below a line cannot stiffen: the exponent takes its minimum.
   PressRecord record = record_of("linear", 0.0, 1);
   for (double& f : record.force) f = 20 * (1 - std::exp(-f / 20));
   RecordWish wish;
@@ -119,7 +120,7 @@ TEST(FitPress, AnyShareOfTheRowsIsHeldOutInStretchesAllOverTheRecord) {
       const std::vector<bool> held = held_rows(rows, share);
       const auto count = std::count(held.begin(), held.end(), true);
       EXPECT_EQ(count, std::max(1L, std::lround(share * static_cast<double>(rows)))) << rows << ' ' << share;
-      // None is longer than a twentieth, and each half of the record has its part.
+      // None is longer than a twentieth, and each half of the record has its share.
       std::size_t run = 0, longest = 0;
       for (const bool each : held) longest = std::max(longest, run = each ? run + 1 : 0);
       EXPECT_LE(longest, rows / 20 + 2) << rows << ' ' << share;
@@ -139,7 +140,7 @@ TEST(FitPress, TheLawThatTheDataHaveIsTakenWhateverShareIsHeldOut) {
       wish.hold_out = share;
       const auto fit = fit_record(record_of(law, 0.001, 11), wish);
       ASSERT_TRUE(fit.ok());
-      if (share == 0.0)  // the one with more parameters never has the larger error on what it was fitted to
+      if (share == 0.0)  // the model with more parameters never has the larger error on the fitted data
         EXPECT_LT(fit->laws[fit->best].rms, 0.0012) << law;
       else
         EXPECT_EQ(fit->laws[fit->best].model.law, law) << share;
@@ -175,7 +176,7 @@ TEST(FitPress, WhereTheIndenterMetTheSurfaceIsFoundWhereverTheRecordBegins) {
 }
 
 TEST(FitPress, ARecordThatBeginsPressedHasABoxForItsContact) {
-  // Depths of 9.5 to 9.975 mm: all of the record lies in what was the last tenth.
+  // Depths of 9.5 to 9.975 mm: the whole record lies in the former last tenth.
   for (const double met : {0.0, 0.009, 0.0094}) {
     PressRecord record;
     record.name = "preload";
@@ -298,7 +299,7 @@ TEST(FitPress, TablesAsProgramsWriteThemAreRead) {
   read("\"note, any\";depth_mm;force (N)", "x;#,5;1,#");
   read("note,depth_mm,force_N", "\"a \"\"soft\"\", wet pad\",#.5,1.#");
   read("note,depth_mm,force_N", "\"\"\"\",#.5,\"1.#\"");
-  // What else has such a name is not read.
+  // Other files with such a name are not read.
   EXPECT_THAT(
       read("f_Hz,load_cell,depth_mm,force_N", "1,2,#.5,1.#"),
       ::testing::ElementsAre(HasSubstr("'f_Hz' is not read: 'Hz' is no unit of force"), HasSubstr("'load_cell'")));

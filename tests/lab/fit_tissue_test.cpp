@@ -50,7 +50,7 @@ Primitive block() {
   return out;
 }
 
-// Held at its bottom.
+// Pinned at its bottom.
 Level block_level(double poisson) {
   Level level;
   level.meshes.push_back({"block", {block()}});
@@ -88,8 +88,9 @@ PressPlace middle_of(const Mesh& mesh) {
   return {};
 }
 
-// The punch's pressure is sqrt(1 - r^2) times a polynomial: on a half-space 28/15 E* a, of a flat punch's 2 E* a. What
-// the elements give is too stiff by cells' squares, which two lattices tell; 2 % are left for the block's finite width.
+// The punch's pressure is sqrt(1 - r^2) times a polynomial: on a half-space 28/15 E* a, of a flat punch's 2 E* a. The
+// elements are too stiff by an error quadratic in the cell, which two lattices determine; 2 % are allowed for the
+// block's finite width.
 TEST(FitTissue, WithoutTheErrorOfItsCellsASmallPressIntoABondedLayerIsItsClosedForm) {
   for (const double poisson : {0.3, 0.45})
     for (const double radius : {0.003, 0.005}) {

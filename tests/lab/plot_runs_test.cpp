@@ -1,4 +1,5 @@
-// `pliant plot` and a sweep's nearest run: figures against closed forms, and what is said of runs that differ.
+// `pliant plot` and the run of a sweep nearest to a measurement: figures against closed forms, and reports on differing
+// runs.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -176,7 +177,7 @@ TEST_F(PlotCommandTest, ARunOfAToolIsNotFittedAndItsOffsetIsNoDepth) {
   EXPECT_THAT(said.err, HasSubstr("is a tool"));
 }
 
-// A press measured with other rows and another time in the air comes nearest to the same run.
+// A press measured with other rows and another time in the air is nearest to the same run.
 TEST_F(PlotCommandTest, RunsAreComparedInContactAndByTime) {
   PressRecord even, sparse;
   const auto add = [](PressRecord& to, double t) {
@@ -207,7 +208,7 @@ TEST_F(PlotCommandTest, RunsAreComparedInContactAndByTime) {
   const double distance = Json::parse(read_text(folder / "r" / "fit.json"))["distance"].get<double>();
   EXPECT_LT(distance, 1e-3) << "the same press, with air behind it";
   EXPECT_THAT(said.err, ::testing::Not(HasSubstr("in contact for")));
-  // Half of the press: another time in contact, which is said.
+  // Half of the press: a different contact time, which is reported.
   std::istringstream whole(read_text(folder / "truth" / "forces.csv"));
   std::string half, line;
   std::vector<std::string> cells;

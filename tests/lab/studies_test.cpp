@@ -1,5 +1,10 @@
+<<<<<<< HEAD:tests/lab/studies_test.cpp
 // Every study from end to end, as small as it goes: which files it writes, and what must stand in them.
 #include "lab/study/studies.h"
+=======
+// Every study from end to end, as small as possible: its files and their required content.
+#include "player/study/studies.h"
+>>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/studies_test.cpp
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -28,7 +33,7 @@ constexpr Ran kRuns[] = {
 #undef STUDY
 };
 
-// Of those whose table is not one of cost against error.
+// Studies whose table is not one of cost against error.
 const std::map<std::string, std::vector<std::string>> kColumns{
     {"walls", {"model", "delay_s", "stiffness_N_m", "damping_Ns_m", "verdict", "linear_stable", "passive"}},
     {"scale", {"panel", "curve", "size", "also", "also_size", "cost", "unit", "power", "power_within_95", "straight"}},
@@ -136,7 +141,7 @@ TEST_P(Studies, WritesATableAPictureAndTwoSentences) {
     EXPECT_TRUE(std::any_of(json.at("rows").begin(), json.at("rows").end(), [&](const Json& row) {
       return row.at("group") == point.at("group") && row.at("label") == point.at("label");
     })) << point;
-  // Costs and errors can stand on axes by powers of ten.
+  // Costs and errors are positive, as logarithmic axes need.
   const auto at = [&](const std::string& column) {
     return static_cast<std::size_t>(std::find(cells[0].begin(), cells[0].end(), column) - cells[0].begin());
   };

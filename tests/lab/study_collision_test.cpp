@@ -1,5 +1,10 @@
+<<<<<<< HEAD:tests/lab/study_collision_test.cpp
 // The study `collision`: its way, its count of misses.
 #include "lab/study/study_collision.h"
+=======
+// The study `collision`: its path, and its count of misses.
+#include "player/study/study_collision.h"
+>>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/study_collision_test.cpp
 
 #include <gtest/gtest.h>
 
@@ -37,7 +42,7 @@ TEST(StudyCollision, NothingIsMissedOnASphereWhateverTheSearch) {
   }
 }
 
-// Two sheets face each other 10 mm apart; the way goes from one to the other: a walk stays on the first.
+// Two sheets face each other 10 mm apart; the path goes from one to the other: a walk stays on the first.
 TEST(StudyCollision, AWalkMissesTheOtherWallOfAGapAndATreeDoesNot) {
   Primitive p = scenes::sheet(20, 0.1);
   const auto count = static_cast<std::uint32_t>(p.position.size());

@@ -1,6 +1,12 @@
+<<<<<<< HEAD:tests/lab/study_hardcases_test.cpp
 // Every hard case of the table (lab/study/hard) holds, or is a known defect and exactly that. The whole of what the
 // study does, but for costs; under a sanitizer the part of --quick.
 #include "lab/study/study_hardcases.h"
+=======
+// Every hard case of the table (player/study/hard) passes, or has exactly its known defect. The whole study except for
+// costs; under a sanitizer the part of --quick.
+#include "player/study/study_hardcases.h"
+>>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/study_hardcases_test.cpp
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -78,7 +84,7 @@ TEST(HardTable, HasEveryEntryOfBothListsByNameAndNoOther) {
   EXPECT_THAT(entries, ::testing::ContainerEq(wanted));
 }
 
-// A figure that is no number, or a condition that fails, must never look like a small one.
+// A figure that is NaN, or a failed condition, must never look like a small value.
 TEST(HardFigure, IsTheWorstAndFailuresAreWorse) {
   HardFigure figure;
   figure.add(0.5, "a");

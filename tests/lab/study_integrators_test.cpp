@@ -44,7 +44,7 @@ TEST(StudyIntegrators, EachSchemeGainsItsOrderWhenTheStepIsHalved) {
           Order{Integrator::kRungeKutta, 4}}) {
       if (law == SpringLaw::kExponential && order == 4) continue;  // its kink at rest costs smoothness
       const VertexProblem p = vertex_problem(law, 1.0, 0.3);
-      const std::vector<double> truth = true_heights(p, kDent, 5e-4, 40);  // short of the first way through rest
+      const std::vector<double> truth = true_heights(p, kDent, 5e-4, 40);  // before the first crossing of rest
       const double coarse = integration_error(integrator, p, 1e-3, 5e-4, truth),
                    fine = integration_error(integrator, p, 5e-4, 5e-4, truth);
       EXPECT_NEAR(std::log2(coarse / fine), order, 0.15) << name_of(law) << ' ' << name_of(integrator);
@@ -102,7 +102,7 @@ TEST(StudyIntegrators, ASwingThatGrowsSlowlyIsUnstableInTheGridToo) {
   }
 }
 
-// However short the steps are, a swing to the soft side of the law is not taken for one that grows.
+// For any step size, a swing to the soft side of the law is not mistaken for growth.
 TEST(StudyIntegrators, ASwingIsWatchedForWholePeriods) {
   for (const SpringLaw law : kLaws)
     for (const Integrator integrator : {Integrator::kImplicit, Integrator::kDiscreteGradient, Integrator::kExact})

@@ -1,4 +1,4 @@
-// The study `scale`: its fit against known powers, and what its scenes hold.
+// The study `scale`: its fit against known powers, and the content of its scenes.
 #include <gtest/gtest.h>
 
 #include <cmath>

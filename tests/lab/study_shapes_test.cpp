@@ -1,5 +1,10 @@
+<<<<<<< HEAD:tests/lab/study_shapes_test.cpp
 // The study `shapes` against what is known: the closed forms' own integrals, and the block against the half-space.
 #include "lab/study/study_shapes.h"
+=======
+// The study `shapes` against known results: the integrals of the closed forms, and the block against the half-space.
+#include "player/study/study_shapes.h"
+>>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/study_shapes_test.cpp
 
 #include <gtest/gtest.h>
 
@@ -32,7 +37,7 @@ TEST(StudyShapes, NoShapeThatIsNotAPunchIsNearOne) {
   // methods.md 1.3 has 34 % for Wendland's at its best.
   const PressTruth punch = punch_truth(kContact);
   const double reach = best_reach(Shape::kWendland, punch);
-  // Of reaches that are all exact, the least: half of it lies beyond what is compared.
+  // Of several exact reaches the smallest: half of it lies beyond the compared range.
   EXPECT_NEAR(best_reach(Shape::kPunch, punch), 10 * kContact, 0.2 * kContact);
   EXPECT_NEAR(shape_error(engine_share(Shape::kWendland, kContact, reach), punch).profile, 0.336, 0.005);
   EXPECT_GT(shape_error(engine_share(Shape::kWendland, kContact, 1.3 * reach), punch).profile, 0.336);
@@ -68,7 +73,7 @@ TEST(StudyShapes, AGridsLimitIsFoundWhereValuesFallWithAPowerOfTheCells) {
   EXPECT_EQ(none.limit, 1.5);
 }
 
-// Hayes et al. 1972 for a frictionless punch on a bonded layer, times what bonding the punch adds on a half-space.
+// Hayes et al. 1972 for a frictionless punch on a bonded layer, times the effect of a bonded punch on a half-space.
 TEST(StudyShapes, TheLimitOfBlocksIsTheClosedFormOfABondedLayer) {
   for (const auto& [thickness, poisson] : {std::pair{10.0, 0.3}, {2.0, 0.45}}) {
     std::vector<double> force;

@@ -1,5 +1,10 @@
+<<<<<<< HEAD:tests/lab/study_surfaces_test.cpp
 // The study `surfaces` against closed forms: of its surfaces themselves, and of facets on a sphere.
 #include "lab/study/study_surfaces.h"
+=======
+// The study `surfaces` against closed forms: of its surfaces, and of facets on a sphere.
+#include "player/study/study_surfaces.h"
+>>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/study_surfaces_test.cpp
 
 #include <gtest/gtest.h>
 
@@ -39,7 +44,7 @@ TEST(StudySurfaces, FacetsTurnTheForceByHalfAnEdgeOverTheRadius) {
   EXPECT_LT(errors.turned, 2.0 * want);
 }
 
-// What is conservative gives out no more than the sum over samples resolves; what is not gives out more.
+// A conservative force gives no more energy than the summation error; a non-conservative one gives more.
 TEST(StudySurfaces, FacetsAndPatchesAreConservativeAndInterpolatedNormalsAreNot) {
   const SmoothSurface torus = smooth_torus();
   const Mesh mesh = torus.mesh(5000);

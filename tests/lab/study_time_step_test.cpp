@@ -1,5 +1,10 @@
+<<<<<<< HEAD:tests/lab/study_time_step_test.cpp
 // The study `time_step` against what is known: free fall, the order of each scheme, and a spring's deepest dent.
 #include "lab/study/study_time_step.h"
+=======
+// The study `time_step` against known results: free fall, the order of each scheme, and a spring's deepest dent.
+#include "player/study/study_time_step.h"
+>>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/study_time_step_test.cpp
 
 #include <gtest/gtest.h>
 
@@ -81,7 +86,7 @@ TEST(StudyTimeStep, ALevelsBallPressesAndItsGroundStops) {
   double deepest = 0.0;
   for (std::size_t i = 0; i < press.mesh.nodes.size(); ++i)
     deepest = std::max(deepest, press.mesh.nodes[i].y - pressed.back()[i].y);
-  EXPECT_NEAR(deepest, 0.008, 0.002);  // as deep as the ball goes
+  EXPECT_NEAR(deepest, 0.008, 0.002);  // the ball's largest depth
   TissueScene impact = scenes[3];
   impact.seconds = 0.1;
   const StepTrace fallen = engine_trace(impact, 1.0 / 480, 1.0 / 480);
@@ -89,7 +94,7 @@ TEST(StudyTimeStep, ALevelsBallPressesAndItsGroundStops) {
   for (const std::vector<dvec3>& at : fallen)
     for (const dvec3 x : at) lowest = std::min(lowest, x.y);
   EXPECT_NEAR(lowest, -0.01, 1e-3);  // the ground
-  // Thrown: after the first step it has the speed that the scene says, and gravity's.
+  // Thrown: after the first step it has the scene's speed plus that of gravity.
   const double T = 1.0 / 480, way = impact.velocity.y * T + impact.gravity.y * T * T;
   EXPECT_NEAR(fallen[0][0].y - impact.mesh.nodes[0].y, way, 1e-9);
 }

@@ -1,4 +1,4 @@
-// A sweep over a small plate, run by the command, and what it wrote.
+// A sweep over a small plate, run by the command, and its output.
 #pragma once
 
 #include <set>
@@ -12,8 +12,8 @@
 
 namespace pliant::testing {
 
-// What goes before a command so that it has no more memory [kB] and processor time [s]; a sanitizer's shadow needs more
-// address space than any limit, so that there only time is limited.
+// Prefix that limits a command's memory [kB] and CPU time [s]. A sanitizer's shadow memory exceeds any limit, so there
+// only time is limited.
 inline std::string limited(int memory, int time) {
 #ifdef PLIANT_SANITIZED
   memory = 0;
@@ -79,7 +79,7 @@ class Sweep : public CommandTest {
     return all;
   }
 
-  // What is to be the same bytes however the runs were shared out.
+  // Files that must have the same bytes for every distribution of the runs.
   std::map<std::string, std::string> merged(const std::vector<std::string>& folders, const std::string& out) const {
     std::vector<std::string> words{"sweep", "merge"};
     words.insert(words.end(), folders.begin(), folders.end());

@@ -1,6 +1,12 @@
+<<<<<<< HEAD:tests/lab/sweep_notes_test.cpp
 // What a sweep says at its end: limits that acted, notes of runs, axes along which nothing changes; the curves that it
 // keeps; and a full disk, which is no failure of a run.
 #include "tests/lab/sweep_command.h"
+=======
+// Final report of a sweep: active limits, notes of runs, axes without effect; its curves; and a full disk, which is not
+// a failed run.
+#include "tests/player/sweep_command.h"
+>>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/sweep_notes_test.cpp
 
 namespace pliant::testing {
 namespace {
@@ -89,7 +95,7 @@ TEST_F(Sweep, AFullDiskIsNoFailureOfARun) {
   const Said again = sweep();
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_NE(again.out.find("2 done now, 0 before"), std::string::npos) << again.out;
-  // What an older sweep took for a failure.
+  // Treated as a failure by an older sweep.
   std::string text;
   for (const Json& line : lines())
     text += Json{{"id", line["id"]},

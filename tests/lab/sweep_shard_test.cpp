@@ -86,7 +86,7 @@ TEST(SweepShard, EveryRunHasOneShardWhateverTheEnvironment) {
   step["OMPI_COMM_WORLD_RANK"] = "0";  // mpirun within it
   step["OMPI_COMM_WORLD_SIZE"] = "2";
   EXPECT_EQ(choose(step)->count, 2u);
-  // The batch script itself has task 0 of eight, and nobody does the others; a shell within has a step of its own kind.
+  // The batch script itself is task 0 of eight without the others; a shell within has its own kind of step.
   EXPECT_EQ(choose({{"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "8"}})->count, 1u);
   for (const char* special : {"4294967290", "4294967291", "-5"})
     EXPECT_EQ(choose({{"SLURM_STEP_ID", special}, {"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "8"}})->count, 1u);

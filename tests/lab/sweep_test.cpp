@@ -1,5 +1,5 @@
-// pliant sweep: that every run is done once whatever happens, and that what is merged is the same bytes however the
-// runs were shared out.
+// pliant sweep: every run is done exactly once, and merged results have the same bytes for every distribution of the
+// runs.
 #include <cmath>
 
 #include "lab/sweep/lines.h"
@@ -65,10 +65,10 @@ TEST_F(Sweep, OneProcessAndFourShardsMergeToTheSameBytes) {
     EXPECT_TRUE(row.starts_with(run.id + "," + text_of(run.values[0]) + "," + text_of(run.values[1]) + ",done,"))
         << row;
   }
-  // A stiffer plate pushes harder: the table has what was measured where it belongs.
+  // A stiffer plate gives a larger force: the table has the values in the right rows.
   EXPECT_LT(report["figures"]["tip.max_force_N"]["min"].get<double>(),
             report["figures"]["tip.max_force_N"]["max"].get<double>() / 2);
-  // Merging anew replaces nothing.
+  // Merging again replaces nothing.
   EXPECT_EQ(merged({"out"}, "m1").at("results.csv"), one.at("results.csv"));
   EXPECT_TRUE(fs::exists(folder / "m1-2" / "results.csv"));
   expect_no_work_left();
@@ -137,7 +137,7 @@ TEST_F(Sweep, CtrlCEndsItWithASentenceAndTheSameCommandGoesOn) {
 }
 
 TEST_F(Sweep, AFailureIsALineWithItsSentenceAndIsDoneAgainOnlyWhenAsked) {
-  // Half of the runs may hold next to nothing in memory; no plan says that beforehand.
+  // Half of the runs have almost no memory; the plan does not predict this.
   write_plan(R"("axes": {"--limits": [1e-6, 1], "*.deformable.stiffness": [100, 200]})");
   const Said said = sweep();
   EXPECT_EQ(said.status, 0) << said.err;
@@ -162,7 +162,7 @@ TEST_F(Sweep, AFailureIsALineWithItsSentenceAndIsDoneAgainOnlyWhenAsked) {
   EXPECT_EQ(lines().size(), 6u);
 }
 
-// Of several failures of one run the latest counts, whatever file it stands in and whatever its words.
+// Of several failures of one run the latest counts, whatever its file and text.
 TEST_F(Sweep, TheLatestFailureIsTheOneThatIsTold) {
   write_plan(R"("axes": {"--limits": [1e-6], "*.deformable.stiffness": [100]})");
   ASSERT_EQ(sweep().status, 0);
@@ -177,13 +177,13 @@ TEST_F(Sweep, TheLatestFailureIsTheOneThatIsTold) {
   const auto merged_now = merged({"out"}, "m1");
   EXPECT_NE(Json::parse(merged_now.at("report.json"))["failures"][0]["error"].get<std::string>().find("--limits"),
             std::string::npos);
-  // In whatever folder and order.
+  // In any folder and order.
   fs::create_directories(folder / "other");
   fs::rename(file, folder / "other" / "runs-1-of-1.jsonl");
   fs::copy(folder / "out" / "sweep.json", folder / "other" / "sweep.json");
   for (const std::vector<std::string>& folders : {std::vector<std::string>{"out", "other"}, {"other", "out"}})
     EXPECT_EQ(merged(folders, "m" + folders[0]), merged_now);
-  // A run that is done goes before any failure.
+  // A completed run has precedence over any failure.
   Lines all;
   line["status"] = "done";
   line["figures"] = Json::object();
@@ -192,7 +192,7 @@ TEST_F(Sweep, TheLatestFailureIsTheOneThatIsTold) {
   EXPECT_TRUE(is_done(all.runs.at(line["id"].get<std::string>())));
 }
 
-// Values that differ may mean the same run: which of them stands in a line says nothing.
+// Different values may denote the same run: the value in a line does not matter.
 TEST_F(Sweep, RunsThatAreOneMergeToTheSameBytesWhateverShardDidThem) {
   write_text(folder / "again.csv", read_text(folder / "press.csv"));
   write_text(folder / "plan.json", R"({"level": "plate.obj", "options": {"seconds": 0.05}, "axes": {"--probe":
@@ -281,7 +281,7 @@ TEST_F(Sweep, ARunWithOtherFiguresThanBeforeIsSaid) {
   EXPECT_EQ(report("m")["disagree"], Json::array({line["id"]}));
 }
 
-// What runs said differently by one rounding does not vary, and has no plot whose axis would never end.
+// Results that differ only by rounding count as constant, and are not plotted on a degenerate axis.
 TEST_F(Sweep, FiguresThatDifferByRoundingAreConstant) {
   write_plan(R"("axes": {"*.deformable.stiffness": [100, 200, 300]})");
   ASSERT_EQ(sweep().status, 0);

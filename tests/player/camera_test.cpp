@@ -1,4 +1,4 @@
-// The camera that a hand moves, against the geometry of a perspective picture.
+// The camera controlled by the mouse, against the geometry of perspective projection.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ Box unit_box() {
 
 const Viewpoint kHome{.eye = {1.0, 1.5, 3.0}, .target = {0.1, 0.2, -0.1}, .yfov = 0.7f};
 
-// As it stands when the hand has rested for a while.
+// The view after the motion has ended.
 Viewpoint settled(CameraControl& camera) {
   camera.update(10.0);
   return camera.viewpoint();

@@ -1,11 +1,11 @@
-// What a file says is not what the user says: a level reaches no file outside its folder, and asks for no more force
-// than the user allows.
+// A file does not have the user's rights: a level can read no file outside its folder, and request no more force than
+// the user allows.
 #include "tests/player/command.h"
 
 namespace pliant::testing {
 namespace {
 
-// A level in level/, and beside that folder what it must not reach.
+// A level in level/, and files beside that folder that it must not reach.
 class Confined : public CommandTest {
  protected:
   void SetUp() override {

@@ -1,5 +1,5 @@
-// However a run ends, what ran is reported, and nothing half-written stays behind: signals, streams that are closed, a
-// full disk, a picture that cannot be written.
+// However a run ends, results so far are reported, and no partial files are left: signals, closed streams, a full disk,
+// a picture that cannot be written.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class Ends : public CommandTest {
     return "env -u DISPLAY -u WAYLAND_DISPLAY " + quoted(PLIANT_BINARY) + " run plate.obj --probe p=orbit " + more;
   }
 
-  // A shell's lines in this test's folder; what they print goes to .out and .err unless they say otherwise.
+  // Runs shell lines in this test's folder; their output goes to .out and .err unless redirected.
   Said shell(const std::string& lines) const {
     write_text(folder / ".sh", "cd " + quoted(folder.string()) + "\n" + lines + "\n");
     const int status = std::system(("bash " + quoted((folder / ".sh").string()) + " >" +
@@ -36,7 +36,7 @@ class Ends : public CommandTest {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(folder / ".out"),
             read_text(folder / ".err")};
   }
-  // Starts a run that would take ten minutes, sends it what `signals` says as soon as it has begun, and waits for it.
+  // Starts a run that would take ten minutes, sends `signals` as soon as it has started, and waits for it.
   Said signalled(const std::string& signals, const std::string& more = "--frames 0") const {
     return shell(
         "(trap - INT; exec " + run_line("--realtime --seconds 600 --out out " + more) +  // shells ignore it
@@ -145,7 +145,7 @@ TEST_F(Ends, ACtrlCThatIsMeantForTheForegroundLeavesARunInTheBackgroundAlone) {
 }
 
 TEST_F(Ends, TheNextRunRemovesWhatAKilledOneLeftAndNothingElse) {
-  fs::create_directories(folder / "out" / ".partial-1");  // somebody's
+  fs::create_directories(folder / "out" / ".partial-1");  // belongs to another program
   write_text(folder / "out" / ".partial-1" / "notes.txt", "mine");
   write_text(folder / "out" / ".partial-2", "mine");
   write_text(folder / "out.rec.partial-1", "mine");
@@ -169,7 +169,7 @@ TEST_F(Ends, TheNextRunRemovesWhatAKilledOneLeftAndNothingElse) {
 TEST_F(Ends, ClosedStreamsDoNotLandInTheFiles) {
   for (const std::string closed : {">&-", "2>&-", "<&-", "<&- >&- 2>&-"}) {
     fs::remove_all(folder / "out");
-    // Where stderr is closed, long enough for progress to be shown.
+    // With stderr closed, long enough for progress messages.
     const std::string seconds = closed.ends_with("2>&-") ? "6" : "0.2";
     const Said said =
         shell(run_line("--realtime --seconds " + seconds + " --frames 0 --out out --record out.rec --force ") + closed);
@@ -202,7 +202,7 @@ TEST_F(Ends, ABrokenPipeIsSaidAndLosesNoFile) {
   }
 }
 
-// A limit on the size of a file is a full disk to whoever writes.
+// A file size limit acts like a full disk.
 TEST_F(Ends, AFullDiskEndsTheRunWhenItHappensAndKeepsWhatWasWritten) {
   const Said said = shell("ulimit -f 100\n" + run_line("--seconds 20000 --frames 0 --out out"));
   EXPECT_EQ(said.status, 1);

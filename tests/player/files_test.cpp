@@ -125,7 +125,7 @@ TEST_F(Files, ADeviceForTwoIsRefusedWhereItIsReadAndWhereItIsRun) {
   expect_refused({"run", "level.gltf"}, 1, "`left`");
 }
 
-// The pointer is of the node that cannot be made, whatever it is called.
+// The pointer refers to the faulty node, whatever its name.
 TEST_F(Files, ValidateNamesTheNodeThatCannotBeMade) {
   for (const std::string name : {"same", "x: node `same`", "same`"}) {
     write_text(folder / "level.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],)"

@@ -31,7 +31,7 @@ class ShippedLevel : public CommandTest, public ::testing::WithParamInterface<st
   const std::string file = (kLevels / GetParam()).string();
 };
 
-// Tissue under a sanitizer takes minutes: there, the beginning of such a level is run, without what comes later.
+// Tissue under a sanitizer takes minutes: there, only the beginning of such a level is run.
 bool only_begun(const std::string& level) {
 #ifdef PLIANT_SANITIZED
   return level.rfind("hand", 0) == 0 || level == "stack.glb" || level == "instrument.glb";

@@ -50,7 +50,7 @@ TEST(Csv, AnyNameIsOneCell) {
   EXPECT_EQ(csv_text("\x1b[31m,\xff"), "\"\\x1b[31m,\\xff\"");
 }
 
-// Cairo draws nothing more after text that is no UTF-8.
+// Cairo draws nothing after text that is not UTF-8.
 TEST(Pen, GoesOnAfterTextThatIsNoUtf8) {
   Pen pen(64, 32);
   const double width = pen.text(0, 20, 12, 0,
@@ -206,7 +206,7 @@ TEST(Keeper, TheNetWorkOfAToolIsThatOfItsForceAndOfItsTorque) {
     device.torque_sent = -0.5 * angle * axis;
     journal.note(world, {i, 1e-3, 1e-3 * static_cast<double>(i)});
   }
-  device.position = dvec3(std::numeric_limits<double>::quiet_NaN());  // lost: nothing that is known of was done
+  device.position = dvec3(std::numeric_limits<double>::quiet_NaN());  // lost: no valid pose
   device.force_sent = device.torque_sent = dvec3(0);
   journal.note(world, {101, 1e-3, 0.101});
   keeper->keep(journal);
@@ -243,7 +243,7 @@ TEST(Keeper, TicksWithAnOldModelOrLateContactsAreCountedAndSaidWithTheirCure) {
   const fs::path csv = fs::temp_directory_path() / ("pliant-late-" + std::to_string(::getpid()));
   auto keeper = Keeper::create(world, journal.probes(), {"script"}, csv);
   ASSERT_TRUE(keeper);
-  for (std::uint64_t i = 0; i < 50; ++i) {  // before the handle is placed there is no model to be old
+  for (std::uint64_t i = 0; i < 50; ++i) {  // before the handle is placed there is no model
     state.placed = i >= 10;
     if (i == 20 || i == 21) ++state.ticks_late;
     journal.note(world, {i, 1e-3, 1e-3 * static_cast<double>(i)});
@@ -315,7 +315,7 @@ TEST(Trace, KeepsWhichLimitsActedHoweverLongTheRun) {
   EXPECT_EQ(marked, 1u);
 }
 
-// A tool's curves mean something else than a probe's, and its row says so; so does the line under the title.
+// A tool's curves differ in meaning from a probe's; the row's title and the caption below it distinguish them.
 TEST(Plot, CaptionsAToolsCurvesAsAToolsAndAProbesAsAProbes) {
   const fs::path file = fs::temp_directory_path() / ("pliant-captions-" + std::to_string(::getpid()) + ".png");
   Trace trace;

@@ -1,4 +1,4 @@
-// The mouse as a probe and as a hand that holds a tool: where they are put for what the picture shows.
+// The mouse as a probe and as a hand that moves a tool: their positions for a given picture.
 #include "window/pointer.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ constexpr double kReach = 0.04;  // [m]
 const Viewpoint kAbove{.eye = {0, 1, 0.2}, .target = {0, 0, 0}};
 const ViewRay kDown{{0, 1, 0}, {0, -1, 0}};
 
-// A plate of 0.2 m in y = 0 that gives way, and a table that does not.
+// A deformable plate of 0.2 m in y = 0, and a rigid table.
 struct PointerScene {
   World world;
   Entity plate, table;
@@ -278,7 +278,7 @@ TEST(Carrier, AJumpOfThePointerBecomesAGlideThatStopsWhereItIsLetGo) {
   EXPECT_EQ(turns, 125);  // 0.25 m at 0.5 m/s
   EXPECT_NEAR(carrier->position().x, 0.35, 1e-9);
 
-  // A picture that hung is no leave to jump: the touch clock makes the way in at most kMouseSlowestFrame.
+  // A delayed picture does not allow a jump: the touch clock travels this distance in at most kMouseSlowestFrame.
   carrier->follow({view.eye, normalize(dvec3(-0.25, 0, -1))}, view);
   carrier->update(10.0);
   EXPECT_NEAR(carrier->position().x, 0.35 - kFastestCarry * kMouseSlowestFrame, 1e-9);

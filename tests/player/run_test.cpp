@@ -76,7 +76,7 @@ TEST_F(Run, TheForceIsTheLawOfTheDepthAndTheReportSaysWhatTheRowsSay) {
       EXPECT_EQ(norm, 0.0) << "nothing is felt in the air";
       EXPECT_EQ(forces.rows[i].at("objects"), "0") << i;
     }
-    if (time > 0.55 && time < 0.69) {  // held still: 300 N/m times 2 mm
+    if (time > 0.55 && time < 0.69) {  // constant: 300 N/m times 2 mm
       EXPECT_NEAR(fn, 0.6, 0.6e-3) << time;
       ++held;
     }
@@ -227,7 +227,7 @@ TEST_F(Run, AReplayHasTheErrorBudgetOfItsRecording) {
   EXPECT_EQ(report("again")["hash"], report("first")["hash"]);
   EXPECT_NE(replayed.err.find("the recording's error budget holds: --error=0.9"), std::string::npos) << replayed.err;
   EXPECT_EQ(replayed.err.find("forces will differ"), std::string::npos) << replayed.err;
-  // One of the replay's own stands above it, and a recording of the replay has that one.
+  // The replay's own option has precedence, and a recording of the replay contains it.
   const Said other = pliant({"run", "plate.obj", "--replay", "p.rec", "--error", "1e-6", "--record", "q.rec",
                              "--frames", "0", "--out", "other"});
   ASSERT_EQ(other.status, 0) << other.err;
@@ -238,7 +238,7 @@ TEST_F(Run, AReplayHasTheErrorBudgetOfItsRecording) {
   EXPECT_EQ(report("third")["hash"], report("other")["hash"]);
 }
 
-// The mesh, what hangs on what and animations count for a recording as keys do.
+// Mesh, hierarchy and animations matter for a recording like keys.
 TEST_F(Run, AReplayOnALevelThatIsNotAsItWasSaysSo) {
   for (const char* name : {"minimal.gltf", "minimal.bin", "minimal.csv"})
     fs::copy(fs::path(PLIANT_SOURCE_DIR) / "content" / "levels" / name, folder / name);
@@ -312,7 +312,7 @@ TEST_F(Run, AReplayRepeatsTheRecordingToTheBit) {
   EXPECT_EQ(report("again")["probes"][0]["source"], "replay:press.rec");
 }
 
-// Told before the run, not after it.
+// Reported before the run, not after it.
 TEST_F(Run, ARecordingThatCannotBeWrittenIsRefusedBeforeAnythingRuns) {
   fs::create_directory(folder / "taken");
   for (const char* file : {"taken", "nowhere/press.rec"})
@@ -409,7 +409,7 @@ TEST_F(Run, RealTimeAccountsForEveryTickAndItsRecordingReplaysToTheSameHash) {
 TEST_F(Run, CtrlCEndsARealTimeRunCleanlyWithAReport) {
   const Said said = pliant(
       {"run", "plate.obj", "--probe", "p=orbit", "--realtime", "--seconds", "600", "--out", "out", "--frames", "0"},
-      // in the foreground: otherwise the signal comes twice, and the second one kills
+      // in the foreground: otherwise the signal arrives twice, and the second one kills
       "timeout --foreground --preserve-status -s INT 3");
   EXPECT_EQ(said.status, 0) << said.err;
   const Json json = report("out");

@@ -1,4 +1,4 @@
-// The mouse on soft and rigid bodies in a window nobody sees: it presses and pulls them as it presses surfaces.
+// The mouse on soft and rigid bodies in an invisible window: it presses them like surfaces, and drags them.
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,5 @@
-// The shipped levels with tools, from the command line: a force that a shorter soft step leaves as it is, a tower that
-// stands until it is pushed, an instrument that is felt.
+// The shipped levels with tools, from the command line: a force that does not depend on a shorter soft step, a tower
+// that stands until it is pushed, an instrument with a nonzero force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,7 +33,7 @@ class ToolLevel : public CommandTest {
     return std::sqrt(apart / whole);
   }
 
-  // Where a body is at the end, from bodies.csv. [m]
+  // Final position of a body, from bodies.csv. [m]
   std::array<double, 3> last_place(const std::string& out, const std::string& body) const {
     const ForcesTable bodies = read_forces(folder / out / "bodies.csv");
     for (std::size_t i = bodies.rows.size(); i-- > 0;)

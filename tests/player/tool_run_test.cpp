@@ -1,4 +1,4 @@
-// pliant run on a level with a tool: a soft block with a rigid back, over a ground and beside a P1 plate.
+// pliant run on a level with a tool: a soft block with a rigid back, over a ground and next to a P1 plate.
 #include <cmath>
 
 #include "content/level_file.h"
@@ -65,7 +65,7 @@ class ToolRun : public CommandTest {
     ground.rigid_body->fixed = true;
     level.nodes = {tool, arm, ground};
     ASSERT_TRUE(save_level(level, folder / "block.glb").ok());
-    // Down by 3 mm into the ground, turned a little, held, and up again.
+    // Down by 3 mm into the ground, rotated a little, kept there, and up again.
     write_text(folder / "press.csv",
                "time_s,x,y,z,qw,qx,qy,qz\n0,0,0.05,0,1,0,0,0\n0.4,0,0.017,0,1,0,0,0\n"
                "0.5,0,0.017,0,0.9999,0,0.0141,0\n0.8,0,0.017,0,0.9999,0,0.0141,0\n1.0,0,0.05,0,1,0,0,0\n");
@@ -153,7 +153,7 @@ TEST_F(ToolRun, TheForceIsMadeAsTheKeySaysUnlessTheOptionSaysOtherwise) {
   ASSERT_EQ(press("both", {"--set", "hand.handle.force=held", "--tool-force", "linear"}).status, 0);
   EXPECT_EQ(hash("both"), hash("linear")) << "the option stands above the key";
 
-  // What is held differs from what is solved again, in the hand too.
+  // The zero-order hold differs from the contact solution, in the force on the hand too.
   const ForcesTable held = read_forces(folder / "held" / "forces.csv"),
                     solved = read_forces(folder / "contacts" / "forces.csv");
   double apart = 0.0;
@@ -199,8 +199,8 @@ TEST_F(ToolRun, InspectSaysHowEachToolsForceIsMade) {
   EXPECT_NE(pliant({"inspect", "block.glb"}).out.find("tool hand: device arm, force contacts"), std::string::npos);
 }
 
-// x_k = x_0 + g T^2 (k + 1) (k + 2) / 2 is what steps of semi-implicit Euler make of a free fall; after a time t it is
-// g t T / 2 beside g t^2 / 2.
+// Semi-implicit Euler gives x_k = x_0 + g T^2 (k + 1) (k + 2) / 2 for a free fall; after a time t the error is g t T /
+// 2, relative to g t^2 / 2.
 class FallingRun : public CommandTest {
  protected:
   static constexpr double kStep = 1.0 / 60.0, kGravity = 9.81, kTop = 2.0;
@@ -289,7 +289,7 @@ TEST_F(ToolRun, LockstepGivesTheSameBitsAndAReplayTheSameAgain) {
   EXPECT_NE(report("first")["hash"], report("softer")["hash"]) << "the hash knows the tissue";
 }
 
-// Truth of a tool is what soft steps at the touch rate make: another rate has another error.
+// The reference for a tool is soft steps at the touch rate: another rate has another error.
 TEST_F(ToolRun, ABudgetIsMeasuredAtTheRateOfTheRun) {
   const auto note_of = [&](const std::vector<std::string>& more, const std::string& out) {
     std::vector<std::string> words{"--error", "0.5", "--seconds", "0.01"};

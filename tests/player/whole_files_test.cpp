@@ -1,5 +1,5 @@
-// Files that a spreadsheet opens, runs that end in the middle, two writers of one file: nothing is evaluated, lost or
-// half-written.
+// Files opened by a spreadsheet, interrupted runs, two writers of one file: nothing is evaluated, lost or partially
+// written.
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -16,7 +16,7 @@ const std::vector<std::string> kFormulas = {"=1+1", "+x",      "-x",     "@SUM(A
                                             "  =1", "'=1",     "''-a",   "a;=b",     "--rate",
                                             "-",    "\uFF1D1", "\"=1\"", "=1,=2\"=3"};
 
-// What a spreadsheet would evaluate.
+// Cells that a spreadsheet would evaluate.
 bool is_evaluated(const std::string& cell) {
   const std::size_t begin = cell.find_first_not_of(" \t\r");
   if (begin == std::string::npos || !std::strchr("=+-@", cell[begin])) return false;
