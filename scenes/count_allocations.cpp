@@ -9,7 +9,7 @@ std::atomic<bool> g_counting{false};
 std::atomic<std::uint64_t> g_allocations{0};
 }  // namespace
 
-// Clang's thread sanitizer has operators that nobody may replace: nothing is counted there.
+// Clang's thread sanitizer has operators that cannot be replaced: nothing is counted there.
 #ifndef PLIANT_THREAD_SANITIZED
 void* operator new(std::size_t size) {
   if (g_counting) ++g_allocations;

@@ -11,8 +11,8 @@
 namespace pliant::scenes {
 namespace {
 
-// A grid of (n+1)^2 points over (u, v) in [0,1]^2, two triangles a cell, counter-clockwise for a point map that keeps
-// (u, v, normal) right-handed.
+// A grid of (n+1)^2 points over (u, v) in [0,1]^2, two triangles per cell. Counter-clockwise if the point map keeps (u,
+// v, normal) right-handed.
 void add_grid(Primitive& p, int n, const std::function<dvec3(double, double)>& point) {
   const std::uint32_t first = static_cast<std::uint32_t>(p.position.size());
   for (int j = 0; j <= n; ++j)
@@ -182,7 +182,7 @@ const Contact& Stage::contact(Entity probe, std::size_t object) const {
   for (auto [entity, contact] : world.registry.view<Contact>())
     if (contact.probe == probe && i++ == object) return contact;
   static const Contact none;
-  if (i == 0) return none;  // nothing is touched
+  if (i == 0) return none;  // no contact
   ASSERT(false && "no such contact");
   std::abort();
 }

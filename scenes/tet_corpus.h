@@ -1,4 +1,4 @@
-// Tetrahedral meshes of the corpus, ready to stand in a test. Where the corpus is absent there are none: skip.
+// Tetrahedral meshes of the corpus, prepared for tests. Without the corpus the list is empty: skip.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,12 @@
 
 namespace pliant::scenes {
 
-inline constexpr double kCorpusSize = 0.1;  // [m] what every mesh is scaled to
+inline constexpr double kCorpusSize = 0.1;  // [m] size to which every mesh is scaled
 
 // `corpus`: the folder.
 std::vector<std::filesystem::path> corpus_tets(const std::filesystem::path& corpus);
 
-// Scaled, from the origin up, each piece held by the lowest quarter of its height: one topples otherwise.
+// Scaled, above the origin, each piece pinned in the lowest quarter of its height, so that none topples.
 TetMesh stand(TetFile file);
 
 }  // namespace pliant::scenes
