@@ -1,4 +1,4 @@
-// What every study writes: the front of cost against error, and files that leave nothing out.
+// Output of every study: the front of cost against error, and complete files.
 #include "lab/study/pareto.h"
 
 #include <gtest/gtest.h>

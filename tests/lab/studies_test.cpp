@@ -1,4 +1,4 @@
-// Every study from end to end, as small as it goes: which files it writes, and what must stand in them.
+// Every study from end to end at its smallest size: the files it writes and their contents.
 #include "lab/study/studies.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ constexpr Ran kRuns[] = {
 #undef STUDY
 };
 
-// Of those whose table is not one of cost against error.
+// Tables that are not cost against error.
 const std::map<std::string, std::vector<std::string>> kColumns{
     {"walls", {"model", "delay_s", "stiffness_N_m", "damping_Ns_m", "verdict", "linear_stable", "passive"}},
     {"scale", {"panel", "curve", "size", "also", "also_size", "cost", "unit", "power", "power_within_95", "straight"}},
@@ -121,7 +121,7 @@ TEST_P(Studies, WritesATableAPictureAndTwoSentences) {
     for (const std::string& column : known->second) EXPECT_TRUE(columns.contains(column)) << column;
     return;
   }
-  // A table of cost against error: the JSON has the CSV's rows and columns, its numbers are numbers.
+  // In a table of cost against error, the JSON has the CSV's rows and columns, and its numbers are numbers.
   ASSERT_EQ(json.at("rows").size() + 1, cells.size());
   for (const Json& row : json.at("rows")) {
     std::set<std::string> keys{"on_front"};
@@ -136,7 +136,7 @@ TEST_P(Studies, WritesATableAPictureAndTwoSentences) {
     EXPECT_TRUE(std::any_of(json.at("rows").begin(), json.at("rows").end(), [&](const Json& row) {
       return row.at("group") == point.at("group") && row.at("label") == point.at("label");
     })) << point;
-  // Costs and errors can stand on axes by powers of ten.
+  // Costs and errors can be drawn on logarithmic axes.
   const auto at = [&](const std::string& column) {
     return static_cast<std::size_t>(std::find(cells[0].begin(), cells[0].end(), column) - cells[0].begin());
   };

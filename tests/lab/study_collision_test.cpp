@@ -1,4 +1,4 @@
-// The study `collision`: its way, its count of misses.
+// The study `collision`: its path and its count of misses.
 #include "lab/study/study_collision.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST(StudyCollision, NothingIsMissedOnASphereWhateverTheSearch) {
   }
 }
 
-// Two sheets face each other 10 mm apart; the way goes from one to the other: a walk stays on the first.
+// Two sheets face each other 10 mm apart, and the path goes from one to the other: a walk stays on the first.
 TEST(StudyCollision, AWalkMissesTheOtherWallOfAGapAndATreeDoesNot) {
   Primitive p = scenes::sheet(20, 0.1);
   const auto count = static_cast<std::uint32_t>(p.position.size());

@@ -1,5 +1,5 @@
-// Every hard case of the table (lab/study/hard) holds, or is a known defect and exactly that. The whole of what the
-// study does, but for costs; under a sanitizer the part of --quick.
+// Every hard case of the table (lab/study/hard) holds, or is a known defect with exactly its condition. Runs all of the
+// study except costs; under a sanitizer the part of --quick.
 #include "lab/study/study_hardcases.h"
 
 #include <gmock/gmock.h>
@@ -46,7 +46,7 @@ TEST_P(HardCases, Holds) {
 INSTANTIATE_TEST_SUITE_P(Table, HardCases, ::testing::ValuesIn(untimed()),
                          [](const auto& each) { return std::string(each.param.name); });
 
-// The bold names of an item of docs/methods.md section 3, without the item's own.
+// The bold names in an item of docs/methods.md section 3, without the item's own name.
 std::set<std::string> entries_of(int item) {
   std::ifstream file(std::string(PLIANT_SOURCE_DIR) + "/docs/methods.md");
   std::set<std::string> entries;
@@ -78,7 +78,7 @@ TEST(HardTable, HasEveryEntryOfBothListsByNameAndNoOther) {
   EXPECT_THAT(entries, ::testing::ContainerEq(wanted));
 }
 
-// A figure that is no number, or a condition that fails, must never look like a small one.
+// A non-finite figure, or a failed condition, must never look like a small figure.
 TEST(HardFigure, IsTheWorstAndFailuresAreWorse) {
   HardFigure figure;
   figure.add(0.5, "a");

@@ -1,4 +1,4 @@
-// The study `surfaces` against closed forms: of its surfaces themselves, and of facets on a sphere.
+// The study `surfaces` against closed forms: of the surfaces themselves, and of facets on a sphere.
 #include "lab/study/study_surfaces.h"
 
 #include <gtest/gtest.h>
@@ -28,8 +28,7 @@ TEST(StudySurfaces, AMeshFacesTheWayThatItsSurfaceDoes) {
   }
 }
 
-// A facet of a circle of radius R, seen from the depth d behind it, ends at e / (2 (R - d)) from its middle's
-// direction.
+// A facet of a circle of radius R, seen from the depth d behind it, ends at the angle e / (2 (R - d)) from its centre.
 TEST(StudySurfaces, FacetsTurnTheForceByHalfAnEdgeOverTheRadius) {
   const SmoothSurface sphere = smooth_sphere();
   const Mesh mesh = sphere.mesh(5000);
@@ -39,7 +38,7 @@ TEST(StudySurfaces, FacetsTurnTheForceByHalfAnEdgeOverTheRadius) {
   EXPECT_LT(errors.turned, 2.0 * want);
 }
 
-// What is conservative gives out no more than the sum over samples resolves; what is not gives out more.
+// The work of a conservative surface is below the resolution of the sampled sum; that of another is above it.
 TEST(StudySurfaces, FacetsAndPatchesAreConservativeAndInterpolatedNormalsAreNot) {
   const SmoothSurface torus = smooth_torus();
   const Mesh mesh = torus.mesh(5000);

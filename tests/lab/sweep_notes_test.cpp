@@ -1,11 +1,11 @@
-// What a sweep says at its end: limits that acted, notes of runs, axes along which nothing changes; the curves that it
-// keeps; and a full disk, which is no failure of a run.
+// Notes at the end of a sweep: limits that acted, notes of runs, axes without effect. Also the curves that it keeps,
+// and a full disk, which is not a failure of a run.
 #include "tests/lab/sweep_command.h"
 
 namespace pliant::testing {
 namespace {
 
-// The first of two plates is soft; the second wants more force than the device may have.
+// The first of two plates is soft; the second requires more force than the device's limit.
 constexpr const char* kSoftAndStiff = R"("axes": {"*.deformable.stiffness": [100, 100000]})";
 
 TEST_F(Sweep, ForcesThatWereClippedAreSaidByTheSweepAndByMerge) {
@@ -33,7 +33,7 @@ TEST_F(Sweep, ForcesThatWereClippedAreSaidByTheSweepAndByMerge) {
 }
 
 TEST_F(Sweep, NotesThatRunsShareAreSaidOnceWithHowManySaidThem) {
-  // The path is cut in every run.
+  // The path is cut short in every run.
   write_text(folder / "press.csv", "time_s,x,y,z\n0,0,0.002,0\n0.02,0,-0.004,0\n9,0.004,-0.004,0\n");
   write_plan(R"("axes": {"*.deformable.stiffness": [100, 200, 300]})");
   const Said said = sweep();
@@ -46,7 +46,7 @@ TEST_F(Sweep, NotesThatRunsShareAreSaidOnceWithHowManySaidThem) {
 }
 
 TEST_F(Sweep, AxesAlongWhichNothingChangesAreNamed) {
-  // `cubic` is read by another spring than the plate has.
+  // `cubic` belongs to another spring law than the plate's.
   write_plan(R"("axes": {"*.deformable.stiffness": [100, 200], "*.deformable.cubic": [0, 1000]})");
   const Said swept = sweep();
   ASSERT_EQ(swept.status, 0) << swept.err;
@@ -89,7 +89,7 @@ TEST_F(Sweep, AFullDiskIsNoFailureOfARun) {
   const Said again = sweep();
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_NE(again.out.find("2 done now, 0 before"), std::string::npos) << again.out;
-  // What an older sweep took for a failure.
+  // A line that an older sweep recorded as a failure.
   std::string text;
   for (const Json& line : lines())
     text += Json{{"id", line["id"]},

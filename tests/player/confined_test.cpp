@@ -1,11 +1,11 @@
-// What a file says is not what the user says: a level reaches no file outside its folder, and asks for no more force
-// than the user allows.
+// A level file has fewer rights than the user: it reads no file outside its folder, and cannot request more force than
+// the user allows.
 #include "tests/player/command.h"
 
 namespace pliant::testing {
 namespace {
 
-// A level in level/, and beside that folder what it must not reach.
+// A level in level/, and beside that folder the files that it must not read.
 class Confined : public CommandTest {
  protected:
   void SetUp() override {

@@ -1,4 +1,4 @@
-// Where results go, and what they may replace: only what an earlier run wrote, and only if that was asked for.
+// Folders of results, and what they may replace: only files of an earlier run, and only on request.
 #include <array>
 
 #include "tests/player/command.h"
@@ -161,7 +161,7 @@ TEST_F(Results, ConvertReplacesByForceOnly) {
     ASSERT_EQ(pliant({"convert", in, out, "--force"}).status, 0) << out;
     EXPECT_NE(read_text(folder / there), "mine") << out;
   }
-  // A .bin goes with its own .gltf, and with nothing else.
+  // A .bin belongs to its own .gltf only.
   write_text(folder / "c.bin", "mine");
   for (const bool force : {false, true}) {
     std::vector<std::string> convert{"convert", "plate.obj", "c.gltf"};
