@@ -146,8 +146,7 @@ void look(HeldDevice& held, double seconds, const Interrupt& interrupt, Force&& 
     if (tick.time - told_at < (drawn ? kTellEvery : 1.0)) continue;
     const double rate = static_cast<double>(samples - told_samples) / (tick.time - told_at);
     if (drawn && drew)
-      std::fputs(fmt::format("\033[{}A", kPlaneHigh + 1).c_str(), stdout);  // moves back over the previous
-                                                                            // drawing
+      std::fputs(fmt::format("\033[{}A", kPlaneHigh + 1).c_str(), stdout);  // back over the last drawing
     if (drawn) std::fputs(plane(sample.position, half).c_str(), stdout);
     print("{}{}\n", told(sample, can, rate, held.servo()), drawn ? "    " : "");
     std::fflush(stdout);

@@ -23,8 +23,7 @@ constexpr double kSmoothing = 0.1;                            // [1] weight of t
 constexpr double kHearEvery = 0.004;                          // [s] longest interval between input polls
 constexpr std::size_t kLongestTitle = 28, kLongestName = 16;  // [byte] in the panel
 constexpr double kHungEnd = 10.0;                             // [s] for which the end waits for a picture
-constexpr double kHungPicture = 2.0;  // [s] a longer picture may never finish: the user cannot see the hand's motion
-                                      // then
+constexpr double kHungPicture = 2.0;  // [s] after a longer picture the hand moves unseen: the heartbeat stops
 
 std::optional<MouseProbe> mouse_probe_of(const World& world) {
   for (auto [entity, probe] : world.registry.view<Probe>()) {

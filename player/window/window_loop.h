@@ -66,8 +66,7 @@ class WindowLoop {
   RenderOptions options_, ordered_options_;  // as wanted now, and of the current picture
   OverlayState state_;
   OverlayMouse mouse_;
-  std::array<bool, 3> down_{};                        // current buttons; a click between two pictures is in mouse_
-                                                      // alone
+  std::array<bool, 3> down_{};                        // now; a click between two pictures is in mouse_ alone
   float tint_;                                        // [m] height at full colour
   dvec3 probe_at_{0};                                 // [m] target of the probe or tool under the mouse
   dvec3 tool_at_{0};                                  // [m] world, last position of the carried tool's device

@@ -236,8 +236,7 @@ TEST_F(PlotCommandTest, TheNearestRunOfASweepIsFoundAndTheSettingBetweenRuns) {
   const Said said = pliant({"fit", "--sweep", "s", "--target", "truth/forces.csv", "--report", "r"});
   ASSERT_EQ(said.status, 0) << said.err;
   const Json report = Json::parse(read_text(folder / "r" / "fit.json"));
-  EXPECT_NEAR(report["distance"].get<double>(), 30.0 / 330, 0.005);  // the nearest is 300 N/m: all forces are
-                                                                     // proportional to it
+  EXPECT_NEAR(report["distance"].get<double>(), 30.0 / 330, 0.005);  // nearest: 300 N/m; forces are proportional
   ASSERT_EQ(report["between"].size(), 1u);
   EXPECT_NEAR(report["between"][0]["value"].get<double>(), 330, 1);
 }

@@ -44,8 +44,7 @@ TEST(StudyIntegrators, EachSchemeGainsItsOrderWhenTheStepIsHalved) {
           Order{Integrator::kRungeKutta, 4}}) {
       if (law == SpringLaw::kExponential && order == 4) continue;  // its kink at rest reduces the smoothness
       const VertexProblem p = vertex_problem(law, 1.0, 0.3);
-      const std::vector<double> truth = true_heights(p, kDent, 5e-4, 40);  // ends before the first crossing of the rest
-                                                                           // position
+      const std::vector<double> truth = true_heights(p, kDent, 5e-4, 40);  // before the first zero crossing
       const double coarse = integration_error(integrator, p, 1e-3, 5e-4, truth),
                    fine = integration_error(integrator, p, 5e-4, 5e-4, truth);
       EXPECT_NEAR(std::log2(coarse / fine), order, 0.15) << name_of(law) << ' ' << name_of(integrator);

@@ -208,7 +208,7 @@ TEST_F(Sweep, RunsThatAreOneMergeToTheSameBytesWhateverShardDidThem) {
 }
 
 TEST_F(Sweep, ARunThatTakesTooLongIsALineAndIsMendedByARetry) {
-  write_plan(R"("timeout_s": 0.001, "axes": {"*.deformable.stiffness": [100, 200]})");  // no process starts in that time
+  write_plan(R"("timeout_s": 0.001, "axes": {"*.deformable.stiffness": [100, 200]})");  // no process starts so fast
   ASSERT_EQ(sweep().status, 0);
   for (const Json& line : lines()) {
     EXPECT_EQ(line["status"], "timed out");
