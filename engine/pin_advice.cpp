@@ -10,8 +10,7 @@ namespace {
 
 constexpr Side kAdvisedSides[] = {Side::kBottom, Side::kBack, Side::kTop, Side::kLeft, Side::kRight, Side::kFront};
 constexpr double kAdvisedShares[] = {0.15, 0.3};  // [1]
-constexpr double kCoarser = 1.4;                  // [1] relative to the usual cell: which pinned side supports the body
-                                                  // hardly depends on it
+constexpr double kCoarser = 1.4;                  // [1] of the usual cell: the advice hardly depends on it
 
 }  // namespace
 

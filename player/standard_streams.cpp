@@ -11,11 +11,11 @@ namespace pliant {
 
 void prepare_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    // open() gives the lowest free number: this stream's, as those before it are open.
+    // open() returns the lowest free number: this stream's, since those before it are open.
     if (::fcntl(stream, F_GETFD) == -1 && errno == EBADF && ::open("/dev/null", O_RDWR) != stream) ::_exit(1);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  std::signal(SIGCHLD, SIG_DFL);  // whoever began this may have ignored it: then nobody learns how a process ended
+  std::signal(SIGCHLD, SIG_DFL);  // the parent may have ignored it; waiting for a process would then fail
 }
 
 std::optional<Error> close_stdout() {

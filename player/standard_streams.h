@@ -1,4 +1,4 @@
-// stdin, stdout and stderr as a command finds them: open, closed, or a pipe that nobody reads any more.
+// Standard streams as the command finds them: open, closed, or a broken pipe.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,12 @@
 
 namespace pliant {
 
-// Call first. A closed standard stream becomes /dev/null: the next file that is opened would otherwise get its number,
-// and what is printed would land in that file. A broken pipe and a file at its size limit (`ulimit -f`) become errors
-// of a write instead of signals that kill. Where the parent ignored SIGCHLD this does not: else nobody would learn how
-// a process of ours ended.
+// Call first. A closed standard stream becomes /dev/null: otherwise the next opened file would get its number and
+// receive the printed text. A broken pipe and a file at its size limit (`ulimit -f`) become write errors instead of
+// fatal signals. SIGCHLD is restored if the parent ignored it: otherwise the exit status of a child process is lost.
 void prepare_standard_streams();
 
-// Call last. What was printed and could not be written.
+// Call last. The error if printed text could not be written.
 std::optional<Error> close_stdout();
 
 }  // namespace pliant

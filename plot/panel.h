@@ -1,4 +1,4 @@
-// One panel of a plot: two axes with numbers, and the lines and dots in it.
+// One panel of a plot: two numbered axes, with lines and dots.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace pliant {
 
-// Values of one axis. `log`: by powers of ten, low and high above 0.
+// Range of one axis. `log`: logarithmic, low and high above 0.
 struct PanelRange {
   double low = 0.0, high = 1.0;
   bool log = false;
 };
-// Around the values: up to the next ticks, zero among them where `with_zero`. By powers of ten: over what is above 0.
+// Range around the values, up to the next ticks, including zero if `with_zero`. Logarithmic: over the values above 0.
 PanelRange range_of(double least, double most, bool with_zero);
 PanelRange log_range_of(double least, double most);
 
@@ -25,13 +25,13 @@ struct PlotPanel {
 };
 
 void draw_axes(Pen& pen, const PlotPanel& panel, const std::string& across, const std::string& up);
-// What is not finite breaks the line; what lies outside is cut off.
+// A non-finite value breaks the line; parts outside are clipped.
 void draw_line(Pen& pen, const PlotPanel& panel, const std::vector<double>& x, const std::vector<double>& y,
                Color color, double width);
 void draw_dots(Pen& pen, const PlotPanel& panel, const std::vector<double>& x, const std::vector<double>& y,
                Color color, double radius, bool filled);
 
-// One after the other from (x, y) on; `dot`: of dots instead of lines. Where the next would pass `right`, a line below.
+// Legend entries from (x, y) on; `dot`: dots instead of lines. An entry that would pass `right` starts a new line.
 struct PanelKey {
   Color color;
   std::string words;
@@ -39,7 +39,7 @@ struct PanelKey {
 };
 void draw_keys(Pen& pen, double x, double y, double right, const std::vector<PanelKey>& keys);
 
-// Okabe and Ito's, in an order in which neighbours differ most; the first again after the last.
+// Okabe and Ito's colours, ordered for contrast between neighbours; cyclic.
 Color series_color(std::size_t number);
 
 }  // namespace pliant

@@ -9,7 +9,7 @@
 #include "runtime/printable.h"
 
 #ifdef PLIANT_SANITIZED
-// Fontconfig keeps its configuration, on purpose, until the program ends; the leak sanitizer asks us about it.
+// Fontconfig keeps its configuration until the program ends, by design; the leak sanitizer reads this suppression.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libfontconfig\n";
 }
@@ -47,7 +47,7 @@ double Pen::text(double x, double y, double size, double align, const std::strin
   cairo_select_font_face(cairo_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
                          bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(cairo_, size);
-  const std::string shown = printable(words);  // Cairo draws nothing more after text that is no UTF-8
+  const std::string shown = printable(words);  // Cairo stops drawing after text that is invalid UTF-8
   cairo_text_extents_t box;
   cairo_text_extents(cairo_, shown.c_str(), &box);
   cairo_move_to(cairo_, x - align * box.x_advance, y);
@@ -118,7 +118,7 @@ void Pen::as_pixels(double x, double y, double w, double h, const std::function<
 bool Pen::save(const std::filesystem::path& file) {
   if (cairo_surface_write_to_png(surface_, file.c_str()) == CAIRO_STATUS_SUCCESS) return true;
   std::error_code ignored;
-  std::filesystem::remove(file, ignored);  // half of it
+  std::filesystem::remove(file, ignored);  // an incomplete file
   return false;
 }
 

@@ -1,4 +1,4 @@
-// What plots are drawn with: lines and words on a picture that becomes a PNG or an SVG.
+// Drawing for plots: lines and text on a PNG or SVG picture.
 #pragma once
 
 #include <cairo.h>
@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-// Okabe and Ito's colours, told apart by nearly everyone.
+// Okabe and Ito's colours, distinguishable with most colour vision deficiencies.
 struct Color {
   double r, g, b;
   friend bool operator==(const Color&, const Color&) = default;
@@ -25,7 +25,7 @@ inline constexpr Color kInk{0.13, 0.13, 0.13}, kFaint{0.87, 0.87, 0.87}, kContac
 class Pen {
  public:
   Pen(double width, double height);
-  Pen(const std::filesystem::path& svg, double width, double height);  // there when the pen is gone
+  Pen(const std::filesystem::path& svg, double width, double height);  // the file is complete after destruction
   ~Pen();
   Pen(const Pen&) = delete;
   Pen& operator=(const Pen&) = delete;
@@ -33,19 +33,18 @@ class Pen {
   cairo_t* get() { return cairo_; }
   void color(Color c, double alpha = 1.0) { cairo_set_source_rgba(cairo_, c.r, c.g, c.b, alpha); }
   void line(double x0, double y0, double x1, double y1, double width);
-  // `align`: 0 starts at x, 0.5 is centred on it, 1 ends there. Returns the text's width.
+  // `align`: 0 starts at x, 0.5 is centred, 1 ends there. Returns the text's width.
   double text(double x, double y, double size, double align, const std::string& words, bool bold = false);
-  // The same with a white seam, to be read over lines.
+  // The same with a white outline, to be legible over lines.
   double text_over(double x, double y, double size, double align, const std::string& words);
   double width(double size, const std::string& words);  // of such a text
-  // Broken at blanks, so that no line is wider, unless one word is.
+  // Breaks the text at blanks into lines no wider than `widest`, unless a single word is.
   std::vector<std::string> lines(double size, const std::string& words, double widest);
   void upright_text(double x, double y, double size, const std::string& words);
-  // In an SVG what is drawn there becomes a picture within it: for marks so many that each as lines of text would make
-  // the file huge.
+  // In an SVG, the drawing is embedded as an image: for so many marks that vector paths would make the file huge.
   void as_pixels(double x, double y, double w, double h, const std::function<void(Pen&)>& draw);
-  bool save(const std::filesystem::path& file);  // as a PNG: whole, or not at all
-  bool finish();                                 // of an SVG: the file is whole
+  bool save(const std::filesystem::path& file);  // as a PNG: complete, or not at all
+  bool finish();                                 // of an SVG: true if the file is complete
 
  private:
   explicit Pen(cairo_surface_t* surface) : surface_(surface), cairo_(cairo_create(surface)) {}
@@ -53,13 +52,13 @@ class Pen {
   cairo_t* cairo_;
 };
 
-// One drawing, in two files.
+// One drawing in two files.
 Status draw_png_and_svg(const std::filesystem::path& png, const std::filesystem::path& svg, double width, double height,
                         const std::function<void(Pen&)>& draw);
 
-// With as many digits as ticks `step` apart need.
+// With the digits needed for ticks `step` apart.
 std::string number(double value, double step);
-// 1, 2 or 5 times a power of ten, as it stands on an axis by powers of ten: 0.001, 1, 10,000, 2·10⁻⁵.
+// 1, 2 or 5 times a power of ten, as a label of a logarithmic axis: 0.001, 1, 10,000, 2·10⁻⁵.
 std::string decade_number(double value);
 
 }  // namespace pliant

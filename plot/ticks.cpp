@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kMostTickValues = 100;
 constexpr double kRounding = 1e-9;   // [1]
-constexpr double kNothing = 1e-300;  // whatever the unit: smaller steps are none to a double
+constexpr double kNothing = 1e-300;  // smaller steps count as zero, in any unit
 
 }  // namespace
 
@@ -24,7 +24,7 @@ std::vector<double> tick_values(double low, double high, double step) {
   std::vector<double> ticks;
   const double first = std::ceil(low / step - 1e-9), end = high + 1e-9 * step;
   for (std::size_t i = 0; i < kMostTickValues; ++i) {
-    const double value = (first + static_cast<double>(i)) * step + 0.0;  // not -0
+    const double value = (first + static_cast<double>(i)) * step + 0.0;  // avoids -0
     if (!(value <= end) || (!ticks.empty() && !(value > ticks.back()))) break;
     ticks.push_back(value);
   }

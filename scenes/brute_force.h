@@ -1,4 +1,4 @@
-// Touch point and closest point of a mesh without a tree: the reference for searches.
+// Contact vertex and closest point of a mesh without a tree: the reference for searches.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-// Every triangle, without a tree: only those whose own bounding sphere is too far are passed over.
+// Visits every triangle; only those with a bounding sphere that is too far are skipped.
 class BruteForce {
  public:
   explicit BruteForce(const Mesh& mesh) : mesh_(mesh) {

@@ -1,4 +1,4 @@
-// Counts every allocation through operator new of this program while asked to.
+// Counts every allocation of this program through operator new during its lifetime.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@ namespace pliant {
 
 class CountAllocations {
  public:
-  CountAllocations();   // from now
-  ~CountAllocations();  // until here
+  CountAllocations();   // starts counting
+  ~CountAllocations();  // stops counting
   std::uint64_t count() const;
 };
 

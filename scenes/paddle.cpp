@@ -10,11 +10,11 @@ namespace {
 const dvec3 kPaddle(0.084, 0.018, 0.048);      // [m]
 const dvec3 kBed(0.072, 0, 0.036);             // [m] extent of the studs
 constexpr double kStud = 0.003;                // [m] wide and high
-constexpr double kDepth = 1.5e-3;              // [m] depth to which the device presses the paddle into the studs
+constexpr double kDepth = 1.5e-3;              // [m] prescribed depth of the paddle in the studs
 constexpr double kCircle = 3e-3, kTurn = 2.0;  // [m] radius, [s] once around
 constexpr double kFriction = 0.4;              // [1]
 
-// Pyramids in rows, points up at y = 0.
+// Pyramids in rows, with their tips at y = 0.
 Primitive studs(double from, double to, int along, int across) {
   Primitive p;
   for (int i = 0; i < along; ++i)

@@ -11,8 +11,8 @@
 namespace pliant::scenes {
 namespace {
 
-// A grid of (n+1)^2 points over (u, v) in [0,1]^2, two triangles a cell, counter-clockwise for a point map that keeps
-// (u, v, normal) right-handed.
+// A grid of (n+1)^2 points over (u, v) in [0,1]^2, two triangles per cell. Counter-clockwise if the point map keeps (u,
+// v, normal) right-handed.
 void add_grid(Primitive& p, int n, const std::function<dvec3(double, double)>& point) {
   const std::uint32_t first = static_cast<std::uint32_t>(p.position.size());
   for (int j = 0; j <= n; ++j)

@@ -17,7 +17,7 @@ namespace pliant::scenes {
 Primitive sheet(int cells, double size);
 // A sphere about the origin: a cube sphere of 12 n^2 triangles. radius [m].
 Primitive sphere(int n, double radius);
-// The lower half of it, facing its middle: open.
+// The lower half of a sphere, facing its centre: open.
 Primitive bowl(int n, double radius);
 // A closed slab of cells x cells squares, y from -thickness to 0.
 Primitive slab(int cells, double size, double thickness);
@@ -28,20 +28,20 @@ Primitive valley(int cells, double size, double angle);
 class Stage {
  public:
   explicit Stage(double rate_hz = 1000.0);
-  // Adds a surface; the Deformable's handles are set here.
+  // Adds a surface and sets the Deformable's handles.
   Entity add(const Primitive& primitive, Deformable deformable, Pose pose = {});
-  // Lets a motion carry a surface, before prepare(): it makes it a node under the node `parent`.
+  // Attaches a surface to a prescribed motion, before prepare(): it becomes a node under `parent`.
   void carry(Entity surface, PrescribedMotion motion, Entity parent = kNoEntity);
-  // A node without a surface, to hang others from.
+  // A node without a surface, as a parent of others.
   Entity add_node(PrescribedMotion motion, Entity parent = kNoEntity, LocalTransform rest = {});
-  // Adds a probe moved by hand (place()), with a device that can do anything: no clamp, no slew limit.
+  // Adds a probe moved by hand (place()), with an unlimited device: no clamp, no slew limit.
   Entity add_probe(dvec3 position, double radius = 0.0);
   void prepare();
 
   void place(Entity probe, dvec3 position);
-  // `age` [s]: how old the poses are.
+  // `age` [s] of the poses.
   void tick(double age = 0.0);
-  // Ticks that do not run because the machine was late: index and time go on as those of RealtimeClock do.
+  // Ticks missed because the machine was late: index and time advance as those of RealtimeClock do.
   void skip(std::uint64_t ticks) { ticks_ += ticks, skipped_ += ticks; }
   // Moves a probe along a straight line at constant speed for `seconds`, calling `each` after every tick.
   void move(Entity probe, dvec3 to, double seconds, const std::function<void(const ProbeReading&)>& each = {});
@@ -54,7 +54,7 @@ class Stage {
   HapticDevice& device(Entity probe) { return world.registry.get<HapticDevice>(probe); }
   double time() const { return static_cast<double>(ticks_) * dt_; }
   double dt() const { return dt_; }
-  const Schedule<World>& schedule() const { return schedule_; }  // with the cost of each system
+  const Schedule<World>& schedule() const { return schedule_; }  // for the cost of each system
   std::uint64_t hash() const;
 
   World world;

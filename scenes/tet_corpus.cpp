@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// For each node, the first node of its connected piece: a file may contain several.
+// Per node, the first node of its connected piece: a file may contain several.
 std::vector<std::uint32_t> pieces(const TetFile& file) {
   std::vector<std::uint32_t> piece(file.nodes.size());
   std::iota(piece.begin(), piece.end(), 0u);

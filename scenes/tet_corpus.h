@@ -1,4 +1,4 @@
-// Tetrahedral meshes of the corpus, prepared for tests. Without the corpus there are none: skip.
+// Tetrahedral meshes of the corpus, prepared for tests. Without the corpus the list is empty: skip.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ inline constexpr double kCorpusSize = 0.1;  // [m] size to which every mesh is s
 // `corpus`: the folder.
 std::vector<std::filesystem::path> corpus_tets(const std::filesystem::path& corpus);
 
-// Scaled, placed on the origin, each piece pinned at the lowest quarter of its height: one would topple otherwise.
+// Scaled, above the origin, each piece pinned in the lowest quarter of its height, so that none topples.
 TetMesh stand(TetFile file);
 
 }  // namespace pliant::scenes

@@ -22,8 +22,8 @@ TetMesh grid(const std::vector<double>& xs, const std::vector<double>& ys, const
   const auto node = [&](std::array<std::size_t, 3> at) {
     return static_cast<std::uint32_t>((at[0] * ys.size() + at[1]) * zs.size() + at[2]);
   };
-  // Kuhn: from the cell's first corner to its last along the three axes in each of their six orders; cells of odd
-  // number start at their far side.
+  // Kuhn's subdivision: from the cell's first corner to its last along the three axes in all six orders; odd cells
+  // start at their far side.
   constexpr std::array<std::array<int, 3>, 6> kOrders{
       {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
   for (std::size_t i = 0; i + 1 < xs.size(); ++i)

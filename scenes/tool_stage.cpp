@@ -19,7 +19,7 @@ Mesh built(const Primitive& primitive) {
   return std::move(result->mesh);
 }
 
-// Each vertex of the collision mesh rides on the node that it was made from.
+// Embeds each vertex of the collision mesh at the node from which it was made.
 std::vector<Embedding> embed(const TetMesh& tets, const Mesh& collision_mesh) {
   std::map<std::array<float, 3>, Embedding> at;
   for (std::uint32_t t = 0; t < tets.tets.size(); ++t)
@@ -35,7 +35,7 @@ std::vector<Embedding> embed(const TetMesh& tets, const Mesh& collision_mesh) {
   return all;
 }
 
-// A separate device without limits.
+// Adds a separate unlimited device.
 void hold(Registry& registry, Entity entity, const Handle6& handle, const Pose& pose) {
   registry.add(entity, handle);
   HapticDevice device;
@@ -169,8 +169,7 @@ double ToolStage::kinetic_energy() {
 double ToolStage::elastic_energy() {
   double sum = 0.0;
   for (const std::uint32_t i : soft().moving)
-    if (const auto* tissue = soft().bodies[i]->as_tissue())
-      sum += tissue->tissue().elastic_energy();
+    if (const auto* tissue = soft().bodies[i]->as_tissue()) sum += tissue->tissue().elastic_energy();
   return sum;
 }
 

@@ -1,4 +1,4 @@
-// Surfaces for tests of the touch tick, and the forces that they must give.
+// Surfaces for tests of the touch tick, and the forces that they must produce.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,7 @@ inline Deformable frictionless(SpringLaw law = SpringLaw::kLinear) {
   return d;
 }
 
-// [N] The normal force at a given depth [m] after everything has settled, written out from level-format.md.
+// [N] Normal force at a given depth [m] in equilibrium, written out from level-format.md.
 inline double law(const Deformable& d, double depth) {
   switch (d.spring) {
     case SpringLaw::kLinear:

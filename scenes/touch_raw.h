@@ -1,4 +1,4 @@
-// The force of a touch before any safety, the stored energy, and the work on a hand.
+// The raw force of a touch before safety, the stored energy, and the work on a hand.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ inline double stored(const Stage& stage) {
   return sum;
 }
 
-// Work done on the hand by the raw force, before any safety, trapezoidal; and the most that was ever stored.
+// Work on the hand by the raw force before safety, by the trapezoidal rule, and the largest stored energy.
 struct RawMeter {
   double work = 0.0, most = 0.0;
   dvec3 force{0}, position{0};
@@ -37,7 +37,7 @@ struct RawMeter {
 
 inline Primitive painted_sheet(int cells, double size) {
   Primitive p = scenes::sheet(cells, size);
-  for (const vec3& x : p.position) {  // 100 to 600 N/m over 16 mm
+  for (const vec3& x : p.position) {  // stiffness from 100 to 600 N/m over 16 mm
     const double s = std::clamp((static_cast<double>(x.x) + 0.008) / 0.016, 0.0, 1.0);
     p.stiffness.push_back(static_cast<float>(1.0 + 5.0 * s));
   }

@@ -14,8 +14,7 @@ namespace {
 constexpr double kTruthStep = 1.0 / 480;                 // [s] of the midpoint rule
 constexpr double kRise = 0.2, kHold = 0.1, kLast = 0.5;  // [s] of a press: rise, hold, total with release
 constexpr int kLooks = 15;                               // equidistant moments of a press at which motions are compared
-constexpr double kHeldShare = 0.15;                      // [1] of the height: the pinned part, if nothing else is
-                                                         // pinned
+constexpr double kHeldShare = 0.15;                      // [1] of the height: pinned if nothing else is
 constexpr double kStrain = 0.1;                          // [1] depth of the deepest dent over the patch's radius
 
 // Pins the lowest part of a free body, so that a press has a static solution.

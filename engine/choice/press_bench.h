@@ -34,8 +34,7 @@ class PressBench {
 
   // Result of pressing one place `depth` [m] deep and releasing it; afterwards the surface is at rest.
   struct Press {
-    double off = 0.0, size = 0.0;  // area-weighted sums of squares within the reference's region: of the difference,
-                                   // and of the reference
+    double off = 0.0, size = 0.0;  // area-weighted sums of squares in the region: difference, reference
     double vertices = 0.0;         // awake
     double force = 0.0;            // [N] along the normal
     double ms = 0.0;               // of the tick

@@ -33,8 +33,7 @@ class SurfaceTruth {
  private:
   double radius_ = 0.0;
   std::string why_;
-  std::vector<double> layer_;  // [1] share over the square root of the distance from the punch's edge; empty: a
-                               // half-space
+  std::vector<double> layer_;  // [1] share at even steps of the root of the distance from the punch; empty: half-space
 };
 
 // [m] Smallest radius of a probe that meets surfaces; 0: none is a sphere.

@@ -56,8 +56,7 @@ class BodyJournal {
   std::vector<Entity> bodies_;
   std::vector<std::uint32_t> index_;      // per body: index into SoftState::bodies
   std::vector<dquat> rotation_;           // per body: the last rotation, start of the next search
-  std::vector<std::vector<dvec3>> rest_;  // [m] object frame, per node relative to the centre of mass; bodies that
-                                          // deform only
+  std::vector<std::vector<dvec3>> rest_;  // [m] object frame, per node from the centre of mass; deformable bodies only
   std::vector<std::unique_ptr<Tool>> tools_;
   Recorder<BodyRow> recorder_;
 };

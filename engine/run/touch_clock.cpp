@@ -16,8 +16,7 @@ constexpr double kTellEvery = 0.1;  // [s] between published figures
 void let_go(World& world, Tick tick) {
   for (auto [entity, device] : world.registry.view<HapticDevice>()) device.status = DeviceStatus::kLost;
   write_devices(world, tick);
-  for (auto [entity, device] : world.registry.view<HapticDevice>())  // including devices that nothing in the level
-                                                                     // moves
+  for (auto [entity, device] : world.registry.view<HapticDevice>())  // also those that nothing moves
     device.force_sent = device.torque_sent = dvec3(0);
 }
 

@@ -56,7 +56,7 @@ const std::vector<LiveKey>& live_keys() {
   using D = DeformableParameters;
   using H = DeviceParameters;
   static const std::vector<LiveKey> keys{
-      {"young", &D::young, nullptr},  // before what it sets
+      {"young", &D::young, nullptr},  // before the key that it sets
       {"poisson", &D::poisson, nullptr},
       {"thickness", &D::thickness, nullptr},
       {"stiffness", &D::stiffness, nullptr},

@@ -128,8 +128,7 @@ struct Session::Parts {
   bool after_pause = false;                     // touch clock's: the next tick is the first after a pause
   Tick last;                                    // touch clock's: the current tick, or the last
   bool shown = true;                            // touch clock's: its readings are published
-  std::function<void(Tick)> noted;              // touch clock's: called last in every tick; must not allocate, wait or
-                                                // throw
+  std::function<void(Tick)> noted;              // touch clock's: last in every tick; must not allocate, wait or throw
   std::map<std::string, std::map<std::uint32_t, SourcePlace>> places;  // per object, places of pressed vertices
 
   // Geometry queries (session_queries.cpp). Owner's.

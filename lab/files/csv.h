@@ -26,8 +26,8 @@ void csv_cells(std::string_view line, char mark, std::vector<std::string>& cells
 inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 std::size_t csv_column(const std::vector<std::string>& header, std::string_view name);
 
-// Appends a comma and the value with nine digits: exact for a float, 1e-9 relative for a double. -0 and values near or
-// below the smallest normal double are written as 0, so that every reader accepts them.
+// Appends a comma and the value with nine digits: exact for a float, 1e-9 relative for a double. -0 and magnitudes
+// below 1e-100 are written as 0, so that every reader accepts them.
 void put(std::string& line, double value);
 void put(std::string& line, const dvec3& v);  // x, y, z
 void put(std::string& line, const dquat& q);  // w, x, y, z

@@ -46,9 +46,7 @@ Staged state_of(const fs::path& staging) {
 std::set<std::string> listed_files(const fs::path& folder) {
   std::set<std::string> names;
   std::error_code error;
-  if (!fs::is_regular_file(folder / kRunList, error))
-    return names;  // not a regular file, for instance a link to an
-                   // endless device
+  if (!fs::is_regular_file(folder / kRunList, error)) return names;  // for instance a link to an endless device
   std::ifstream in(folder / kRunList);
   std::string line;
   if (!std::getline(in, line) || line + '\n' != kListTitle) return names;
@@ -74,8 +72,7 @@ std::vector<std::string> result_files(const fs::path& folder) {
 int begin_list(const fs::path& staging) {
   const int list = ::open((staging / kRunList).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (list < 0) return -1;
-  ::flock(list, LOCK_EX | LOCK_NB);  // locked before the list is filled, so that no other run takes it for an abandoned
-                                     // one
+  ::flock(list, LOCK_EX | LOCK_NB);  // locked while empty: no other run takes it for an abandoned one
   if (::write(list, kListTitle.data(), kListTitle.size()) == static_cast<ssize_t>(kListTitle.size())) return list;
   const int error = errno;
   ::close(list);

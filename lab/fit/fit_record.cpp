@@ -11,8 +11,7 @@ namespace {
 constexpr std::size_t kLeastStretches = 5;  // least number of held-out stretches, given enough rows
 constexpr double kStretch = 0.05;           // [1] longest stretch, as a share of the record
 constexpr std::size_t kFewHeld = 5;         // rows
-constexpr double kAlike = 1.02;             // [1] errors within this ratio are equal: the law with fewer parameters is
-                                            // chosen
+constexpr double kAlike = 1.02;             // [1] errors within this ratio are equal: fewer parameters win
 constexpr double kCorrelated = 0.3;         // [1]
 
 struct Shares {

@@ -18,8 +18,7 @@ struct RecordWish {
 struct FittedParameter {
   std::string key, unit;
   double value = 0.0;
-  double low = 0.0, high = 0.0;  // bounds of the interval, within the key's range; both equal the value if there is no
-                                 // interval
+  double low = 0.0, high = 0.0;  // bounds of the interval, within the key's range; both the value if there is none
   bool on_bound = false;
 };
 
@@ -30,8 +29,7 @@ struct LawFit {
   std::vector<double> force;             // [N] predicted by the model at each row
   double rms = 0.0, held_rms = 0.0;      // [N] on the fitted and on the held-out rows
   double share = 0.0, held_share = 0.0;  // [1] the same, over the RMS force of those rows
-  double correlation = 0.0;  // [1] lag-1 autocorrelation of the residuals; far from 0: the law does not describe the
-                             // tissue
+  double correlation = 0.0;              // [1] lag-1 autocorrelation of the residuals; far from 0: a wrong law
   bool converged = false, singular = false;
 };
 

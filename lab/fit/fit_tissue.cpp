@@ -28,13 +28,11 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kMapPlaces = 256;      // most places at which the stiffness map is computed
-constexpr int kDepths = 4;                   // number of steps in which a press reaches its depth, a quarter of the
-                                             // reach
+constexpr int kDepths = 4;                   // steps in which a press reaches its depth, a quarter of the reach
 constexpr std::ptrdiff_t kEnoughPlaces = 6;  // least number of places away from edges, for law and shape
 constexpr double kDeepestShare = 0.25;       // [1] of the reach
 constexpr double kHardest = 6.0;             // [1] largest painted stiffness, relative to the usual one
-constexpr double kSeenApart = 0.3;           // [1] of the indenter's radius: spacing of the points at which dents are
-                                             // compared
+constexpr double kSeenApart = 0.3;           // [1] of the indenter's radius: spacing of a dent's sample points
 constexpr std::size_t kRefined = 4;          // number of places repeated with a finer lattice
 constexpr double kFiner = 2.0 / 3.0;         // [1] cell size of the finer lattice
 

@@ -11,8 +11,7 @@ namespace {
 constexpr double kDifference = 1e-6;  // [1] of the scale: central differences
 constexpr int kMostSteps = 200;
 constexpr double kSmall = 1e-12;     // [1] stops at a relative gain below this
-constexpr double kFlattest = 1e-12;  // [1] smallest eigenvalue of the scaled normal matrix; below it the problem is
-                                     // singular
+constexpr double kFlattest = 1e-12;  // [1] smallest eigenvalue of the scaled normal matrix; below: singular
 
 struct Problem {
   const std::vector<FitParameter>& parameters;

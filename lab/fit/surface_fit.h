@@ -23,8 +23,7 @@ struct ShapeFit {
   double reach = 0.0;     // [m]
   double volume = 1.0;    // [1]
   double contact = 0.0;   // [m] contact_radius; 0: the shape has none
-  double error = 0.0;     // [1] RMS difference over RMS of the dents, area-weighted, within kAroundPress radii, all
-                          // depths
+  double error = 0.0;     // [1] RMS difference over RMS of the dents, by area, within kAroundPress radii
   double of_depth = 0.0;  // [1] the same difference over the depth
 };
 inline constexpr double kAroundPress = 3.0;  // [1] radii of the indenter within which dents are compared

@@ -21,8 +21,7 @@ struct HeldPlace {
   double force_error = 0.0, force_worst = 0.0;  // [1] RMS and largest of the relative differences
   double surface_error = 0.0;                   // [1] RMS difference over RMS of the dent, at the greatest depth
   double surface_of_depth = 0.0;                // [1] RMS difference over the depth
-  double not_radial = 0.0;                      // [1] the part of the dent that no radial function can represent, over
-                                                // the depth
+  double not_radial = 0.0;                      // [1] non-radial part of the dent, over the depth
   bool near_edge = false;                       // of the object
 };
 

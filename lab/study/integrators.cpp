@@ -195,8 +195,7 @@ std::vector<double> true_heights(const VertexProblem& p, double height, double d
   }
   const double fastest = std::sqrt(p.k * std::max(p.law.slope(height), p.law.slope(-height)) / p.m);
   const double longest = std::min(0.01 / fastest, 0.5 * p.m / std::max(p.b, 1e-300));
-  const int parts = std::max(8, static_cast<int>(std::ceil(dt / longest)));  // so that RK4 at dt is not compared with
-                                                                             // itself
+  const int parts = std::max(8, static_cast<int>(std::ceil(dt / longest)));  // finer than RK4 at dt
   VertexState s{height, 0.0, 0.0};
   for (int i = 1; i <= count; ++i) {
     for (int k = 0; k < parts; ++k) s = runge_kutta(p, s, dt / parts);

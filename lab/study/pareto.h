@@ -41,8 +41,7 @@ struct ParetoTable {
   bool front_by_group = false;                 // one front per group: each group answers a separate question
   bool joined = true;                          // points of a group are joined in their order
   std::vector<std::size_t> drawn = {};         // rows on the plot; empty: all
-  double least_error = 0.0, most_error = 0.0;  // range of the plot; 0: of the rows. Values beyond are drawn as arrows
-                                               // on the edge
+  double least_error = 0.0, most_error = 0.0;  // range of the plot; 0: of the rows. Arrows mark values beyond
 };
 
 // Rows not dominated in cost and error, the cheapest first. Of equal rows, the first.

@@ -15,8 +15,7 @@ namespace {
 constexpr double kParetoWidth = 1240, kParetoHeight = 900;          // [pixel]
 constexpr double kParetoLeft = 112, kParetoRight = 40, kEdge = 30;  // [pixel] margins of the axes and of text
 constexpr double kSmallText = 15, kRadius = 5.5;                    // [pixel]
-constexpr double kLabelText = 18, kText = 17, kLine = 22.0;         // [pixel] of titles and axes, of legend and
-                                                                    // sentences
+constexpr double kLabelText = 18, kText = 17, kLine = 22.0;         // [pixel] titles and axes; legend and sentences
 constexpr double kApart = 5;                                        // [pixel] between labels beside each other
 constexpr Color kParetoSky{0.337, 0.706, 0.914}, kFront{0.62, 0.62, 0.62};
 constexpr std::array kColors{kBlue, kVermilion, kGreen, kPurple, kOrange, kParetoSky, kInk, Color{0.55, 0.55, 0.0}};

@@ -21,8 +21,7 @@ constexpr std::size_t kLeastFitted = 5;
 struct Fit {
   double middle = 0.0;
   Eigen::VectorXd coefficient;  // ascending
-  double within = 0.0;          // half width of the 95 % interval of the last coefficient; infinite without degrees of
-                                // freedom
+  double within = 0.0;          // half width of the 95 % interval of the last coefficient; may be infinite
 };
 Fit least_squares(const std::vector<double>& x, const std::vector<double>& y, Eigen::Index coefficients) {
   const auto n = static_cast<Eigen::Index>(x.size());

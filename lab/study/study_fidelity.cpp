@@ -53,8 +53,7 @@ struct FidelityRow {
 struct FidelityPlan {
   std::vector<int> cells;                  // of the block, per punch radius
   std::vector<double> level_cells, focus;  // [m] of lattices: uniform, and fine only under the punch
-  std::vector<double> lattice, lens;       // [1] radii per cell, on the small block: uniform, and fine only under the
-                                           // punch
+  std::vector<double> lattice, lens;       // [1] radii per cell, small block: uniform, and fine under the punch only
   double seconds;                          // [s] of a press in a level
   std::vector<Shape> shapes;               // of P1
 };

@@ -17,8 +17,7 @@ namespace pliant {
 // at the second fit depth and judged at the deepest judged depth.
 struct Indented {
   double young = 10e3, poisson = 0.45;                   // [Pa] [1]
-  double radius = 0.004;                                 // [m] of the punch: that of a point probe, for which `young`
-                                                         // is calibrated
+  double radius = 0.004;                                 // [m] of the punch, for which `young` is calibrated
   double thickness = 0.02;                               // [m]
   double half_width = 0.025;                             // [m]
   std::vector<double> depths{0.00075, 0.0015};           // [m] ascending, for judging
@@ -41,8 +40,7 @@ struct PressWish {
   double seconds = 0.25;                                // [s] per depth, half of it at rest
   std::size_t tets = 0;                                 // output: of the lattice
   std::function<bool()> goes_on = [] { return true; };  // called in every tick; false ends the press with an error
-  bool focus = false;                                   // cells have that size under the punch only and grow away from
-                                                        // it
+  bool focus = false;                                   // cell size under the punch; larger away from it
 };
 Result<Indentation> press_tissue(const Indented& what, PressWish& press);
 // A sequence of block presses at these depths [m], solved anew in every soft step of 1/60 s: force and cost.

@@ -27,11 +27,9 @@ namespace {
 
 constexpr std::size_t kWindow = 25;   // ticks of the moving mean that is subtracted: the rest is above about 20 Hz
 constexpr double kTooStiff = 1500.0;  // [N/m]
-constexpr const char* kPlotted = "inverse3,hand=finger";  // little friction in a light hand: the hardest case to
-                                                          // stabilise
+constexpr const char* kPlotted = "inverse3,hand=finger";  // little friction, light hand: hardest to stabilise
 constexpr double kLast = 0.5;                             // [s]
-constexpr double kGrows = 2.0;                            // [1] fast motion at the end over that of the whole run:
-                                                          // above it, the motion is growing
+constexpr double kGrows = 2.0;                            // [1] final over overall fast motion; above it: growing
 
 // Records every written force, also between two ticks of the touch clock. It outlives its driver.
 struct Flicker {

@@ -21,8 +21,7 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kVertexTick = 1e-3;  // [s]
 constexpr int kLeastSteps = 8;
-constexpr double kGone = 1e3;       // [1] a height beyond this many dents is divergence: a damped oscillation may grow
-                                    // before it decays
+constexpr double kGone = 1e3;       // [1] dents; a larger height is divergence, not transient growth
 constexpr double kRounding = 1.02;  // [1] growth of the second half over the first that still counts as stable
 
 // Cost per vertex and simulated millisecond, measured at each row's step. `done` receives the share of each part.

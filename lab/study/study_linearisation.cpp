@@ -28,8 +28,8 @@ namespace pliant {
 namespace {
 
 constexpr const char* kLevel = "hand";
-constexpr double kSlow = 1.0, kSwift = 3.2, kBrisk = 4.0;  // [1] of the script's pace; at 3.2 a force kept constant is
-                                                           // off by a fifth
+constexpr double kSlow = 1.0, kSwift = 3.2, kBrisk = 4.0;  // [1] of the script's pace; constant force: 20 % error at
+                                                           // 3.2
 // [s] at that pace
 constexpr double kSeconds = 6.0, kQuickSeconds = 1.0, kSmallSeconds = 0.2;
 

@@ -37,13 +37,11 @@ struct LinearisationFigures {
   int contacts = 0, modes = 0;         // maximum over the models
   Vector6 weight = Vector6::Zero();    // of the tissue
   double rms_N = 0.0, max_N = 0.0;     // [N] of the reference force beyond the weight
-  double step_share = 0.0;             // [1] RMS error of the soft step at its own instants: a lower bound for every
-                                       // model
+  double step_share = 0.0;             // [1] RMS error of the soft step at its own instants: bound for all models
   std::vector<MethodFigures> methods;  // constant, linear, contacts, full
   std::vector<ForceSample> samples;
   double touch_p50_us = 0.0, touch_p99_us = 0.0, touch_max_us = 0.0;  // tool_feedback, clocks in lockstep
-  double jump_share = 0.0;     // [1] largest change in an update's tick or the next five, over the largest change
-                               // around it
+  double jump_share = 0.0;     // [1] largest change in an update's tick or the next five, over that around it
   int updates = 0, jumps = 0;  // jumps: updates with a jump_share above 2
   int jumps_of_contacts = 0;   // of these, with a contact that closed, opened or changed between sticking and sliding
 };

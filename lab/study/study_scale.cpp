@@ -23,8 +23,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kAwake = 500;  // vertices in the probe's reach; whole zones are awake, about a thousand
-                                       // vertices
+constexpr std::uint32_t kAwake = 500;  // vertices in the reach; whole zones, about a thousand vertices, move
 // Cells and beds between those of bench/soft_step.cpp, so that a power is fitted to more points than it needs.
 constexpr scenes::PaddleCells kCells[]{{9, 2, 5},   {11, 3, 6},  {14, 3, 8}, {18, 4, 11},
                                        {24, 5, 14}, {30, 6, 18}, {38, 8, 22}};

@@ -67,8 +67,7 @@ struct ForceRow {
   // Of a block.
   double bonded = std::numeric_limits<double>::quiet_NaN();  // [N] the law times the bonding factor of a half-space
   std::int64_t tets = 0;                                     // of the finest grid
-  double finest = std::numeric_limits<double>::quiet_NaN();  // [N] force on it; `truth_force` is the limit over the
-                                                             // grids
+  double finest = std::numeric_limits<double>::quiet_NaN();  // [N] force on it; `truth_force`: the limit
   double order = std::numeric_limits<double>::quiet_NaN();   // [1] order of convergence of the grids
   double finest_profile = std::numeric_limits<double>::quiet_NaN();  // [1] profile error of its surface
   double error() const { return model / truth_force - 1; }

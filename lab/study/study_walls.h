@@ -21,8 +21,8 @@ struct WallCell {
   double delay = 0.0;  // [s]
   Wall wall;
   WallResult result;          // worst over all starts
-  bool fades = false;         // a cycle smaller than a count: the guard fades the force of a still hand and later
-                              // restores it (docs/devices/safety.md, frozen)
+  bool fades = false;         // a cycle below one count: the guard fades a still hand's force and restores it
+                              // (docs/devices/safety.md, frozen)
   bool linear_stable = true;  // by the characteristic polynomial
   bool marginal = false;      // a root within kMarginal of the unit circle: neither verdict is used
   bool passive = false;       // Colgate's condition, with delay

@@ -1,5 +1,5 @@
-// Summary of a sweep's notes: for each limit the number of runs in which it acted and its worst value, every other note
-// once for all runs with the same sentence, and axes that have no effect.
+// Summary of a sweep's notes. For each limit: the number of runs in which it acted and its worst value. Every other
+// note once for all runs with the same sentence. Axes that have no effect.
 #pragma once
 
 #include <string>

@@ -22,7 +22,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kJournalSeconds = 8.0;  // [s] of rows that may wait while a picture is drawn and written
+constexpr double kJournalSeconds = 8.0;  // [s] of rows buffered while a picture is drawn and written
 constexpr int kDefaultFrames = 12;
 
 Ran run_headless(const RunOptions& options, TouchLoop& loop) {
@@ -41,7 +41,7 @@ Ran run_headless(const RunOptions& options, TouchLoop& loop) {
   return ran;
 }
 
-// The rows that still wait, then every file is closed.
+// Keeps the remaining rows and closes every file.
 Status finish(Keeper& keeper, Journal& journal) {
   Status kept = Done{};
   try {
@@ -80,7 +80,7 @@ Outcome LevelRun::plan_ticks() {
   return {};
 }
 
-// Devices are felt in real time; a simulated one, or one whose samples come by the clock, may be stepped.
+// Devices need real time. A simulated device, or one sampled by the clock, may run in lockstep.
 Outcome LevelRun::open_devices() {
   if (run_.replay) return {};
   register_all_drivers();
@@ -100,13 +100,13 @@ Outcome LevelRun::open_devices() {
   return may ? Outcome() : wrong_arguments({"--lockstep", may.error().message()});
 }
 
-// The folder of results, and the files that grow while it runs.
+// Creates the folder of results and the files that grow during the run.
 Outcome LevelRun::open_results() {
   auto out = OutputFolder::create(options_.out.empty() ? "out/" + world_.name : options_.out, options_.force);
   if (!out) return failed(out.error());
   out_.emplace(std::move(out).value());
   interrupt_.remove_if_forced(out_->staging());
-  const double waiting = realtime() ? kJournalSeconds : 2.0 / world_.simulation.touch_rate;  // [s] of rows
+  const double waiting = realtime() ? kJournalSeconds : 2.0 / world_.simulation.touch_rate;  // [s] of buffered rows
   if (world_.soft) bodies_.emplace(world_, static_cast<std::size_t>(waiting / world_.simulation.soft_step) + 3);
   journal_.emplace(world_, waiting, bodies_ ? &*bodies_ : nullptr);
   std::vector<std::string> sources;
@@ -144,8 +144,8 @@ Outcome LevelRun::open_recording() {
   return {};
 }
 
-// Without a working graphics library, pictures that nobody asked for are left out with a note. A surface that is to be
-// computed on the GPU cannot be.
+// Without a working graphics library, pictures that were not requested are left out with a note. A surface computed on
+// the GPU is an error then.
 Outcome LevelRun::open_frames() {
   if (shown_ || options_.frames == 0) return {};
   const bool asked = options_.frames >= 0 || options_.fps > 0.0;
@@ -162,7 +162,7 @@ Outcome LevelRun::open_frames() {
   return {};
 }
 
-// What takes part in a tick, in this order: the recording or the devices that move the hands, then what notes it.
+// Attaches the participants of a tick in order: the recording or the devices that move the hands, then the journals.
 void LevelRun::attach() {
   runner_.emplace(world_);
   if (run_.replay) {
@@ -196,7 +196,7 @@ void LevelRun::go(std::optional<Prepared>& next) {
                  frames_.get(), frame_ticks_, replay_ ? &*replay_ : nullptr};
   Prepared other;
   ran_ = shown_ ? run_shown(options_, run_, *shown_, loop, devices_, other) : run_headless(options_, loop);
-  runner_->stop();  // where an exception left it running
+  runner_->stop();  // an exception may have left it running
   if (ran_.opened) next = std::move(other);
 }
 
@@ -248,7 +248,7 @@ RunFigures LevelRun::figures(std::uint64_t hash) {
   return figures;
 }
 
-// What kept it from what was asked for, on stderr and in the report.
+// Findings of the run, for stderr and the report.
 void LevelRun::add_findings(RunFigures& figures) {
   std::vector<std::string> sentences;
   try {
@@ -280,7 +280,7 @@ void LevelRun::add_findings(RunFigures& figures) {
   figures.dropped.insert(figures.dropped.end(), run_.notes.begin(), run_.notes.end());
 }
 
-// A picture is under way that does not end: its thread uses the window and the world.
+// A picture is stuck: its thread still uses the window and the world.
 void LevelRun::leave_hung() {
   { const OutputFolder done = std::move(*out_); }
   std::fflush(stdout);

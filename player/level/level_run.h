@@ -1,4 +1,4 @@
-// One run of a prepared level: its devices and files are opened, its ticks run, and what came of it is written.
+// One run of a prepared level: opens devices and files, runs the ticks, and writes the results.
 #pragma once
 
 #include <cstdint>
@@ -24,28 +24,28 @@ namespace pliant {
 
 struct Shown;
 
-// What a run was like, whichever clock it ran on, and however it ended.
+// Outcome of a run, for every clock and every kind of end.
 struct Ran {
   std::string mode;
   std::uint64_t overruns = 0;
   std::optional<FrameFigures> drawn;
   std::size_t pictures = 0;
-  bool opened = false;    // another level takes its place
-  Status ended = Done{};  // what ended it early
-  bool hung = false;      // in a picture (window_session.h)
+  bool opened = false;    // another level replaces it
+  Status ended = Done{};  // the error that ended it early
+  bool hung = false;      // stuck in a picture (window_session.h)
   std::future<std::optional<Error>> opening;
 };
 
 class LevelRun {
  public:
-  // `shown`: its window, or null. All outlive it.
+  // `shown`: its window, or null. All must outlive it.
   LevelRun(Prepared& run, Shown* shown, const Interrupt& interrupt);
 
-  // Devices, results and pictures, in that order. Where one fails, what is staged goes and replaces nothing.
+  // Opens devices, results and pictures, in that order. If one fails, staged files are removed and nothing is replaced.
   Outcome open();
-  // Its ticks. `next`: the level that its window opened after it.
+  // Runs the ticks. `next`: a level that the window opened meanwhile.
   void go(std::optional<Prepared>& next);
-  // Whatever ended the ticks: what ran is written, and then the first error is said.
+  // In every case: writes the results of the ticks that ran, then returns the first error.
   Outcome close();
 
  private:
@@ -55,7 +55,7 @@ class LevelRun {
   Outcome open_recording();
   Outcome open_frames();
   void attach();
-  void take(const Status& status);  // the first error stays
+  void take(const Status& status);  // keeps the first error
   RunFigures figures(std::uint64_t hash);
   void add_findings(RunFigures& figures);
   [[noreturn]] void leave_hung();
@@ -66,13 +66,13 @@ class LevelRun {
   Shown* shown_;
   const Interrupt& interrupt_;
   World& world_;
-  std::uint64_t ticks_ = 0;  // at most
+  std::uint64_t ticks_ = 0;  // upper limit
   DeviceLinks devices_;
   std::optional<OutputFolder> out_;
   std::optional<BodyJournal> bodies_;
   std::optional<Journal> journal_;
   std::optional<Keeper> keeper_;
-  PoseRecorder* recorder_ = nullptr;  // the keeper's; null: nothing is recorded
+  PoseRecorder* recorder_ = nullptr;  // the keeper's; null: not recording
   std::unique_ptr<Frames> frames_;
   std::optional<Replay> replay_;
   std::optional<Runner> runner_;

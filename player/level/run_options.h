@@ -1,4 +1,4 @@
-// What `pliant run` was asked for.
+// The options of `pliant run`.
 #pragma once
 
 #include <string>
@@ -7,27 +7,27 @@
 namespace pliant {
 
 struct RunOptions {
-  double unit = 1.0;                // [m] that one unit of a bare mesh is
-  bool list = false;                // only say which levels ship
+  double unit = 1.0;                // [m] unit of a bare mesh
+  bool list = false;                // only list the shipped levels
   std::string level;                // file, name of a shipped level, or empty: the demo level
   std::vector<std::string> probes;  // NAME=SOURCE
   std::vector<std::string> sets;    // KEY=VALUE
-  double seconds = 0.0;             // [s] 0: as long as the longest script
+  double seconds = 0.0;             // [s] 0: length of the longest script
   double rate = 0.0;                // [Hz] 0: the level's
   bool realtime = false;
-  bool lockstep = false;                  // asked for, not only the default
-  bool window = false, headless = false;  // forced, forbidden; else a window where there is a display
+  bool lockstep = false;                  // requested, not only the default
+  bool window = false, headless = false;  // required, forbidden; else a window if there is a display
   std::string field = "auto";
   std::string tool_force;         // held, linear, contacts; empty: each tool's key
-  double error = 0.0;             // [1] budget of every surface and soft body; 0: their own
-  double max_force = 0.0;         // [N] the most that the level may ask of a device; 0: the usual cap
+  double error = 0.0;             // [1] budget of every surface and soft body; 0: each one's own
+  double max_force = 0.0;         // [N] largest force that the level may set for a device; 0: the usual cap
   std::string out;                // folder; empty: out/<level name>
-  int frames = -1;                // -1: not said
-  double fps = 0.0;               // [1/s] of simulated time; 0: not said
+  int frames = -1;                // -1: not given
+  double fps = 0.0;               // [1/s] of simulated time; 0: not given
   int width = 960, height = 540;  // [pixel]
   bool sized = false;             // --size was given
-  std::string input;              // file of events for the window
-  bool force = false;             // replaces what an earlier run wrote
+  std::string input;              // file of input events for the window
+  bool force = false;             // replace an earlier run's files
   std::string record, replay;
   unsigned threads = 0;    // 0: as many as the machine has
   std::string soft_store;  // folder of soft bodies that a sweep's runs share; empty: none

@@ -32,9 +32,9 @@ namespace {
 
 constexpr const char* kNeedsWindow =
     "needs a window, and none is open; set DISPLAY and leave out --headless and --lockstep, or use orbit";
-constexpr const char *kUnitSetting = "--unit=", *kErrorSetting = "--error=";  // among a recording's settings
+constexpr const char *kUnitSetting = "--unit=", *kErrorSetting = "--error=";  // in a recording's settings
 
-// The recording belongs to this level: same name, rate and probes.
+// Checks that the recording belongs to this level: same name, rate and probes.
 Outcome check_replay(const Recording& replay, const RunOptions& options, const World& world) {
   if (replay.header.level != world.name)
     return failed({options.replay, "was recorded on level '" + replay.header.level + "'; run it on that level"});
@@ -48,8 +48,8 @@ Outcome check_replay(const Recording& replay, const RunOptions& options, const W
   return {};
 }
 
-// In a window nobody wants to look on only: without --probe and without a probe of the level for it, the mouse gets
-// one; not where there is a tool, which it takes hold of (window/carrier.h).
+// The default probe of a window: without --probe and without a mouse probe in the level, the mouse gets one. Not if
+// there is a tool, which the mouse carries instead (window/carrier.h).
 std::optional<ProbeSource> mouse_probe(const Level& level) {
   for (const LevelNode& node : level.nodes)
     if (node.handle || (node.device && node.device->driver == DriverKind::kMouse)) return {};
@@ -59,7 +59,7 @@ std::optional<ProbeSource> mouse_probe(const Level& level) {
   return ProbeSource{name, DriverKind::kMouse, {}};
 }
 
-// A name that the level does not have makes a new probe: on purpose, or misspelled.
+// A name that is not in the level creates a new probe, on purpose or by a misspelling: a note tells the user.
 void say_added(const RunOptions& options, const Level& level, Prepared& run) {
   std::vector<std::string> names;
   for (const LevelNode& node : level.nodes)
@@ -73,7 +73,7 @@ void say_added(const RunOptions& options, const Level& level, Prepared& run) {
   }
 }
 
-// Probes that are not the level's: from --probe, from the recording, or one on a mesh that has none.
+// Adds probes that are not in the level: from --probe, from the recording, or one for a bare mesh.
 Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bool bare, Prepared& run,
                       std::vector<ProbeSource>& sources) {
   for (const std::string& argument : options.probes) {
@@ -100,15 +100,15 @@ Outcome choose_probes(const RunOptions& options, bool windowed, Level& level, bo
   if (!bare && !run.replay) say_added(options, level, run);
   const std::size_t own = level.nodes.size();
   if (const Status status = add_probes(level, added); !status) return wrong_arguments(status.error());
-  // A recording names the probes that were added, and a replay adds points of those names: their size goes with it.
+  // A recording stores only the names of added probes, and a replay adds points: their radius is stored as a setting.
   for (std::size_t n = own; n < level.nodes.size() && !run.replay; ++n)
     if (const LevelNode& node = level.nodes[n]; node.probe && node.probe->radius > 0.0)
       run.settings.push_back(fmt::format("{}.probe.radius={}", node.name, node.probe->radius));
   return {};
 }
 
-// What the level asks for and may not have is left out, unless the user has said otherwise: by --probe, by an answer
-// for this file, or afterwards by --set.
+// Device requests of the level that are not permitted are removed, unless the user decided otherwise: by --probe, by a
+// stored answer for this file, or afterwards by --set.
 void hold_back_requests(const RunOptions& options, Level& level, Prepared& run) {
   const DeviceAnswers answers = DeviceAnswers::load();
   for (LevelRequest& asked : device_requests(level)) {
@@ -121,7 +121,7 @@ void hold_back_requests(const RunOptions& options, Level& level, Prepared& run) 
   }
 }
 
-// Nothing is left of what would move it: that is an error, and in a window a question.
+// If a hand is left without a source, that is an error, or in a window a question.
 Outcome refuse_requests(bool windowed, const Level& level, Prepared& run) {
   std::erase_if(run.refused, [&](const LevelRequest& asked) {
     const HapticDevice& device = *level.nodes[asked.node].device;
@@ -137,20 +137,20 @@ Outcome refuse_requests(bool windowed, const Level& level, Prepared& run) {
   return {};
 }
 
-// --tool-force stands above the key of every tool.
+// --tool-force overrides the key of every tool.
 Outcome choose_tool_force(const RunOptions& options, Level& level) {
   bool any = false;
   for (LevelNode& node : level.nodes) {
     if (!node.handle) continue;
-    node.handle->force = *value_of_word<ToolForce>(options.tool_force);  // the command line has checked it
+    node.handle->force = *value_of_word<ToolForce>(options.tool_force);  // validated by the command line
     any = true;
   }
   if (any) return {};
   return wrong_arguments({"--tool-force", "is for tools, and the level has no PLIANT_handle; leave it out"});
 }
 
-// Where height fields live. `auto` goes by measured cost where there is a GPU and a display to refresh; lockstep stays
-// on the processor, so that the same input gives the same bits everywhere.
+// Chooses where height fields are computed. `auto` uses measured cost if there are a GPU and a display to refresh.
+// Lockstep stays on the CPU, so that the same input gives the same bits everywhere.
 FieldPlace choose_field(const RunOptions& options, bool windowed, const World& world) {
   if (options.field == "gpu") return FieldPlace::kGpu;
   if (options.field == "cpu" || !windowed) return FieldPlace::kProcessor;
@@ -158,7 +158,7 @@ FieldPlace choose_field(const RunOptions& options, bool windowed, const World& w
   return cost && cost->gpu_us < cost->processor_us ? FieldPlace::kGpu : FieldPlace::kProcessor;
 }
 
-// Devices of the level whose driver is not there in this run.
+// Notes devices of the level whose driver is absent in this run.
 void say_unmoved(bool windowed, Prepared& run) {
   if (run.replay) return;
   for (const Entity hand : hands(run.world)) {
@@ -166,7 +166,7 @@ void say_unmoved(bool windowed, Prepared& run) {
     if (!device) continue;
     if (device->driver == DriverKind::kExternal && !device->id.empty())
       continue;  // opened right before the clocks start
-    if (device->driver == DriverKind::kExternal && !run.refused.empty()) continue;  // said already
+    if (device->driver == DriverKind::kExternal && !run.refused.empty()) continue;  // already reported
     const bool mouse = device->driver == DriverKind::kMouse && !windowed;
     if (!mouse && (device->driver != DriverKind::kExternal || run.hands.moves(hand))) continue;
     const Name* name = run.world.registry.find<Name>(hand);
@@ -177,7 +177,7 @@ void say_unmoved(bool windowed, Prepared& run) {
   }
 }
 
-// One mouse moves one probe, the one that --probe names or else the first: two would stand in one point.
+// One mouse moves one probe: the one named by --probe, else the first. Two would be at the same place.
 void keep_one_mouse(const std::vector<ProbeSource>& sources, Prepared& run) {
   std::vector<std::pair<std::string, HapticDevice*>> moved;
   for (const Entity hand : hands(run.world)) {
@@ -198,7 +198,7 @@ void keep_one_mouse(const std::vector<ProbeSource>& sources, Prepared& run) {
   }
 }
 
-// Once, however many surfaces there are: which of them settle so slowly that they have another damping than their own.
+// One note for all surfaces that settle so slowly that their damping was changed.
 void say_creeping(Prepared& run) {
   std::size_t more = 0;
   std::string sentence;
@@ -219,7 +219,7 @@ void say_creeping(Prepared& run) {
   if (!sentence.empty()) say(run, sentence);
 }
 
-// --error, of this run or else of the recording.
+// --error of this run, else of the recording.
 Outcome apply_budget(const RunOptions& options, Level& level, Prepared& run) {
   double budget = options.error;
   if (run.replay && !(budget > 0.0))
@@ -238,7 +238,7 @@ Outcome apply_budget(const RunOptions& options, Level& level, Prepared& run) {
   return {};
 }
 
-// A replay has the settings that it was recorded with, and --set and --tool-force on top of them.
+// A replay uses its recorded settings, then --set and --tool-force.
 Outcome apply_settings(const RunOptions& options, double unit, Level& level, Prepared& run) {
   if (run.replay && !run.replay->header.settings.empty()) {
     for (const std::string& setting : run.replay->header.settings)
@@ -261,7 +261,7 @@ Outcome apply_settings(const RunOptions& options, double unit, Level& level, Pre
   return {};
 }
 
-// A bare mesh is replayed in the unit in which it was recorded, unless --unit says another.
+// A bare mesh is replayed in its recorded unit, unless --unit gives another.
 Result<double> choose_unit(const RunOptions& options, const Level& level, const Prepared& run) {
   if (const Status status = check_unit(level, options.unit); !status) return status.error();
   if (!run.replay || options.unit != 1.0 || level.has_pliant()) return options.unit;
@@ -270,7 +270,7 @@ Result<double> choose_unit(const RunOptions& options, const Level& level, const 
   return options.unit;
 }
 
-// Once, however many bodies there are: which of them lock.
+// One note for all bodies with locking elements.
 void say_locking(Prepared& run) {
   std::size_t more = 0;
   std::string sentence;
@@ -332,7 +332,7 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   for (const std::string& sentence : cap_safety(level, cap)) say(run, sentence);
   if (Outcome wrong = apply_settings(options, *unit, level, run)) return wrong;
   if (Outcome wrong = refuse_requests(windowed, level, run)) return wrong;
-  // Budgets are measured at the rate that the run has.
+  // Budgets are measured at the run's rate.
   if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
   if (options.rate > 0.0) level.simulation.touch_rate = options.rate;
   if (Outcome wrong = apply_budget(options, level, run)) return wrong;

@@ -1,4 +1,4 @@
-// From arguments and files to a world that is ready to be touched.
+// Creates a prepared world from arguments and files.
 #pragma once
 
 #include <filesystem>
@@ -16,12 +16,12 @@
 
 namespace pliant {
 
-// What could not be done, and whether the arguments or the input are to blame.
+// An error, and whether the arguments or the input caused it.
 struct Failure {
   ExitStatus status;
   Error error;
 };
-using Outcome = std::optional<Failure>;  // empty: it was done
+using Outcome = std::optional<Failure>;  // empty: success
 
 inline Outcome wrong_arguments(Error error) {
   return Failure{kUsage, std::move(error)};
@@ -30,22 +30,22 @@ inline Outcome failed(Error error) {
   return Failure{kFailed, std::move(error)};
 }
 
-// Everything a run needs before its first tick.
+// Everything that a run needs before its first tick.
 struct Prepared {
   RunOptions options;
-  RunOptions asked;  // on the command line: other levels follow the first one in a window
+  RunOptions asked;  // from the command line: in a window other levels may follow the first
   World world;
   std::optional<Recording> replay;
   std::vector<std::string> notes;
   SimulatedHands hands;               // not connected
   std::filesystem::path file;         // of the level
-  std::vector<LevelRequest> refused;  // devices that it asks for and may not have without a word of the user's
-  std::uint64_t scene = 0;            // scene_hash() of the level that runs
-  // For a recording: --set, --unit, --error and --tool-force, those of a replay before them.
+  std::vector<LevelRequest> refused;  // devices that it requests but may not use without the user's permission
+  std::uint64_t scene = 0;            // scene_hash() of the running level
+  // For a recording: --set, --unit, --error and --tool-force, after those of a replay.
   std::vector<std::string> settings;
 };
 
-// On stderr and in the report.
+// Adds a note to stderr and to the report.
 void say(Prepared& run, const std::string& sentence);
 
 // File -> Level -> World. `windowed`: it will be shown in a window.

@@ -14,8 +14,7 @@ namespace {
 
 constexpr int kWindowWidth = 1280, kWindowHeight = 720;  // [pixel]
 
-// Options for a file that was dropped, of those that were asked for: what was said of the first level's nodes and files
-// is not meant for it. `left`: which those are.
+// Options for a dropped file: options that refer to the first level's nodes and files are removed and listed in `left`.
 RunOptions another_level(const RunOptions& asked, const std::string& file, std::string& left) {
   RunOptions other = asked;
   other.level = file;
@@ -36,12 +35,12 @@ RunOptions another_level(const RunOptions& asked, const std::string& file, std::
   return other;
 }
 
-// The same level anew, beside what was written of it.
+// Options to open the same level again, with results beside those already written.
 RunOptions same_level(const RunOptions& options, const RunOptions& asked) {
   RunOptions other = options;
   other.force = false;
   std::error_code ignored;
-  // The recording under way has its place soon.
+  // The current recording will be moved to its name soon.
   for (int n = 2; !options.record.empty() &&
                   (n == 2 || other.record == options.record || std::filesystem::exists(other.record, ignored));
        ++n)
@@ -49,7 +48,7 @@ RunOptions same_level(const RunOptions& options, const RunOptions& asked) {
   return other;
 }
 
-// What a level asks for beyond what it may, as a window says it.
+// The window's question about device requests that are not permitted.
 std::vector<std::string> question_of(const Prepared& run) {
   if (run.refused.empty()) return {};
   std::vector<std::string> lines{
@@ -117,7 +116,7 @@ Ran run_shown(const RunOptions& options, const Prepared& run, Shown& shown, Touc
   session.frame_width = options.width;
   session.frame_height = options.height;
   session.frame_ticks = loop.frame_ticks;
-  // Measuring needs the context, which is this thread's: what was chosen for the first level holds for the next.
+  // Measuring needs the context, which belongs to this thread: the choice for the first level is reused.
   const std::string field = loop.runner.world().field_place == FieldPlace::kGpu ? "gpu" : "cpu";
   session.open = [&options, &asked, &next, field](const std::string& file) -> std::optional<Error> {
     next = Prepared();

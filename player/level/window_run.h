@@ -1,4 +1,4 @@
-// A level that runs in a window, which may open another one after it.
+// Runs a level in a window, which may open another one afterwards.
 #pragma once
 
 #include <memory>
@@ -11,17 +11,17 @@
 
 namespace pliant {
 
-// A window and what is to be shown in it.
+// A window and its scripted input.
 struct Shown {
   std::unique_ptr<Window> window;
   InputScript script;
 };
 
-// A window where there is a display, unless that was forbidden or what is asked for needs virtual time. Without one,
-// only an order to have one is a failure.
+// Opens a window if there is a display, unless it was forbidden or the run needs virtual time. Without a window, only
+// an explicit request for one is an error.
 Outcome open_window(const RunOptions& options, std::optional<Shown>& shown);
 
-// Until the window closes or the loop's ticks are over. `next`: the level that it has opened, where it did.
+// Runs until the window closes or the loop's ticks are over. `next`: the level that it opened, if any.
 Ran run_shown(const RunOptions& options, const Prepared& run, Shown& shown, TouchLoop& loop, DeviceLinks& devices,
               Prepared& next);
 

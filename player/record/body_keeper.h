@@ -1,4 +1,4 @@
-// The keeping half of the journal of soft steps: takes rows off the ring and turns them into bodies.csv.
+// The keeper of the soft steps' journal: drains the ring and writes bodies.csv.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,17 @@ namespace pliant {
 
 class BodyKeeper {
  public:
-  // `csv` is where the rows go. `journal` outlives it. Names are taken from the world now.
+  // `csv`: output file. `journal` must outlive it. Names are copied from the world now.
   static Result<BodyKeeper> create(const World& world, BodyJournal& journal, const std::filesystem::path& csv);
 
-  void keep();      // all rows that wait
+  void keep();      // all pending rows
   Status finish();  // closes bodies.csv
   const std::optional<Error>& failure() const { return csv_->failure(); }
 
  private:
   explicit BodyKeeper(BodyJournal& journal) : journal_(&journal) {}
   BodyJournal* journal_;
-  std::optional<GrowingFile> csv_;  // always there
+  std::optional<GrowingFile> csv_;  // always set
   std::string line_;
   std::vector<BodyRow> rows_;
   std::vector<std::string> names_;  // of the bodies, quoted for CSV

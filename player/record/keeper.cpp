@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kColumns =
     "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft,objects";
-constexpr const char* kTorqueColumns = ",tx,ty,tz";  // where there is a tool: only tools make any
+constexpr const char* kTorqueColumns = ",tx,ty,tz";  // only if there is a tool: probes have no torque
 
 std::string name_of(const World& world, Entity entity) {
   const Name* name = world.registry.find<Name>(entity);
@@ -96,12 +96,12 @@ void Keeper::keep(const TickRow& row) {
   summary.late_ticks += row.late;
   summary.stale_ticks += row.stale;
   Last& last = last_[row.probe];
-  const bool placed = plausible_position(r.position);  // a lost device may say anything
-  // What jumps was not moved by the hand (systems/safety/safety.h).
+  const bool placed = plausible_position(r.position);  // a lost device's pose is arbitrary
+  // A jump was not made by the hand (systems/safety/safety.h).
   const bool jumped = length(r.position - last.position) > kFastestHand * (row.time - last.time) * (1 + 1e-9);
   if (last.any && placed && !jumped) {
     summary.net_work += 0.5 * dot(last.force + r.force, r.position - last.position);
-    const dvec3 torque = last.torque + row.torque;  // only tools make any
+    const dvec3 torque = last.torque + row.torque;  // only tools have torque
     if (torque != dvec3(0))
       summary.net_work += 0.5 * dot(torque, vector_of(row.device_rotation * glm::conjugate(last.rotation)));
   }

@@ -1,5 +1,5 @@
-// The keeping half of the journal: takes rows off the ring and turns them into forces.csv, the plot's traces, the
-// figures of the report and, if asked, a recording; with a soft clock, its rows into bodies.csv too.
+// The keeper of the journal: drains the ring into forces.csv, the plot's traces, the figures of the report and, on
+// request, a recording; with a soft clock also into bodies.csv.
 #pragma once
 
 #include <cstdint>
@@ -25,49 +25,49 @@ struct ProbeSummary {
   double max_depth = 0.0;         // [m]
   double max_force = 0.0;         // [N]
   double max_torque = 0.0;        // [N m] of a tool
-  double net_work = 0.0;          // [J] done by force and torque on the hand: trapezoidal over the ticks
-  Approach approach;              // of a probe, until it touches
-  bool tool = false;              // not a probe
-  std::uint64_t late_ticks = 0;   // of a tool: its contacts were not solved within the tick's budget
-  std::uint64_t stale_ticks = 0;  // of a tool: its model was older than kStaleSteps soft steps
+  double net_work = 0.0;          // [J] done by force and torque on the hand: trapezoidal rule over the ticks
+  Approach approach;              // of a probe, until first contact
+  bool tool = false;              // a tool, not a probe
+  std::uint64_t late_ticks = 0;   // of a tool: ticks in which its contacts were not solved within the budget
+  std::uint64_t stale_ticks = 0;  // of a tool: ticks with a model older than kStaleSteps soft steps
 };
 
 class Keeper {
  public:
-  // `csv` is where the rows go. Names are taken from the world now.
+  // `csv`: output file. Names are copied from the world now.
   static Result<Keeper> create(const World& world, const std::vector<Entity>& probes,
                                const std::vector<std::string>& sources, const std::filesystem::path& csv);
-  // Rows of the touch clock come from it; it is drained with the journal's.
+  // Starts recording. The touch clock adds rows to the returned recorder, which is drained with the journal's.
   PoseRecorder& record_to(RecordingWriter writer);
   void keep_bodies(BodyKeeper bodies) { bodies_.emplace(std::move(bodies)); }
 
-  // A file that cannot be written any more, on a full disk, ends the run.
+  // A file that can no longer be written (disk full) ends the run.
   void end_when_full(const Interrupt& interrupt) { interrupt_ = &interrupt; }
 
-  void keep(Journal& journal);                                  // all rows that wait
-  const std::vector<TickRow>& latest() const { return rows_; }  // what the last keep() took
-  // Closes the files and the recording; the first error of any. A recording without a tick is not written.
+  void keep(Journal& journal);                                  // all pending rows
+  const std::vector<TickRow>& latest() const { return rows_; }  // rows of the last keep()
+  // Closes the files and the recording and returns the first error. A recording without a tick is not written.
   Status finish();
   std::uint64_t rows() const { return kept_; }                                    // of forces.csv
   bool recorded_nothing() const { return recorder_ && recorder_->ticks() == 0; }  // so far
 
   const std::vector<ProbeSummary>& summaries() const { return summaries_; }
-  const std::vector<Trace>& traces() const { return traces_; }  // of those that are plotted: the first kMaxPlotRows
+  const std::vector<Trace>& traces() const { return traces_; }  // of plotted rows: the first kMaxPlotRows
 
  private:
   Keeper() = default;
   void keep(const TickRow& row);
   const std::optional<Error>& failure() const;
   struct Last {
-    bool any = false;   // with a place that means something
+    bool any = false;   // a valid place has been seen
     double time = 0.0;  // [s]
     dvec3 position{0}, force{0}, torque{0};
     dquat rotation{1, 0, 0, 0};
   };
-  std::optional<GrowingFile> csv_;  // always there
+  std::optional<GrowingFile> csv_;  // always set
   const Interrupt* interrupt_ = nullptr;
   std::string line_;
-  bool torque_ = false;  // forces.csv has its columns
+  bool torque_ = false;  // forces.csv has torque columns
   std::vector<TickRow> rows_;
   std::uint64_t kept_ = 0;  // rows
   std::vector<ProbeSummary> summaries_;

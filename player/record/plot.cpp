@@ -15,7 +15,7 @@ namespace {
 // [pixel]
 constexpr double kWidth = 1600, kTitle = 74, kRow = 290, kFoot = 16;
 constexpr double kLeft = 84, kRight = 28, kBetween = 100, kAbove = 40, kBelow = 52;
-constexpr double kBand = 6;  // high
+constexpr double kBand = 6;  // height
 
 struct PlotPanel {
   double x, y, w, h;     // [pixel] of the plotting area
@@ -24,7 +24,7 @@ struct PlotPanel {
   double py(double v) const { return y + h - h * v / high; }
 };
 
-// Fills the columns that `marked` says yes to, from y on downwards; a stretch is at least a pixel wide.
+// Fills the columns for which `marked` is true, downwards from y; a stretch is at least one pixel wide.
 template <typename Marked>
 void fill_columns(Pen& pen, const PlotPanel& panel, const Trace& trace, double dt, double y, double h, Marked marked) {
   const double column = trace.ticks_per_column() * dt;
@@ -41,7 +41,7 @@ void fill_columns(Pen& pen, const PlotPanel& panel, const Trace& trace, double d
   }
 }
 
-// Where the probe was in contact, then grid and axes with numbers: what lies under the curves.
+// The background of a panel: shaded contact, then grid and axes with numbers.
 void draw_frame(Pen& pen, const PlotPanel& panel, const Trace& trace, double dt, const char* quantity) {
   pen.color(kContact);
   fill_columns(pen, panel, trace, dt, panel.y, panel.h, [](const TraceColumn& column) { return column.contact; });
@@ -65,7 +65,7 @@ void draw_frame(Pen& pen, const PlotPanel& panel, const Trace& trace, double dt,
   pen.upright_text(panel.x - 60, panel.y + panel.h / 2, 15, quantity);
 }
 
-// Through the smallest and the largest value of every column, so that no peak is thinned away.
+// A curve through the minimum and maximum of every column, so that no peak is lost.
 void draw_curve(Pen& pen, const PlotPanel& panel, const Trace& trace, double dt, Extremes TraceColumn::*quantity,
                 double scale, Color color) {
   pen.color(color);
@@ -73,7 +73,7 @@ void draw_curve(Pen& pen, const PlotPanel& panel, const Trace& trace, double dt,
   cairo_set_line_join(pen.get(), CAIRO_LINE_JOIN_ROUND);
   const double column = trace.ticks_per_column() * dt;
   const std::vector<TraceColumn>& columns = trace.columns();
-  cairo_new_path(pen.get());  // text leaves its end behind as a point to go on from
+  cairo_new_path(pen.get());  // text leaves a current point behind
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (columns[i].ticks == 0) continue;
     const double x = panel.px(std::min((static_cast<double>(i) + 0.5) * column, panel.seconds));
@@ -89,7 +89,7 @@ struct LegendEntry {
   const char* words;
 };
 
-// From right to left; what is shaded shows a box, what is drawn a line.
+// From right to left; shaded quantities have a box, curves a line.
 void draw_legend(Pen& pen, double right, double y, const std::vector<LegendEntry>& entries) {
   double x = right;
   for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
@@ -109,8 +109,7 @@ void draw_legend(Pen& pen, double right, double y, const std::vector<LegendEntry
   }
 }
 
-// Thin bands along the time axis, one above the other, where a limit kept the force from what the law says. Adds those
-// that are there to the legend.
+// Thin bands above the time axis where a limit changed the force. Adds the limits that occurred to the legend.
 void draw_limits(Pen& pen, const PlotPanel& panel, const Trace& trace, double dt, std::vector<LegendEntry>& legend) {
   const struct {
     SafetyLimit limit;
@@ -134,21 +133,21 @@ double largest(const Trace& trace, Extremes TraceColumn::*quantity) {
   return most;
 }
 
-// Room above the highest value, up to a tick; something to look at where nothing happened.
+// Upper end of an axis: above the highest value, up to a tick; a default range if there is no value.
 double axis_high(double value) {
   if (!(value > 0.0)) return 1.0;
   const double step = tick_step(value * 1.05, 5);
   return step * std::ceil(value * 1.05 / step);
 }
 
-// What the curves of a probe and of a tool mean: a tool's contacts are many, and its normal is their mean push.
+// Captions of a probe and of a tool: a tool has many contacts, and its normal is their mean direction.
 struct Captions {
   const char *depth_axis, *depth, *normal, *tangential;
 };
 constexpr Captions kProbe{"depth [mm]", "depth", "normal", "tangential"};
 constexpr Captions kTool{"offset [mm]", "device-handle offset", "along the mean contact normal", "tangential"};
 
-// One line under the title for what is shown.
+// The line under the title.
 std::string subtitle_of(const std::vector<PlotRow>& rows, std::size_t shown) {
   if (rows.empty()) return "no probe and no tool";
   if (rows.size() > shown) return fmt::format("the first {} of {} probes and tools", shown, rows.size());

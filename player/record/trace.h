@@ -1,5 +1,5 @@
-// A probe's history for a plot, in bounded memory whatever the run's length: columns of equal time, each with the
-// smallest and largest value in it. When the columns run out, neighbours are merged in pairs.
+// A probe's history for a plot, in bounded memory for any length of run: columns of equal time, each with the minimum
+// and maximum in it. When the columns are used up, neighbours are merged in pairs.
 #pragma once
 
 #include <algorithm>
@@ -26,9 +26,9 @@ struct Extremes {
 struct TraceColumn {
   Extremes depth;               // [m]
   Extremes normal, tangential;  // [N]
-  std::uint32_t ticks = 0;      // 0: nothing happened here (an overrun)
+  std::uint32_t ticks = 0;      // 0: no ticks in this column (an overrun)
   bool contact = false;
-  std::uint8_t limited = 0;  // 1 << SafetyLimit: what acted in any of its ticks
+  std::uint8_t limited = 0;  // 1 << SafetyLimit: limits that acted in any of its ticks
 };
 
 class Trace {

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kNear = 0.05;  // [1] of a surface's diagonal: what is farther behind it has nothing to do with it
+constexpr double kNear = 0.05;  // [1] of a surface's diagonal: a probe farther behind the surface is unrelated to it
 
 double distance_to(const Box& box, dvec3 x) {
   if (box.empty()) return std::numeric_limits<double>::infinity();
@@ -50,7 +50,7 @@ std::optional<Miss> find_miss(const World& world, const Approach& approach, doub
   std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.bound < b.bound; });
   std::optional<Miss> best;
   for (const Approach::Place& place : places) {
-    // Farther places may still lie behind a surface that was crossed.
+    // Farther places may still be behind a surface that was crossed.
     if (best && place.bound - radius >= std::max(best->distance, kNear * best->diagonal)) break;
     for (auto [entity, deformable, pose] : world.registry.view<Deformable, Pose>()) {
       const Mesh& mesh = world.meshes[deformable.mesh];

@@ -1,5 +1,5 @@
-// How near a probe that touched nothing came to what it could have touched. Its path is kept in bounded memory; the
-// nearest place of a surface is looked for once, after the run.
+// Distance of a probe without contact from the nearest surface. Its path is stored in bounded memory; the nearest
+// surface point is searched once, after the run.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-// What can be touched, as it stands before the clock starts: whoever keeps rows may not read the world meanwhile.
+// A touchable surface before the clocks start: the keeper may not read the world while they run.
 struct TouchableBox {
   Pose pose;
   Box box;  // [m] object frame
@@ -21,31 +21,31 @@ class Approach {
  public:
   static constexpr std::size_t kKept = 512;
 
-  // [m] world. Of every few ticks, the place that is nearest to a box stays.
+  // [m] world. Of every few ticks, only the place nearest to a box is kept.
   void add(dvec3 position, const std::vector<TouchableBox>& boxes);
 
   struct Place {
     dvec3 position{0};  // [m] world
-    double bound = 0;   // [m] no surface is nearer than this
+    double bound = 0;   // [m] lower bound of the distance to any surface
   };
   const std::vector<Place>& places() const { return places_; }
 
  private:
   std::vector<Place> places_;
-  std::size_t stride_ = 1, filled_ = 0;  // ticks that share a place; of the newest place, so far
+  std::size_t stride_ = 1, filled_ = 0;  // ticks merged into one place; of these, ticks already in the newest place
 };
 
 struct Miss {
-  std::string object;        // the nearest
-  double distance = 0.0;     // [m] between it and the probe's sphere
+  std::string object;        // the nearest object
+  double distance = 0.0;     // [m] from it to the probe's sphere
   double diagonal = 0.0;     // [m] of its bounds
   std::size_t vertices = 0;  // of its mesh
-  bool behind = false;       // it has been behind that surface: through its back, or in another probe's dent
+  bool behind = false;       // the probe has been behind that surface: through its back, or in another probe's dent
 };
-// Nothing where there is no surface, or the probe was nowhere.
+// Empty if there is no surface, or the probe has no place.
 std::optional<Miss> find_miss(const World& world, const Approach& approach, double radius);
 
-// What to say of it.
+// The sentence for it.
 std::string explain_miss(const std::string& probe, const std::optional<Miss>& miss);
 
 }  // namespace pliant

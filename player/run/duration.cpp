@@ -12,10 +12,10 @@ namespace pliant {
 namespace {
 
 constexpr double kDefaultSeconds = 4.0;     // [s] without a script
-constexpr double kLongestDefault = 3600.0;  // [s] of a script, unless --seconds asks for more
+constexpr double kLongestDefault = 3600.0;  // [s] limit for a script, unless --seconds gives more
 constexpr double kEndless = 1e7;            // [s] a window stays open until it is closed
 
-// What goes on for a time of its own.
+// A script, motion or recording with its length.
 struct Lasting {
   std::string what;
   double seconds = 0.0;
@@ -27,7 +27,7 @@ std::string quoted_name(const World& world, Entity entity) {
   return "`" + (name ? name->value : std::string()) + "`";
 }
 
-// [s] of the run until the last key; 0: it stands still.
+// [s] until the last key; 0: no motion.
 double seconds_of(const PrescribedMotion& motion) {
   double last = 0.0;
   for (const Track* track : {&motion.translation, &motion.rotation, &motion.scale})
@@ -60,7 +60,7 @@ double default_seconds(const std::vector<Lasting>& all) {
   return longest > 0.0 ? std::min(longest, kLongestDefault) : kDefaultSeconds;
 }
 
-// One sentence, of the longest.
+// One note about the longest that is cut.
 void say_cut(const std::vector<Lasting>& all, double seconds, double tick, std::vector<std::string>& notes) {
   const Lasting* longest = nullptr;
   std::size_t count = 0;

@@ -1,4 +1,4 @@
-// How long a run takes, and what it leaves of scripts, motions and recordings that are longer.
+// Length of a run, and notes about longer scripts, motions and recordings that it cuts.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,11 @@ namespace pliant {
 
 struct RunLength {
   std::uint64_t ticks = 0;
-  std::vector<std::string> notes;  // what is cut, with the cure
+  std::vector<std::string> notes;  // what is cut, with the remedy
 };
 
-// `seconds`: of --seconds; 0: to the end of the longest script of a device and of the longest motion that does not
-// repeat, an hour at most; 4 s where there is neither. `replay` may be null; it runs to its end. `windowed`: until the
-// window is closed.
+// `seconds`: of --seconds. 0: to the end of the longest device script or non-repeating motion, at most an hour; 4 s
+// without either. `replay` may be null; a replay runs to its end. `windowed`: until the window is closed.
 RunLength run_length(double seconds, bool windowed, const World& world, const SimulatedHands& simulated,
                      const Recording* replay);
 

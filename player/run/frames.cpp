@@ -57,7 +57,7 @@ void Frames::update(World& world) {
 }
 
 void Frames::update_all(World& world, Tick tick) {
-  // Every turn takes as many zones as fit, and the next sees it, so this ends.
+  // Each iteration takes as many zones as fit and the next takes the rest, so the loop ends.
   do {
     publish(world, tick);
     update(world);

@@ -1,4 +1,4 @@
-// Pictures of a run, without a window: which ticks get one, and how it is taken.
+// Pictures of a run without a window: their ticks, and how they are taken.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,13 @@ namespace pliant {
 
 class HeadlessContext;
 
-// Ticks of `count` pictures spread over a run of `ticks`: each stands in the middle of its share.
+// Ticks of `count` pictures spread over a run of `ticks`: each in the middle of its share.
 std::vector<std::uint64_t> spread_frames(std::uint64_t ticks, int count);
-inline constexpr int kMostFrames = 10000;  // of a run: the names of pictures have four digits
+inline constexpr int kMostFrames = 10000;  // per run: file names have four digits
 // Ticks of `fps` pictures per simulated second at `rate` ticks per second, at most kMostFrames.
 std::vector<std::uint64_t> regular_frames(std::uint64_t ticks, double rate, double fps);
 
-// What drawing cost.
+// Cost of drawing.
 class FrameFigures {
  public:
   void add(const FrameStats& stats);
@@ -39,15 +39,15 @@ class FrameFigures {
 
 class Frames {
  public:
-  // Makes a graphics context. The error says what is missing.
+  // Creates a graphics context. The error names what is missing.
   static Result<std::unique_ptr<Frames>> create(const World& world, int width, int height);
   ~Frames();
 
-  // Lockstep, after a tick: brings over everything that changed, however many snapshots that takes.
+  // Lockstep, after a tick: takes all changes, in as many snapshots as needed.
   void update_all(World& world, Tick tick);
-  // Real time, from the visual clock's thread: the newest snapshot, if there is one.
+  // Real time, from the visual clock's thread: takes the newest snapshot, if there is one.
   void update(World& world);
-  // Draws what was brought over and stages it as the next frame-NNNN.png.
+  // Draws the state taken and stages it as the next frame-NNNN.png.
   Status take(OutputFolder& out);
 
   std::size_t count() const { return count_; }
@@ -56,7 +56,7 @@ class Frames {
  private:
   Frames() = default;
   std::unique_ptr<HeadlessContext> context_;
-  std::unique_ptr<Renderer> renderer_;  // goes before the context
+  std::unique_ptr<Renderer> renderer_;  // destroyed before the context
   Viewpoint viewpoint_;
   int width_ = 0, height_ = 0;  // [pixel]
   std::size_t count_ = 0;

@@ -57,7 +57,7 @@ OrderedJson names(const World& world, const std::vector<Entity>& entities) {
   return list;
 }
 
-// How often each limit acted: clipped and withheld always, the others where they did.
+// Counts of the limits: clipped and withheld always, others if they acted.
 OrderedJson limits(const SafetyTally& tally) {
   OrderedJson json;
   for (std::size_t i = 0; i < kSafetyLimits; ++i) {
@@ -69,7 +69,7 @@ OrderedJson limits(const SafetyTally& tally) {
   return json;
 }
 
-// What only a tool has.
+// Members of tools only.
 OrderedJson tool(const World& world, Entity entity, const ProbeSummary& summary) {
   return {{"tool_force", word_of(world.registry.get<Handle6>(entity).force)},
           {"max_torque_Nm", summary.max_torque},
@@ -98,7 +98,7 @@ OrderedJson probes(const RunFigures& figures) {
   return list;
 }
 
-// What came of each device, and what of it could not be used.
+// Results of each device, and reasons why one could not be used.
 OrderedJson devices(const RunFigures& figures) {
   OrderedJson list = OrderedJson::array();
   for (const DeviceView& device : figures.devices.devices) {
@@ -124,7 +124,7 @@ OrderedJson devices(const RunFigures& figures) {
   return list;
 }
 
-// Beyond the contract: what each system cost.
+// Additional, not part of the documented format: the cost of each system.
 OrderedJson systems(const Schedule<World>& schedule) {
   OrderedJson list = OrderedJson::array();
   for (std::size_t i = 0; i < schedule.systems().size(); ++i) {
@@ -182,7 +182,7 @@ std::string report_json(const RunFigures& figures) {
   json["dropped"] = figures.dropped;
   json["hash"] = figures.hash;
   json["systems_us"] = systems(figures.schedule);
-  // Names come from files and may not be UTF-8.
+  // Names come from files and may be invalid UTF-8.
   return json.dump(2, ' ', true, OrderedJson::error_handler_t::replace) + "\n";
 }
 

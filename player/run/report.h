@@ -1,4 +1,4 @@
-// report.json, and the few lines a run ends with.
+// report.json, and the summary printed at the end of a run.
 #pragma once
 
 #include <cstdint>
@@ -23,21 +23,22 @@ struct RunFigures {
   const Journal& journal;
   const Keeper& keeper;
   const FrameFigures* frames = nullptr;  // of drawing; null: nothing was drawn
-  std::size_t pictures = 0;              // that were written
+  std::size_t pictures = 0;              // number written
   std::string mode;                      // lockstep, realtime
   std::string field;                     // cpu
   double rate = 1000.0;                  // [Hz]
   std::uint64_t overruns = 0;
   std::vector<std::string> dropped;         // sentences
   std::string hash;                         // hex
-  const SoftClock* soft = nullptr;          // null: the level has nothing soft or rigid that moves
-  std::vector<std::optional<Miss>> misses;  // of each probe of the journal: nothing where it touched, or no surface is
+  const SoftClock* soft = nullptr;          // null: nothing soft or rigid moves in the level
+  std::vector<std::optional<Miss>> misses;  // per probe of the journal: empty if it had contact or there is no surface
   std::string ended;                        // done, interrupted, or the error that ended it
   DevicesView devices{};                    // that moved probes and tools
 };
 
 std::string report_json(const RunFigures& figures);
-// report.json and forces.png, and all that is staged goes into place: as much as can be written. The first error.
+// Writes report.json and forces.png and moves all staged files into place, as many as possible. Returns the first
+// error.
 std::optional<Error> write_reports(const RunFigures& figures, OutputFolder& out);
 void print_summary(const RunFigures& figures, const OutputFolder& out);
 

@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-// Something in this run could move this probe or tool.
+// True if a source in this run could move this probe or tool.
 bool is_moved(const RunFigures& figures, std::size_t hand) {
   const HapticDevice* device = find_device(figures.world, figures.journal.probes()[hand]);
   const DriverKind driver = device ? device->driver : DriverKind::kNull;
@@ -31,7 +31,7 @@ std::vector<std::string> explain_run(RunFigures& figures, DeviceLinks& devices) 
     const ProbeSummary& summary = figures.keeper.summaries()[i];
     figures.misses.emplace_back();
     if (summary.contact_ticks == 0 && devices.never_ready(hand)) {
-      // its device says why
+      // its device reports the reason
     } else if (summary.contact_ticks == 0 && !is_moved(figures, i)) {
       sentences.push_back(fmt::format("{} `{}` never touched anything: nothing moves it; give it --probe {}=orbit",
                                       summary.tool ? "tool" : "probe", summary.name, summary.name));

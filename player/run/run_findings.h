@@ -1,5 +1,4 @@
-// What kept a run from what its laws say, in sentences with their cures: forces that were clipped or withheld, probes
-// that touched nothing, soft steps that were left imperfect.
+// Findings of a run with their remedies: clipped or withheld forces, probes without contact, imperfect soft steps.
 #pragma once
 
 #include <string>
@@ -10,7 +9,7 @@
 
 namespace pliant {
 
-// Fills `figures.misses`, too. After the clocks have stopped.
+// Also fills `figures.misses`. Call after the clocks have stopped.
 std::vector<std::string> explain_run(RunFigures& figures, DeviceLinks& devices);
 
 }  // namespace pliant

@@ -9,8 +9,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kSaidResidual = 1e-4;  // [m/s] what creeps more slowly, nobody sees
-constexpr double kSaidLoss = 0.02;      // [1] of the run: less is lost while a first step tries which solver is fastest
+constexpr double kSaidResidual = 1e-4;  // [m/s] slower creep is invisible
+constexpr double kSaidLoss = 0.02;      // [1] of the run: a smaller loss occurs while the first step compares solvers
 
 std::string body_name(const World& world, std::uint32_t body) {
   const Entity entity = world.soft->bodies[body]->entity;
@@ -62,7 +62,7 @@ std::vector<std::string> explain_soft_steps(const World& world, const SoftFigure
                     "creep; make soft_step shorter, or give bodies in contact more similar masses and stiffnesses",
                     tally.unconverged, count(figures.steps, "soft step"), tally.residual));
   for (std::string& sentence : explain_sag(world)) sentences.push_back(std::move(sentence));
-  const double kept = static_cast<double>(figures.steps) * world.simulation.soft_step;  // [s] at least
+  const double kept = static_cast<double>(figures.steps) * world.simulation.soft_step;  // [s] lower bound
   if (figures.time_lost > kSaidLoss * (kept + figures.time_lost))
     sentences.push_back(fmt::format(
         "the soft clock did not keep up: bodies are {:.2f} s behind after {} of {:g} s; make `cell` larger or "

@@ -1,4 +1,4 @@
-// Tools and the soft clock in words: what was left imperfect.
+// Sentences about imperfect results of tools and of the soft clock.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@
 
 namespace pliant {
 
-// A sentence for each thing that the tool's ticks had to do without, with its cure. Valid when the clocks have stopped.
+// One sentence, with its remedy, per deficiency of the tool's ticks. Valid when the clocks have stopped.
 std::vector<std::string> explain_tool(const World& world, const ProbeSummary& summary);
-// The same of the soft clock's steps.
+// The same for the soft clock's steps.
 std::vector<std::string> explain_soft_steps(const World& world, const SoftFigures& figures);
 
 }  // namespace pliant

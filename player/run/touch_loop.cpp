@@ -28,7 +28,7 @@ Status run_lockstep(TouchLoop& loop) {
 
 namespace {
 
-// Beside the clock: rows are kept and pictures taken until it is done, or something is wrong.
+// Beside the clock: keeps rows and takes pictures until the run ends or fails.
 Status run_beside(TouchLoop& loop, TouchClock& touch) {
   Progress progress("running");
   Status status = Done{};
@@ -39,7 +39,7 @@ Status run_beside(TouchLoop& loop, TouchClock& touch) {
     if (loop.frames && frame != loop.frame_ticks.end() && *frame <= reached) {
       loop.frames->update(loop.runner.world());
       status = loop.frames->take(loop.out);
-      while (frame != loop.frame_ticks.end() && *frame <= reached) ++frame;  // a slow GPU shows fewer pictures
+      while (frame != loop.frame_ticks.end() && *frame <= reached) ++frame;  // a slow GPU skips pictures
     } else {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
@@ -55,7 +55,7 @@ Status run_realtime(TouchLoop& loop) {
   try {
     status = loop.runner.start(loop.ticks);
     if (status) status = run_beside(loop, *loop.runner.clock());
-  } catch (const std::exception& error) {  // the clock's rows and figures are kept all the same
+  } catch (const std::exception& error) {  // the clock's rows and figures are kept
     status = explain(error);
   }
   loop.runner.stop();

@@ -1,4 +1,4 @@
-// A run without a window: ticks in lockstep or beside the clocks of real time, rows kept, pictures taken.
+// The loop of a run without a window: ticks in lockstep or real time, rows kept, pictures taken.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ struct TouchLoop {
   Keeper& keeper;
   OutputFolder& out;
   const Interrupt& interrupt;              // ends a run early, cleanly
-  std::uint64_t ticks = 0;                 // how many to run
-  Frames* frames = nullptr;                // none: no pictures
-  std::vector<std::uint64_t> frame_ticks;  // after which ticks a picture is taken, ascending
+  std::uint64_t ticks = 0;                 // number to run
+  Frames* frames = nullptr;                // null: no pictures
+  std::vector<std::uint64_t> frame_ticks;  // ticks after which a picture is taken, ascending
   Replay* replay = nullptr;                // poses for every tick, lockstep only
 };
 

@@ -9,8 +9,8 @@
 namespace pliant {
 namespace {
 
-constexpr float kNearShare = 0.1f;  // [1] of a surface's diagonal: a path that comes so near means to touch it
-constexpr std::size_t kNamed = 5;   // bodies that the sentence names
+constexpr float kNearShare = 0.1f;  // [1] of a surface's diagonal: a path that comes this near is meant to touch it
+constexpr std::size_t kNamed = 5;   // bodies named in the sentence
 
 struct UnfeltBody {
   std::string name;
@@ -23,7 +23,7 @@ std::string unfelt_name(const World& world, Entity entity) {
   return name ? name->value : std::string();
 }
 
-// Soft and rigid bodies that are no tools.
+// Soft and rigid bodies that are not tools.
 std::vector<UnfeltBody> bodies(const World& world) {
   std::vector<UnfeltBody> list;
   for (auto [entity, body, pose] : world.registry.view<SoftBody, Pose>())
@@ -91,7 +91,7 @@ std::optional<std::string> unfelt_bodies(const World& world) {
       for (const UnfeltBody& body : unfelt) pass(body);
     const HapticDevice* device = find_device(world, entity);
     if (!device || !device->path.valid()) continue;
-    const double radius = probe.radius;  // clang 14 captures no structured bindings
+    const double radius = probe.radius;  // clang 14 cannot capture structured bindings
     const std::vector<PathRow>& rows = world.paths[device->path].rows;
     const auto enters = [&](const UnfeltBody& body) {
       return std::any_of(rows.begin(), rows.end(),

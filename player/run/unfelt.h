@@ -1,4 +1,4 @@
-// What a point probe passes through: bodies that only tools touch.
+// Detects point probes that pass through bodies, which only tools can touch.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace pliant {
 
-// A sentence where the level has point probes but nothing for them: no deformable surface at all, or none where a
-// probe's path goes, but soft or rigid bodies. Call after paths are made.
+// A sentence if the level has point probes without anything to touch: no deformable surface at all, or none near the
+// probes' paths but soft or rigid bodies. Call after paths are made.
 std::optional<std::string> unfelt_bodies(const World& world);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// pliant author: a first level from an organ's mesh, with everything that it takes to be touched.
+// pliant author: makes a first touchable level from an organ's mesh.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ std::string in_quotes(const std::string& name) {
   return "`" + name + "`";
 }
 
-// The nodes that are shown and have a surface, the largest first.
+// The shown nodes that have a surface, the largest first.
 std::vector<std::int32_t> objects(const Level& level) {
   const std::vector<dmat4> world = world_matrices(level.nodes);
   std::vector<std::pair<float, std::int32_t>> found;
@@ -72,7 +72,7 @@ Result<std::int32_t> find_object(const Level& level, const std::vector<std::int3
                               : "names a node that the file does not have" + near};
 }
 
-// What is to be made, as nodes.
+// The nodes to create.
 struct Plan {
   std::vector<std::int32_t> soft, surface;
   const TissuePreset* preset = nullptr;
@@ -98,7 +98,7 @@ Result<Plan> plan_of(const AuthorOptions& options, const Level& level) {
   if (plan.soft.empty() && plan.surface.empty()) plan.soft.push_back(all.front());
   plan.preset = find_preset(options.preset);
   if (options.pin != "none") plan.side = side_of(options.pin);
-  // A tool meets bodies, a probe surfaces too.
+  // A tool touches bodies, a probe also surfaces.
   const std::string tool = !options.tool.empty() ? options.tool : plan.soft.empty() ? "none" : "rod";
   if (tool != "none") plan.tool = find_instrument(tool);
   if (plan.tool && plan.soft.empty())
@@ -112,14 +112,14 @@ std::string words_of_preset(const TissuePreset& preset) {
                      preset.low * 1e-3, preset.high * 1e-3);
 }
 
-// Whoever goes by a script, where it starts, and the file.
+// A scripted device: name, path and script file.
 struct Led {
   std::string name;
   Path path;
   fs::path file;
 };
 
-// What lies inside of a surface is dented with it.
+// Parts inside the surface move with its dents.
 DeformableParameters with_parts(DeformableParameters surface) {
   surface.carries = Carries::kInside;
   return surface;
@@ -132,7 +132,7 @@ Result<World> try_out(const Level& level) {
   return world;
 }
 
-// Where the pins hold too little, which would hold.
+// If the pins support too little, advises on better ones.
 void say_pins(const Level& level, std::int32_t node, const TetMesh& tets) {
   const SoftBody& body = *level.nodes[static_cast<std::size_t>(node)].soft_body;
   if (body.under_gravity != UnderGravity::kModelled || !tets.start.empty()) return;
@@ -182,9 +182,9 @@ void say_rest(const Level& level, const Plan& plan, const std::vector<Led>& led)
           in_quotes(each.name), each.file.filename().string());
 }
 
-// Names of meshes that are only drawn.
+// Names of meshes that are drawn only.
 std::string only_drawn(const Level& level, const std::vector<std::int32_t>& all, const World& world) {
-  std::set<std::int32_t> carried;  // entities are made of the nodes in the scene, in their order
+  std::set<std::int32_t> carried;  // entities are in the order of the scene's nodes
   std::size_t row = 0;
   for (std::size_t i = 0; i < level.nodes.size(); ++i)
     if (level.nodes[i].in_scene && world.registry.has<Carried>(world.hierarchy.order()[row++].entity))
@@ -201,7 +201,7 @@ std::string only_drawn(const Level& level, const std::vector<std::int32_t>& all,
   return list + (count == 1 ? " is only drawn" : " are only drawn") + "; name more of them with --soft or --surface";
 }
 
-// Everything but files. Nodes are found again by name: each new one may move the others.
+// Everything except files. Nodes are found by name each time, because adding one may shift the others.
 Result<std::vector<Led>> author_level(const AuthorOptions& options, Plan& plan, Level& level) {
   for (const std::int32_t node : plan.soft) {
     SoftBodyParameters tissue = as_modelled(soft_body_of(*plan.preset));
@@ -213,7 +213,7 @@ Result<std::vector<Led>> author_level(const AuthorOptions& options, Plan& plan, 
   for (const std::int32_t node : plan.surface)
     if (const Status s = make_touchable_surface(level, node, with_parts(surface_of(*plan.preset))); !s)
       return s.error();
-  // New nodes are roots behind all that are shown; those of scenes that are not come after them and are not touched.
+  // New nodes become roots after all shown nodes. Nodes of other scenes come after them and are unchanged.
   const std::int32_t object = plan.soft.empty() ? plan.surface.front() : plan.soft.front();
   std::vector<Led> led;
   const auto lead = [&](Result<std::int32_t> node) -> Status {
@@ -243,7 +243,7 @@ Result<std::vector<Led>> author_level(const AuthorOptions& options, Plan& plan, 
 Status write_all(const AuthorOptions& options, Level& level, const std::vector<Led>& led) {
   const Existing existing = options.force ? Existing::kReplace : Existing::kRefuse;
   std::error_code ignored;
-  std::vector<fs::path> added;  // which a level that cannot be written does not leave behind
+  std::vector<fs::path> added;  // removed again if the level cannot be written
   const auto take_back = [&](Status failed) {
     for (const fs::path& each : added) fs::remove(each, ignored);
     return failed;

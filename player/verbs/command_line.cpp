@@ -15,7 +15,7 @@
 namespace pliant {
 namespace {
 
-// The option that is not known and the one that was probably meant; "" where none is near.
+// The unknown option and the nearest known one; "" if none is near.
 std::string nearest_option(const CLI::App& app) {
   std::vector<std::string> known;
   for (const CLI::App* verb : app.get_subcommands())
@@ -30,7 +30,7 @@ std::string nearest_option(const CLI::App& app) {
   return {};
 }
 
-// CLI11 says some things over several lines; ours are one sentence that says where to read more.
+// CLI11's messages may have several lines; ours is one sentence that refers to the help.
 Error usage_error(const CLI::App& app, const CLI::ParseError& error) {
   std::string where = "arguments", help = "pliant --help";
   for (const CLI::App* verb : app.get_subcommands()) {
@@ -87,8 +87,8 @@ Status check_arguments(const std::vector<std::string>& arguments) {
   int ignored = kDone;
   for (const AddVerb add : kVerbs) add(app, ignored);
   for (CLI::App* const verb : app.get_subcommands([](const CLI::App*) { return true; })) verb->callback({});
-  const double factor = limit_factor();                                  // --limits would hold at once
-  std::vector<std::string> words(arguments.rbegin(), arguments.rend());  // CLI11 takes them from behind
+  const double factor = limit_factor();                                  // --limits would take effect at once
+  std::vector<std::string> words(arguments.rbegin(), arguments.rend());  // CLI11 expects reverse order
   std::optional<Error> wrong;
   try {
     app.parse(words);
@@ -112,7 +112,7 @@ int command_line(int argc, const char* const* argv) {
   try {
     status = parse_and_run(argc, argv);
   } catch (const std::exception& error) {
-    if (std::ferror(stdout) == 0) return fail(kFailed, explain(error));  // else said below
+    if (std::ferror(stdout) == 0) return fail(kFailed, explain(error));  // otherwise reported below
   }
   const std::optional<Error> lost = close_stdout();
   return lost && status == kDone ? fail(kFailed, *lost) : status;

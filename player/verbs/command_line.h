@@ -1,4 +1,4 @@
-// Arguments in, exit status out.
+// Parses the arguments, runs the verb and returns the exit status.
 #pragma once
 
 #include <string>
@@ -10,7 +10,8 @@ namespace pliant {
 
 int command_line(int argc, const char* const* argv);
 
-// Whether `pliant` takes these words, and `pliant run` these options; the error is what it would say. Nothing runs.
+// Checks whether `pliant` accepts these words, and `pliant run` these options. The error is the one it would print.
+// Nothing is run.
 Status check_arguments(const std::vector<std::string>& words);
 Status check_run_arguments(const std::vector<std::string>& arguments);
 

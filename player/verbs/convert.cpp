@@ -27,7 +27,7 @@ constexpr std::uint32_t kPreviewFace = 256;  // [pixel] side of a cube face
 constexpr InterruptWords kWords{"the file is being written; press Ctrl-C again to quit at once without it",
                                 "quit at once; the file was not written"};
 
-// What is written aside of `file`, and of the .bin of a .gltf.
+// Registers the temporary files of `file`, and of the .bin of a .gltf, for removal.
 void remove_if_forced(const Interrupt& interrupt, const fs::path& file) {
   std::error_code ignored;
   for (const fs::path& each : {file, fs::path(file).replace_extension(".bin")})
@@ -41,7 +41,7 @@ std::string lower_extension(const fs::path& file) {
   return extension;
 }
 
-// The drawn half of a built mesh, back as primitives: welded, without degenerate triangles, in spatial order.
+// The drawn half of a built mesh as primitives: welded, without degenerate triangles, in spatial order.
 LevelMesh from_built(const BuiltMesh& built, const LevelMesh& source) {
   LevelMesh mesh{source.name, {}};
   constexpr std::uint32_t kUnused = 0xffffffffu;
@@ -74,8 +74,8 @@ LevelMesh from_built(const BuiltMesh& built, const LevelMesh& source) {
 }
 
 Status reorder(Level& level) {
-  level.source.reset();  // the document it came from holds the meshes in their old order
-  // What is only drawn keeps its winding: a room is seen from within.
+  level.source.reset();  // the source document has the meshes in their old order
+  // A mesh that is only drawn keeps its winding: a room is seen from inside.
   std::set<std::ptrdiff_t> touched;
   const bool bare = !level.has_pliant();
   for (const LevelNode& node : level.nodes)
@@ -95,7 +95,7 @@ Existing existing(const ConvertOptions& options) {
   return options.force ? Existing::kReplace : Existing::kRefuse;
 }
 
-// What the level names and is not there: it is copied beside the new one later, which a note says (left_behind.h).
+// Removes references to missing files. They may be copied beside the new level later, as a note says (left_behind.h).
 void leave_out_missing_files(Level& level) {
   const fs::path folder = level.path.parent_path();
   const auto is_missing = [&](const std::string& name) {
@@ -115,7 +115,7 @@ void leave_out_missing_files(Level& level) {
   }
 }
 
-// Nothing is written that `validate` would refuse.
+// Refuses to write a level that `validate` would reject.
 Status check_valid(Level level, const std::string& in) {
   leave_out_missing_files(level);
   for (const Finding& finding : validate_level(std::move(level), prepare_world))
@@ -126,7 +126,7 @@ Status check_valid(Level level, const std::string& in) {
   return Done{};
 }
 
-// Before the work: what would be refused after it.
+// Checks the output before the work, not after it.
 Status check_free(const ConvertOptions& options) {
   std::error_code ignored;
   if (options.force || !fs::exists(fs::symlink_status(options.out, ignored))) return Done{};
@@ -142,7 +142,7 @@ int convert_panorama(const ConvertOptions& options) {
   if (const Status free = check_free(options); !free) return fail(kFailed, free.error());
   const auto panorama = load_panorama(options.in);
   if (!panorama) return fail(kFailed, panorama.error());
-  const Interrupt interrupt(kWords);  // until the file is in place: nothing half-written stays behind
+  const Interrupt interrupt(kWords);  // until the file is in place: removes temporary files on interruption
   remove_if_forced(interrupt, options.out);
   const Image image = cube_cross(*panorama, kPreviewFace);
   if (const Status s =
@@ -169,7 +169,7 @@ int convert(const ConvertOptions& options) {
   if (options.reorder)
     if (const Status s = reorder(*level); !s) return fail(kFailed, s.error());
   if (const Status s = check_valid(*level, options.in); !s) return fail(kFailed, s.error());
-  const Interrupt interrupt(kWords);  // until the file is in place: nothing half-written stays behind
+  const Interrupt interrupt(kWords);  // until the file is in place: removes temporary files on interruption
   remove_if_forced(interrupt, options.out);
   if (const Status s =
           save_level(*level, options.out, SaveOptions{options.draco_bits, options.no_draco, existing(options)});

@@ -25,14 +25,14 @@
 namespace pliant {
 namespace {
 
-constexpr double kRate = 1000.0;      // [Hz] of what stands in for the touch clock
-constexpr double kTellEvery = 0.1;    // [s]
+constexpr double kRate = 1000.0;      // [Hz] of the loop in place of the touch clock
+constexpr double kTellEvery = 0.1;    // [s] between two printed lines
 constexpr double kPushForce = 0.5;    // [N] at most
 constexpr double kPushShare = 0.15;   // [1] of the device's largest force, at most
-constexpr double kPushSeconds = 1.0;  // [s] each way along an axis: a half wave
+constexpr double kPushSeconds = 1.0;  // [s] per direction along an axis: a half wave
 constexpr int kPlaneWide = 41, kPlaneHigh = 11;
 
-// The device, behind its guard where it pushes.
+// The device under test, guarded if it is pushed.
 class HeldDevice {
  public:
   Status open(const std::string& wish, std::string& shown) {
@@ -72,11 +72,11 @@ class HeldDevice {
       driver_->write({});
       if (servo_) servo_->halt();
       driver_->close();
-    } catch (...) {  // its own watchdog ends the force
+    } catch (...) {  // the device's watchdog ends the force
     }
   }
   Driver& driver() { return *driver_; }
-  // On the thread that reads it, or of what its servo said last.
+  // From the reading thread, or as the servo last reported.
   DroppedFrames dropped() { return servo_ ? servo_->report().dropped : dropped_frames(*driver_); }
   Servo* servo() { return servo_; }
 
@@ -87,7 +87,7 @@ class HeldDevice {
   LineWatch watch_;  // without a servo
 };
 
-// x to the right, y up; z beside it.
+// x to the right, y up; z in a separate bar.
 std::string plane(dvec3 at, dvec3 half) {
   const auto cell = [](double v, double most, int count) {
     return static_cast<int>(std::lround((std::clamp(v / most, -1.0, 1.0) + 1.0) * 0.5 * (count - 1)));
@@ -128,7 +128,7 @@ std::string told(const DeviceSample& sample, const DeviceCapabilities& can, doub
   return line;
 }
 
-// Reads and tells for `seconds`, or until it is interrupted; `force` is asked for every tick.
+// Reads and prints for `seconds`, or until interrupted; `force` is called every tick.
 template <class Force>
 void look(HeldDevice& held, double seconds, const Interrupt& interrupt, Force&& force) {
   const DeviceCapabilities can = held.driver().capabilities();
@@ -151,7 +151,8 @@ void look(HeldDevice& held, double seconds, const Interrupt& interrupt, Force&& 
     held.driver().write({.force = force(tick.time)});
     if (tick.time - told_at < (drawn ? kTellEvery : 1.0)) continue;
     const double rate = static_cast<double>(samples - told_samples) / (tick.time - told_at);
-    if (drawn && drew) std::fputs(fmt::format("\033[{}A", kPlaneHigh + 1).c_str(), stdout);  // over what was drawn
+    if (drawn && drew)
+      std::fputs(fmt::format("\033[{}A", kPlaneHigh + 1).c_str(), stdout);  // back over the last drawing
     if (drawn) std::fputs(plane(sample.position, half).c_str(), stdout);
     print("{}{}\n", told(sample, can, rate, held.servo()), drawn ? "    " : "");
     std::fflush(stdout);

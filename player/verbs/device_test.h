@@ -1,4 +1,4 @@
-// `pliant devices --test ID`: what a device senses, live; and, once that has been confirmed, a gentle push along each
+// `pliant devices --test ID`: prints the device's samples live and, after a confirmation, pushes gently along each
 // axis.
 #pragma once
 
@@ -8,8 +8,8 @@ namespace pliant {
 
 struct DeviceTestOptions {
   std::string id;         // as `pliant devices` prints it (devices/choose.h)
-  double seconds = 10.0;  // how long it is looked at [s]
-  bool push = false;      // asks, and then pushes
+  double seconds = 10.0;  // [s] duration of the display
+  bool push = false;      // push after a confirmation
 };
 int test_device(const DeviceTestOptions& options);
 

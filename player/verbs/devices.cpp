@@ -1,4 +1,4 @@
-// pliant devices: what can move a probe: the built-in sources, and what the drivers find on this machine.
+// pliant devices: lists the sources that can move a probe: the built-in ones, and devices found by the drivers.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,4 +1,4 @@
-// pliant fit: which of the three kinds is meant.
+// pliant fit: selects one of the three kinds of fit.
 #include "lab/fit/fit.h"
 
 #include <algorithm>

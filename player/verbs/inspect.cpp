@@ -1,4 +1,4 @@
-// pliant inspect: what is in a file, whether it can be touched, and what is wrong with it.
+// pliant inspect: describes a file, whether it can be touched, and its problems.
 #include <fmt/format.h>
 
 #include <bit>
@@ -33,9 +33,9 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-constexpr std::chrono::milliseconds kTissueTime{2000};  // for what bare meshes would be as tissue, all of them
+constexpr std::chrono::milliseconds kTissueTime{2000};  // total time for previews of bare meshes as tissue
 
-// Stops what takes a token of it when its time is over.
+// Requests stop through its token after a time limit.
 class Deadline {
  public:
   explicit Deadline(std::chrono::milliseconds time)
@@ -49,19 +49,19 @@ class Deadline {
   std::stop_source source_;
   std::mutex mutex_;
   std::condition_variable_any over_;
-  std::jthread timer_;  // last: ended first
+  std::jthread timer_;  // last member: ended first
 };
 
-// One node with a mesh, as it would be touched: in world scale, welded and cleaned.
+// One node with a mesh, built for touch: in world scale, welded and cleaned.
 struct ObjectReport {
   std::string name;
   bool deformable = false;
   std::size_t file_vertices = 0, file_triangles = 0;
-  std::string refused;  // why it cannot be touched; empty: it can
+  std::string refused;  // the reason why it cannot be touched; empty: it can
   Mesh mesh;
   MeshReport report;
   Box box;                // [m] world
-  OrderedJson as_tissue;  // of a bare mesh; null: there was no time for it
+  OrderedJson as_tissue;  // of a bare mesh; null: the time limit was reached
 };
 
 std::vector<ObjectReport> inspect_objects(const Level& level) {
@@ -82,9 +82,9 @@ std::vector<ObjectReport> inspect_objects(const Level& level) {
       object.file_vertices += primitive.position.size();
       object.file_triangles += primitive.index.size() / 3;
     }
-    // A room that is only drawn is seen from within.
+    // A room that is only drawn is seen from inside.
     const bool touched = bare || node.deformable || node.rigid_body || node.soft_body;
-    // A run refuses as many, and here each would be built for itself.
+    // The same limit as in a run; here each surface would be built separately.
     const std::string many = LevelBudget::ask(limits::kSurfaces, surfaces += touched);
     object.refused = many.empty() ? budget.ask_triangles(triangles += budget.of(node.mesh).triangles) : many;
     if (!object.refused.empty()) {
@@ -125,7 +125,7 @@ std::vector<std::string> problems(const ObjectReport& object) {
   return list;
 }
 
-// Every crease is there from both sides.
+// Every crease is stored once per side.
 std::size_t count_creases(const Mesh& mesh) {
   std::size_t sides = 0;
   for (const std::uint8_t edges : mesh.crease) sides += static_cast<std::size_t>(std::popcount(edges));
@@ -145,7 +145,7 @@ OrderedJson describe_tools(const Level& level) {
   return list;
 }
 
-// The whole answer once, as JSON; the text form reads from it.
+// The complete result as JSON; the text form reads from it.
 OrderedJson describe(const Level& level, const std::vector<ObjectReport>& objects) {
   OrderedJson json;
   Box box;

@@ -13,8 +13,8 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-constexpr double kUsualBudget = 0.1;   // [1] of a mesh without extensions, which can have none
-constexpr std::size_t kMostRows = 12;  // a table with more candidates leaves out those that buy nothing
+constexpr double kUsualBudget = 0.1;   // [1] for a mesh without extensions, which has no budget
+constexpr std::size_t kMostRows = 12;  // a table with more candidates omits dominated ones
 
 OrderedJson describe(const ModelChoice& choice) {
   OrderedJson tried = OrderedJson::array();
@@ -48,7 +48,8 @@ Result<OrderedJson> describe_fit(Level& level, double error) {
   return fit;
 }
 
-// Of candidates, cheapest first, those that buy something: no cheaper one has as small an error; and what is chosen.
+// Selects the candidates, sorted by cost, that are not dominated (no cheaper one has as small an error), and the chosen
+// one.
 void print_fit(const OrderedJson& fit) {
   for (const OrderedJson& choice : fit) {
     print("  fit of the {} {}, error at most {:.3g}\n", choice["kind"].get<std::string>(),

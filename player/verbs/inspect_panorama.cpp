@@ -15,7 +15,7 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-// Of Rec. 709 primaries: what the eye sees of linear RGB.
+// Luminance of linear RGB with Rec. 709 primaries.
 double luminance(const float* rgb) {
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 }

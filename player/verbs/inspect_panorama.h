@@ -1,4 +1,4 @@
-// What `pliant inspect` says of an OpenEXR panorama.
+// The part of `pliant inspect` for OpenEXR panoramas.
 #pragma once
 
 #include <filesystem>

@@ -55,7 +55,7 @@ std::string cells_text(double cell, double coarsest) {
   return "cells of " + length_text(cell) + " in its focus and up to " + length_text(coarsest) + " elsewhere, ";
 }
 
-// A level of the tissue alone: what else is in it takes its time, and its faults are not the tissue's.
+// The level reduced to its tissue: other objects would cost time and add unrelated errors.
 Level tissue_of(const Level& level) {
   Level bodies = level;
   bodies.environment.reset();
@@ -70,7 +70,7 @@ Level tissue_of(const Level& level) {
     if (node.handle) node.handle->device.clear();
     if (node.soft_body) continue;
     node.handle.reset();
-    if (!only_drawn[i]) node.mesh = -1;  // what is only drawn may lie inside of tissue
+    if (!only_drawn[i]) node.mesh = -1;  // a mesh that is only drawn may lie inside tissue
   }
   return bodies;
 }

@@ -1,4 +1,4 @@
-// pliant run --list: the levels that ship, with what each says of itself.
+// pliant run --list: the shipped levels with their descriptions.
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // The verbs of `pliant`: options, their ranges and their help. A new verb is a file with a function like these, and a
-// line of the table in command_line.cpp.
+// line in the table in command_line.cpp.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-// Adds a verb with its options. Where the command line asks for it, its callback does it and leaves its exit status.
+// Adds a verb with its options. Its callback runs the verb and sets the exit status.
 using AddVerb = void (*)(CLI::App& app, int& status);
 void add_run(CLI::App& app, int& status);
 void add_author(CLI::App& app, int& status);
@@ -24,22 +24,22 @@ void add_fit(CLI::App& app, int& status);
 void add_plot(CLI::App& app, int& status);
 void add_edit(CLI::App& app, int& status);
 
-// Those of `run` alone.
+// The options of `run` alone.
 CLI::App* add_run_options(CLI::App& app, RunOptions& run);
 
-// --- For those above.
+// --- Helpers for the functions above.
 
-// Finite, and within [low, high]; the sentence says the range.
+// Finite and within [low, high]; the error states the range.
 CLI::Validator within(double low, double high);
 // "a, b, c".
 std::string joined(const std::vector<std::string>& words);
-// One of these words; the sentence lists them.
+// One of these words; the error lists them.
 CLI::Validator one_of(std::vector<std::string> words);
-// A variable of the shell that was not set: the demo level is not meant.
+// Rejects an empty level name: it comes from an unset shell variable and does not mean the demo level.
 CLI::Validator named();
-// "960x540" -> width, height; a sentence where it is not that.
+// "960x540" -> width, height; otherwise returns a sentence.
 std::string parse_size(const std::string& text, RunOptions& run);
-// --unit of every verb that takes a bare mesh.
+// --unit of every verb that reads a bare mesh.
 void add_unit(CLI::App* verb, double& unit, const char* what);
 // --limits of every verb that reads files.
 void add_limits(CLI::App* verb);

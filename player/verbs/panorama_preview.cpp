@@ -9,7 +9,7 @@ namespace {
 constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr double kMiddleGrey = 0.18;
 
-// Where a face stands in the cross, and its axes: the middle of the face, its right and its down.
+// Position of a face in the cross, and its axes: centre, right and down.
 struct Face {
   std::uint32_t column, row;
   dvec3 middle, right, down;
@@ -25,7 +25,7 @@ const float* pixel(const Panorama& panorama, std::int64_t x, std::int64_t y) {
   return &panorama.rgb[static_cast<std::size_t>((y * w + x) * 3)];
 }
 
-// Bilinear, around the seam. The middle of the picture looks along -Z.
+// Bilinear, across the seam. The centre of the picture is the direction -Z.
 dvec3 sample(const Panorama& panorama, dvec3 direction) {
   const dvec3 d = normalize(direction);
   const double u = 0.5 + std::atan2(d.x, -d.z) / (2 * kHalfTurn), v = std::acos(std::clamp(d.y, -1.0, 1.0)) / kHalfTurn;
@@ -50,7 +50,7 @@ std::uint8_t encode(double linear) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(s, 0.0, 1.0) * 255.0));
 }
 
-// Over the sphere: rows weigh by the sine of their polar angle.
+// Mean over the sphere: rows are weighted by the sine of their polar angle.
 double mean_luminance(const Panorama& panorama) {
   double sum = 0.0, weight = 0.0;
   for (std::uint32_t y = 0; y < panorama.height; ++y) {

@@ -1,4 +1,4 @@
-// A latitude-longitude panorama as the six faces of a cube, laid out as a cross: what an eye can check.
+// A latitude-longitude panorama as the six faces of a cube, laid out as a cross, for visual inspection.
 #pragma once
 
 #include "components/appearance.h"

@@ -1,4 +1,4 @@
-// pliant run: a level or mesh, its probes, the loop, and what is written about it.
+// pliant run: a level or mesh with its probes, the run loop, and its results.
 #include <optional>
 #include <utility>
 
@@ -25,7 +25,7 @@ Outcome check(const RunOptions& options) {
   return {};
 }
 
-// `next`: the level that its window opened after it.
+// `next`: a level that the window opened meanwhile.
 Outcome run_level(Prepared& run, Shown* shown, const Interrupt& interrupt, std::optional<Prepared>& next) {
   LevelRun level(run, shown, interrupt);
   if (Outcome wrong = level.open()) return wrong;

@@ -1,4 +1,4 @@
-// pliant validate: every finding of a level, each with its JSON pointer.
+// pliant validate: prints every finding of a level with its JSON pointer.
 #include "content/validate.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// The verbs of the command, one file each. What they are given has been parsed by command_line.cpp; each returns the
-// exit status and has said what went wrong.
+// The verbs of the command, one file each. Arguments have been parsed by command_line.cpp. Each verb reports its errors
+// and returns the exit status.
 #pragma once
 
 #include <string>
@@ -15,9 +15,9 @@ int list_levels();
 struct InspectOptions {
   std::string file;
   bool json = false;
-  bool fit = false;    // also which models error budgets choose, and why
-  double error = 0.0;  // [1] budget of every surface and soft body; 0: their own
-  double unit = 1.0;   // [m] of a bare mesh
+  bool fit = false;    // also print the models chosen by error budgets, with the measurements
+  double error = 0.0;  // [1] budget of every surface and soft body; 0: each one's own
+  double unit = 1.0;   // [m] unit of a bare mesh
 };
 int inspect(const InspectOptions& options);
 
@@ -26,8 +26,8 @@ struct ConvertOptions {
   int draco_bits = 0;  // 0: as the input
   bool no_draco = false;
   bool reorder = false;
-  double unit = 1.0;   // [m] that one unit of the input is
-  bool force = false;  // replaces what is there
+  double unit = 1.0;   // [m] unit of the input
+  bool force = false;  // replace existing files
 };
 int convert(const ConvertOptions& options);
 
@@ -38,8 +38,8 @@ struct AuthorOptions {
   std::string pin = "bottom";              // a Side, or none
   std::string tool;                        // an Instrument, or none; empty: rod where something is soft
   bool probe = false;
-  double unit = 1.0;   // [m] that one unit of the input is
-  bool force = false;  // replaces what is there
+  double unit = 1.0;   // [m] unit of the input
+  bool force = false;  // replace existing files
 };
 int author(const AuthorOptions& options);
 

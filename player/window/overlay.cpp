@@ -40,7 +40,7 @@ constexpr const char* kKeys[][2] = {
     {"Esc", "close"},
 };
 
-// The editor's type and spaces, on panels that let the scene through.
+// The editor's fonts and spacing, on transparent panels.
 void style(float scale) {
   static_cast<void>(ui::set_theme(ui::Theme::kDark, scale));
   ImGuiStyle& s = ImGui::GetStyle();
@@ -53,7 +53,7 @@ void style(float scale) {
   s.Colors[ImGuiCol_Separator] = {1, 1, 1, 0.10f};
 }
 
-// A row: what at the left, its figure at the right.
+// A row: label at the left, value at the right.
 void figure(const char* what, const std::string& value, const ImVec4& color = ImGui::GetStyle().Colors[ImGuiCol_Text]) {
   ImGui::TextColored(kDim, "%s", what);
   const float right = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(value.c_str()).x;
@@ -65,7 +65,7 @@ std::string bytes(std::uint64_t count) {
   return count < 10000 ? fmt::format("{} B", count) : fmt::format("{:.1f} KiB", static_cast<double>(count) / 1024);
 }
 
-// The next round number, 1 2 5 10 ..., so that a plot's scale changes seldom.
+// The next round number, 1 2 5 10 ..., so that a plot's scale seldom changes.
 float round_up(float value) {
   const float decade = std::pow(10.0f, std::floor(std::log10(std::max(value, 1e-6f))));
   for (const float step : {1.0f, 2.0f, 5.0f})
@@ -85,7 +85,7 @@ void curve(const ProbeHistory& history, float ProbeHistory::Bin::*value, float t
   for (std::size_t age = 0; age < ProbeHistory::kBins; ++age) {
     const ProbeHistory::Bin* bin = history.bin(age);
     if (!bin) {
-      if (age > 3) finish();  // a pause, not merely a tick that came late
+      if (age > 3) finish();  // a pause, not only a late tick
       continue;
     }
     const float x = at.x + size.x * (1 - static_cast<float>(age) / (ProbeHistory::kBins - 1));
@@ -95,7 +95,7 @@ void curve(const ProbeHistory& history, float ProbeHistory::Bin::*value, float t
 }
 
 void probe_line(const ProbeLine& probe, float scale) {
-  // The probe's own colour, its name, and what it feels.
+  // The probe's colour, its name and its force.
   ImDrawList* list = ImGui::GetWindowDrawList();
   const ImVec2 dot = ImGui::GetCursorScreenPos();
   const auto shown = [](float linear) { return std::pow(std::clamp(linear, 0.0f, 1.0f), 1 / 2.2f); };
@@ -113,7 +113,7 @@ void probe_line(const ProbeLine& probe, float scale) {
   ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kDepthColor), "%s", depth.c_str());
 }
 
-// Why the force is not what the law says, while it is not.
+// The limits that currently change the force.
 void limit_line(const ProbeLine& probe, float scale) {
   const std::uint8_t limited = probe.history.limited();
   const auto say = [&](SafetyLimit limit, const char* words) {
@@ -230,7 +230,7 @@ void draw_message(const OverlayState& state, float scale) {
   ImGui::End();
 }
 
-// A ring that tightens and warms as the force grows: what a hand would feel, for the eyes.
+// A ring that shrinks and turns warmer with the force: a visual substitute for haptic feedback.
 void draw_cursor(const OverlayState& state, float scale) {
   ImDrawList* list = ImGui::GetForegroundDrawList();
   const ImVec2 at(static_cast<float>(state.cursor_x), static_cast<float>(state.cursor_y));
@@ -275,7 +275,7 @@ const ProbeHistory::Bin* ProbeHistory::bin(std::size_t age) const {
 Overlay::Overlay(float scale) : scale_(scale) {
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;  // leaves nothing behind
+  io.IniFilename = nullptr;  // no settings file
   io.LogFilename = nullptr;
   style(scale);
   ImGui_ImplOpenGL3_Init("#version 450 core");
@@ -314,7 +314,7 @@ void Overlay::draw_panel(const OverlayState& state, RenderOptions& options, floa
     limit_line(probe, scale_);
   }
   if (large_) draw_switches(options, tint, scale_);
-  // Small at first, so that it does not stand before what there is to touch.
+  // Small at first, so that it does not cover the objects.
   if (ImGui::SmallButton(large_ ? "less" : "more")) large_ = !large_;
   ImGui::SameLine();
   ImGui::TextColored(kDim, "F1 keys   Tab hides this");
@@ -374,7 +374,7 @@ void Overlay::draw(const OverlayState& state, RenderOptions& options, float tint
   ui::end_widgets();
   ImGui::Render();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glDisable(GL_FRAMEBUFFER_SRGB);  // its colours are encoded already
+  glDisable(GL_FRAMEBUFFER_SRGB);  // the overlay's colours are already encoded
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 

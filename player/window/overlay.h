@@ -1,4 +1,4 @@
-// What stands over the picture: figures, a live plot for every probe, switches, keys. Dear ImGui, drawn last.
+// The overlay on the picture: figures, a live plot for every probe, switches, keys. Dear ImGui, drawn last.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace pliant {
 
-// The last seconds of one probe, in bins of equal time, each with its largest force and depth.
+// The last seconds of one probe in bins of equal time, each with its largest force and depth.
 class ProbeHistory {
  public:
   static constexpr double kSeconds = 5.0;  // [s]
@@ -27,14 +27,14 @@ class ProbeHistory {
 
   void add(const TickRow& row);
   struct Bin {
-    std::int64_t number = -1;  // which bin since the start; another number in its place: nothing happened here
+    std::int64_t number = -1;  // index of the bin since the start; another index here means an empty bin
     float force = 0;           // [N]
-    float depth = 0;           // [m] of a contact, else 0
-    std::uint8_t limited = 0;  // 1 << SafetyLimit: what acted
+    float depth = 0;           // [m] in contact, else 0
+    std::uint8_t limited = 0;  // 1 << SafetyLimit: limits that acted
   };
-  // `age` 0 is the newest bin, kBins - 1 the oldest; null where nothing was noted.
+  // `age` 0 is the newest bin, kBins - 1 the oldest; null for an empty bin.
   const Bin* bin(std::size_t age) const;
-  std::uint8_t limited() const;  // what acted in the last kLimitSeconds, as bits
+  std::uint8_t limited() const;  // limits that acted in the last kLimitSeconds, as bits
   const Bin& newest() const { return bins_[static_cast<std::size_t>(newest_) % kBins]; }
 
  private:
@@ -48,33 +48,33 @@ struct ProbeLine {
   ProbeHistory history;
 };
 
-// Everything that is shown; whoever draws keeps it up to date.
+// Everything that the overlay shows; the drawing code keeps it current.
 struct OverlayState {
-  bool figures = true, help = false;  // what is shown
+  bool figures = true, help = false;  // visible parts
   std::string title;
   TouchFigures touch;
   double rate_wanted = 1000.0;      // [Hz]
-  std::optional<SoftFigures> soft;  // none: the level has nothing soft
+  std::optional<SoftFigures> soft;  // empty: the level has no soft parts
   double frames_per_second = 0.0;   // [Hz]
   double draw_ms = 0.0;             // [ms]
-  double resolution = 1.0;          // [1] of the window's, each way
+  double resolution = 1.0;          // [1] of the window's, per axis
   std::uint64_t upload_bytes = 0;   // of the last frame
   std::uint64_t awake_vertices = 0;
   bool paused = false;
-  std::string message;  // a sentence for a while; empty: none
+  std::string message;  // a temporary message; empty: none
   bool message_is_error = false;
   std::vector<ProbeLine> probes;
   bool show_devices = false;
   DevicesView devices;
   std::string stop_keys;              // of the emergency stop
-  std::vector<std::string> question;  // whether the level may have what it asks for, line by line; empty: none
-  // The cursor, where a probe is driven by the mouse. [pixel]
+  std::vector<std::string> question;  // question about the level's device requests, line by line; empty: none
+  // The cursor of a probe driven by the mouse. [pixel]
   bool cursor = false, pressing = false;
   double cursor_x = 0, cursor_y = 0;
   double cursor_force = 0;  // [N]
 };
 
-// The mouse as ImGui sees it.
+// Mouse input for ImGui.
 struct OverlayMouse {
   double x = -1, y = -1;  // [pixel]
   std::array<bool, 3> down{};
@@ -83,17 +83,17 @@ struct OverlayMouse {
 
 class Overlay {
  public:
-  explicit Overlay(float scale);  // needs the window's context, as every call
+  explicit Overlay(float scale);  // needs the window's context, as does every call
   ~Overlay();
   Overlay(const Overlay&) = delete;
   Overlay& operator=(const Overlay&) = delete;
 
-  // The mouse is over a panel: it is not for the scene.
+  // True while the mouse is over a panel: the scene ignores it.
   bool wants_mouse() const;
-  // Draws over framebuffer 0. Switches change `options`; `tint` [m] is what the heights' colours then mean.
+  // Draws over framebuffer 0. Switches change `options`; `tint` [m]: height at full colour.
   void draw(const OverlayState& state, RenderOptions& options, float tint, const OverlayMouse& mouse, int width,
             int height, double dt);
-  // What was pressed in the panel of devices since the last call.
+  // Commands from the device panel since the last call.
   DeviceOrders take_orders() { return std::exchange(orders_, {}); }
 
  private:

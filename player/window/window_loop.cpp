@@ -17,13 +17,13 @@ namespace {
 
 constexpr vec3 kToolColor(0.85f, 0.55f, 0.42f);               // linear: of a tool's plot
 constexpr double kMessageTime = 8.0;                          // [s]
-constexpr float kTintShare = 0.2f;                            // [1] of the reach: a height that is coloured fully
-constexpr double kSlowestTurn = 0.25;                         // [s] beyond this, motion does not catch up
-constexpr double kSmoothing = 0.1;                            // [1] of the newest picture in the shown rate
-constexpr double kHearEvery = 0.004;                          // [s] at most
+constexpr float kTintShare = 0.2f;                            // [1] of the reach: height at full colour
+constexpr double kSlowestTurn = 0.25;                         // [s] after a longer iteration, motion does not catch up
+constexpr double kSmoothing = 0.1;                            // [1] weight of the newest picture in the shown rate
+constexpr double kHearEvery = 0.004;                          // [s] longest interval between input polls
 constexpr std::size_t kLongestTitle = 28, kLongestName = 16;  // [byte] in the panel
-constexpr double kHungEnd = 10.0;                             // [s] that the end waits for a picture
-constexpr double kHungPicture = 2.0;  // [s] a picture that takes longer may never come: nobody sees what the hand does
+constexpr double kHungEnd = 10.0;                             // [s] for which the end waits for a picture
+constexpr double kHungPicture = 2.0;  // [s] after a longer picture the hand moves unseen: the heartbeat stops
 
 std::optional<MouseProbe> mouse_probe_of(const World& world) {
   for (auto [entity, probe] : world.registry.view<Probe>()) {
@@ -33,7 +33,7 @@ std::optional<MouseProbe> mouse_probe_of(const World& world) {
   return {};
 }
 
-// Of a file's name, as much as a panel has room for, in whole characters.
+// A file name cut to a panel's width, in whole characters.
 std::string cut(const std::string& name, std::size_t longest) {
   std::string shown = printable(name);
   if (shown.size() <= longest) return shown;
@@ -41,7 +41,7 @@ std::string cut(const std::string& name, std::size_t longest) {
   return shown.substr(0, longest) + "...";
 }
 
-// A link that leads nowhere counts.
+// A dangling link counts as present.
 bool is_there(const std::filesystem::path& file) {
   std::error_code ignored;
   return std::filesystem::exists(std::filesystem::symlink_status(file, ignored));
@@ -90,11 +90,11 @@ ViewRay WindowLoop::ray() const {
   return ray_through(camera_.viewpoint(), cursor_.x(), cursor_.y(), s_.window.width(), s_.window.height());
 }
 
-// Where the probe should be goes to the touch clock every turn, moved or not: silence means that nobody is there. A
-// hand that sees nothing any more is nobody either.
+// Sends the probe's target to the touch clock in every iteration, moved or not: it serves as a heartbeat, and its
+// absence is a time-out. A hung picture stops the heartbeat too.
 void WindowLoop::point(double dt) {
   const double force = mouse_probe_ ? state_.probes[*mouse_probe_].history.newest().force : 0.0;
-  cursor_.update(drag_ == Drag::kPress, force, dt);  // what is pulled stretches towards the hand itself
+  cursor_.update(drag_ == Drag::kPress, force, dt);  // a pull stretches towards the hand
   if (!of_mouse_ && !carrier_) return;
   if (carrier_) {
     if (drag_ == Drag::kCarry) carrier_->follow(ray(), camera_.viewpoint());
@@ -125,7 +125,7 @@ void WindowLoop::keep() {
   }
 }
 
-// Pictures that were asked for; a slow GPU takes fewer.
+// Returns the next requested picture; a slow GPU skips some.
 std::filesystem::path WindowLoop::next_frame() {
   const std::uint64_t reached = touch_ ? touch_->now() : 0;
   if (!touch_ || next_frame_ >= s_.frame_ticks.size() || s_.frame_ticks[next_frame_] > reached) return {};
@@ -133,7 +133,7 @@ std::filesystem::path WindowLoop::next_frame() {
   return s_.out.stage(fmt::format("frame-{:04d}.png", figures_.pictures));
 }
 
-// At once, and beside what is already there: a hand asked for it.
+// Named at once, without replacing existing files: the user requested it.
 std::filesystem::path WindowLoop::next_screenshot() const {
   std::filesystem::path file;
   for (int i = 1; file.empty() || is_there(file); ++i) file = s_.out.path() / fmt::format("screenshot-{:03d}.png", i);
@@ -167,7 +167,7 @@ PictureOrder WindowLoop::order(bool shown) {
   next.frame = next_frame();
   next.frame_width = s_.frame_width;
   next.frame_height = s_.frame_height;
-  if (screenshots_ > 0) {  // one a picture, so that each has a number of its own
+  if (screenshots_ > 0) {  // one per picture, so that each has its own number
     --screenshots_;
     shooting_ = next_screenshot();
   }
@@ -180,7 +180,7 @@ PictureOrder WindowLoop::order(bool shown) {
   return next;
 }
 
-// What a picture brings back: figures, what the overlay's switches say, and what stands under the cursor.
+// Takes the result of a picture: figures, the overlay's switches, and the object under the cursor.
 Status WindowLoop::learn(const PictureDone& done) {
   figures_.pictures += done.framed;
   if (!done.failed) return done.failed;
@@ -200,7 +200,7 @@ Status WindowLoop::learn(const PictureDone& done) {
   if (s_.devices && done.orders.any()) s_.devices->order(done.orders);
   if (done.orders.allow || done.orders.decline) answer_question(done.orders.allow);
   if (!shooting_.empty() && !done.screenshot && is_there(shooting_))
-    ++screenshots_;  // another window took the name meanwhile
+    ++screenshots_;  // another window has taken the name meanwhile
   else if (!shooting_.empty())
     say(done.screenshot ? shooting_.string() : done.screenshot.error().message(), !done.screenshot);
   shooting_.clear();
@@ -211,7 +211,7 @@ Status WindowLoop::learn(const PictureDone& done) {
   return Done{};
 }
 
-// Pictures before the clock starts: whatever the driver does once, it does now, and how fast it draws is known.
+// Pictures before the clock starts: one-time driver work is done here, and the drawing speed becomes known.
 Status WindowLoop::warm_up() {
   for (int i = 0; i < 3; ++i) {
     pictures_.begin(order(false));
@@ -222,7 +222,7 @@ Status WindowLoop::warm_up() {
   return Done{};
 }
 
-// Hears the hand and orders pictures beside the touch clock.
+// Polls input and orders pictures beside the touch clock.
 Status WindowLoop::turn_until_the_end() {
   std::vector<InputEvent> events;
   const std::uint64_t start = now_ns();
@@ -257,7 +257,7 @@ WindowFigures WindowLoop::run() {
     status = s_.runner.start(s_.ticks);
     touch_ = s_.runner.clock();
     if (status) status = turn_until_the_end();
-  } catch (const std::exception& error) {  // the clock's rows and figures are kept all the same
+  } catch (const std::exception& error) {  // the clock's rows and figures are kept
     status = explain(error);
   }
   touch_ = nullptr;
@@ -289,9 +289,10 @@ WindowFigures run_window(WindowSession& session) {
   }
   auto loop = std::make_unique<WindowLoop>(session, **renderer);
   WindowFigures figures = loop->run();
-  if (figures.hung) static_cast<void>(loop.release());  // its thread goes on using it
+  if (figures.hung) static_cast<void>(loop.release());  // its thread still uses it
   loop.reset();
-  // What is on the GPU goes with its context, which a lost display or a hung driver gives back no more.
+  // GPU objects are freed with their context. A lost display or a hung driver cannot free them, so the renderer is not
+  // destroyed then.
   if (Window::lost() || figures.hung) static_cast<void>(std::move(renderer).value().release());
   return figures;
 }

@@ -1,5 +1,5 @@
-// The loop of a window: what it holds, what a hand does to it (window_loop_input.cpp), and a turn of it
-// (window_loop.cpp). It hears the hand some 250 times a second; pictures are made meanwhile (window_picture.h).
+// The loop of a window: its state, its reaction to input (window_loop_input.cpp), and an iteration (window_loop.cpp).
+// It polls input some 250 times a second while pictures are drawn on another thread (window_picture.h).
 #pragma once
 
 #include <future>
@@ -14,7 +14,7 @@
 
 namespace pliant {
 
-// What a held button does. kAsked: that hangs on what a picture shows under it, which is not known yet.
+// Action of a held mouse button. kAsked: depends on the object under the cursor, which is not known yet.
 enum class Drag : std::uint8_t { kNone, kAsked, kPress, kPull, kCarry, kOrbit, kPan };
 
 // The probe that the mouse moves.
@@ -23,13 +23,13 @@ struct MouseProbe {
   ProbeMeets meets = ProbeMeets::kAll;
 };
 
-// What one session holds while it runs. The touch clock owns the world meanwhile: this side reads only what never
-// changes (remembered before it started) and what comes by exchanges.
+// State of one session while it runs. The touch clock owns the world meanwhile: this side reads only constant data
+// (copied before the start) and data from exchanges.
 class WindowLoop {
  public:
   WindowLoop(WindowSession& session, Renderer& renderer);
 
-  // Until the window closes, the ticks are over or another level is ready.
+  // Runs until the window closes, the ticks are over, or another level is ready.
   WindowFigures run();
 
  private:
@@ -45,7 +45,7 @@ class WindowLoop {
   void move(const InputEvent& event);
   void wheel(const InputEvent& event);
   void answer_question(bool allowed);
-  void open(const std::string& file);  // on a thread of its own
+  void open(const std::string& file);  // on a separate thread
   void look_for_opened();
   void say(const std::string& sentence, bool error);
   void point(double dt);
@@ -63,36 +63,36 @@ class WindowLoop {
   Pointer pointer_;
   std::optional<Carrier> carrier_;
   HeavyCursor cursor_;
-  RenderOptions options_, ordered_options_;  // as wanted now, and for the picture under way
+  RenderOptions options_, ordered_options_;  // as wanted now, and of the current picture
   OverlayState state_;
   OverlayMouse mouse_;
-  std::array<bool, 3> down_{};                        // buttons now; a click between two pictures is in mouse_ alone
-  float tint_;                                        // [m] height that is coloured fully, where heights are
-  dvec3 probe_at_{0};                                 // [m] where the mouse has its probe or its tool
-  dvec3 tool_at_{0};                                  // [m] world, where the device of the carried tool was last
-  std::optional<std::size_t> mouse_probe_, carried_;  // numbers in the journal
-  TouchClock* touch_ = nullptr;                       // null: before it starts
+  std::array<bool, 3> down_{};                        // now; a click between two pictures is in mouse_ alone
+  float tint_;                                        // [m] height at full colour
+  dvec3 probe_at_{0};                                 // [m] target of the probe or tool under the mouse
+  dvec3 tool_at_{0};                                  // [m] world, last position of the carried tool's device
+  std::optional<std::size_t> mouse_probe_, carried_;  // indices in the journal
+  TouchClock* touch_ = nullptr;                       // null before the start
   std::vector<ui::Place> widgets_;                    // of the last picture
-  std::string wanted_widget_;                         // that a script presses once it is there
+  std::string wanted_widget_;                         // to be pressed by a script once it is visible
   double wanted_since_ = 0.0;                         // [s]
   Drag drag_ = Drag::kNone;
   MouseButton dragging_ = MouseButton::kLeft;
-  bool wants_pull_ = false;                    // the press under way was made with Ctrl
-  double pressed_x_ = 0.0, pressed_y_ = 0.0;   // [pixel] where it is asked what was pressed
+  bool wants_pull_ = false;                    // the current press was made with Ctrl
+  double pressed_x_ = 0.0, pressed_y_ = 0.0;   // [pixel] place of the current press
   std::optional<PickAnswer> answer_;           // the newest
-  ViewRay asked_ray_;                          // of the question under way
-  std::uint64_t questions_ = 0, decides_ = 0;  // asked so far; the one whose answer decides a press
+  ViewRay asked_ray_;                          // of the pending question
+  std::uint64_t questions_ = 0, decides_ = 0;  // number of questions so far; the one whose answer decides a press
   bool pointed_ = false, close_ = false, wants_mouse_ = false;
-  bool begun_ = false;                    // a picture that is shown has been ordered
-  int screenshots_ = 0;                   // asked for, not yet taken
-  std::filesystem::path shooting_;        // of the picture under way
+  bool begun_ = false;                    // a visible picture has been ordered
+  int screenshots_ = 0;                   // requested, not yet taken
+  std::filesystem::path shooting_;        // of the current picture
   double frame_time_ = 0.0;               // [s] smoothed
   double seconds_ = 0.0, said_at_ = 0.0;  // [s] since the first picture
-  double ordered_at_ = 0.0;               // [s] when the picture under way was
+  double ordered_at_ = 0.0;               // [s] time of the current picture's order
   std::size_t next_frame_ = 0;
   std::future<std::optional<Error>> opening_;
   WindowFigures figures_;
-  WindowPictures pictures_;  // last: it has the context from its beginning to its end
+  WindowPictures pictures_;  // last member: it owns the context from construction to destruction
 };
 
 }  // namespace pliant

@@ -13,7 +13,7 @@ namespace pliant {
 namespace {
 
 constexpr double kSamePlace = 2.0;    // [pixel]
-constexpr double kPressWithin = 3.0;  // [s] that a script waits for what it presses
+constexpr double kPressWithin = 3.0;  // [s] for which a script waits for its widget
 
 std::size_t imgui_button(MouseButton button) {
   return button == MouseButton::kLeft ? 0 : button == MouseButton::kRight ? 1 : 2;
@@ -27,7 +27,7 @@ void WindowLoop::say(const std::string& sentence, bool error) {
   said_at_ = seconds_;
 }
 
-// The level begins anew with what it may have now.
+// Restarts the level with its new permissions.
 void WindowLoop::answer_question(bool allowed) {
   if (state_.question.empty()) return;
   state_.question.clear();
@@ -49,7 +49,7 @@ void WindowLoop::look_for_opened() {
       say(wrong->message(), true);
     else
       figures_.opened = true;
-  } catch (const std::exception& error) {  // a file that is too much is no reason to end
+  } catch (const std::exception& error) {  // a file that is too large must not end the run
     say(explain(error).message(), true);
   }
 }
@@ -67,7 +67,7 @@ void WindowLoop::press(const InputEvent& event) {
     wants_pull_ = event.modifiers & kControl;
     pressed_x_ = cursor_.x();
     pressed_y_ = cursor_.y();
-    // A hand that has rested here has been told already.
+    // If the mouse has rested here, the answer is already known.
     const auto here = [&](const PickQuestion& q) {
       return std::hypot(q.x - pressed_x_, q.y - pressed_y_) < kSamePlace;
     };
@@ -75,7 +75,7 @@ void WindowLoop::press(const InputEvent& event) {
   }
 }
 
-// What was pressed: a panel, something to touch, the tool, or nothing, which turns the view.
+// Decides what was pressed: a panel, a touchable object, the tool, or nothing, which orbits the view.
 void WindowLoop::decide(const std::optional<Picked>& seen) {
   if (wants_mouse_) {
     drag_ = Drag::kNone;
@@ -134,7 +134,8 @@ void WindowLoop::emergency_stop() {
   say("emergency stop: no device has force until it is armed in the panel", false);
 }
 
-// As a hand would: once a picture shows it, the mouse goes there for a picture, and its button is down for the next.
+// Emulates a user: once a picture shows the widget, the mouse is moved there for one picture, and the button is down in
+// the next.
 void WindowLoop::press_widgets() {
   if (wanted_widget_.empty()) return;
   for (const ui::Place& place : widgets_) {
@@ -238,7 +239,7 @@ void WindowLoop::handle(const InputEvent& event) {
       press(event);
       break;
     case InputKind::kRelease:
-      down_[imgui_button(event.button)] = false;  // mouse_.down: once a picture has seen that it was down
+      down_[imgui_button(event.button)] = false;  // mouse_.down is cleared after a picture has seen it
       if (event.button == dragging_) release();
       break;
     case InputKind::kWheel:

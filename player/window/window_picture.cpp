@@ -15,13 +15,13 @@
 namespace pliant {
 namespace {
 
-constexpr double kSlowDraw = 70.0;      // [ms] a GPU (or a processor in its stead) that needs longer draws coarser,
-constexpr double kFastDraw = 20.0;      // [ms] and one that needs less draws finer, up to every pixel
+constexpr double kSlowDraw = 70.0;      // [ms] a slower renderer (GPU, or CPU in its place) draws with fewer pixels,
+constexpr double kFastDraw = 20.0;      // [ms] and a faster one with more, up to full resolution
 constexpr double kWantedDraw = 40.0;    // [ms]
 constexpr double kLongestDraw = 500.0;  // [ms] for a screenshot
 constexpr double kCoarsest = 0.25;      // [1]
 
-// What stands in the window, with everything over it.
+// Reads back the window's content with all overlays.
 Image read_back(int width, int height) {
   Image image;
   image.name = "screenshot";
@@ -35,7 +35,7 @@ Image read_back(int width, int height) {
   for (std::size_t y = image.height; y-- > 0;)
     image.rgba.insert(image.rgba.end(), bottom_up.begin() + static_cast<std::ptrdiff_t>(y * row),
                       bottom_up.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;  // a window has nothing behind it
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;  // the window is opaque
   return image;
 }
 
@@ -144,7 +144,7 @@ void WindowPictures::take_snapshots() {
   if (world_.soft_snapshots && world_.soft_snapshots->acquire()) renderer_.update(world_.soft_snapshots->read());
 }
 
-// A picture that comes late is worse than a coarse one.
+// A late picture is worse than a coarse one.
 void WindowPictures::choose_share(double draw_ms) {
   if (draw_ms < kSlowDraw && (draw_ms > kFastDraw || share_ == 1.0)) return;
   share_ = std::clamp(share_ * std::sqrt(kWantedDraw / std::max(draw_ms, 1.0)), kCoarsest, 1.0);
@@ -158,7 +158,7 @@ FrameStats WindowPictures::draw_scene(double share) {
   const int w = std::max(1, static_cast<int>(width * share)), h = std::max(1, static_cast<int>(height * share));
   if (!coarse_.has_size(w, h)) coarse_ = gpu::Framebuffer(w, h, 0);
   const FrameStats stats = renderer_.draw(order_.view, coarse_.id(), w, h);
-  glDisable(GL_FRAMEBUFFER_SRGB);  // encoded bytes to encoded bytes
+  glDisable(GL_FRAMEBUFFER_SRGB);  // copies encoded bytes without conversion
   glBlitNamedFramebuffer(coarse_.id(), 0, 0, 0, w, h, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
   return stats;
 }
@@ -171,7 +171,7 @@ void WindowPictures::draw() {
     done_.frame = write_file(order_.frame, encode_png(image.width, image.height, image.rgba.data()));
     done_.framed = done_.frame.ok();
   }
-  // A picture that stays is worth some time.
+  // A picture that is kept may take longer.
   const bool stays = !order_.screenshot.empty();
   const double finer = share_ * std::sqrt(kLongestDraw / std::max(draw_ms_, 1.0));
   done_.stats = draw_scene(stays ? std::clamp(finer, share_, 1.0) : share_);

@@ -1,5 +1,5 @@
-// The pictures of a window, on a thread of their own with the window's context: however long one takes, the thread that
-// hears the hand goes on hearing it.
+// Draws the pictures of a window on a separate thread with the window's context, so that a slow picture does not block
+// input.
 #pragma once
 
 #include <condition_variable>
@@ -16,52 +16,52 @@
 
 namespace pliant {
 
-// What the next picture is to be.
+// Order for the next picture.
 struct PictureOrder {
   Viewpoint view;
   int width = 1, height = 1;  // [pixel] of the window
-  double dt = 0.0;            // [s] since the order before
+  double dt = 0.0;            // [s] since the previous order
   RenderOptions options;
   OverlayState overlay;
   OverlayMouse mouse;
-  float tint = 0.0f;  // [m] height that is coloured fully, where heights are
+  float tint = 0.0f;  // [m] height at full colour
   PickQuestion question;
-  std::filesystem::path screenshot;       // a file of the window, with everything over it; empty: none
-  std::filesystem::path frame;            // a file of the scene alone; empty: none
+  std::filesystem::path screenshot;       // file for the window with all overlays; empty: none
+  std::filesystem::path frame;            // file for the scene alone; empty: none
   int frame_width = 1, frame_height = 1;  // [pixel] of that
-  bool shown = true;                      // false: drawn for the driver's sake, before anybody looks
+  bool shown = true;                      // false: warm-up of the driver, not shown
 };
 
-// What came of it.
+// Result of a picture.
 struct PictureDone {
   FrameStats stats;
-  RenderOptions options;     // as the overlay's switches left them
-  bool wants_mouse = false;  // the mouse is over a panel: it is not for the scene
-  DeviceOrders orders;       // what was pressed in the panel of devices
+  RenderOptions options;     // as changed by the overlay's switches
+  bool wants_mouse = false;  // the mouse is over a panel: the scene ignores it
+  DeviceOrders orders;       // commands from the device panel
   std::vector<ui::Place> widgets;
   std::optional<PickAnswer> answer;
   std::uint64_t awake_vertices = 0;
-  double resolution = 1.0;  // [1] of the window's, each way
+  double resolution = 1.0;  // [1] of the window's, per axis
   Status screenshot = Done{}, frame = Done{};
   bool framed = false;     // the file of the scene alone is written
-  Status failed = Done{};  // the renderer; nothing above holds but `framed`
+  Status failed = Done{};  // error of the renderer; then only `framed` is valid
 };
 
 class WindowPictures {
  public:
-  // Takes the context from the calling thread. The world's snapshots are read here and nowhere else.
+  // Takes the context from the calling thread. Only this thread reads the world's snapshots.
   WindowPictures(Window& window, World& world, Renderer& renderer);
-  ~WindowPictures();  // and gives it back
+  ~WindowPictures();  // returns the context
   WindowPictures(const WindowPictures&) = delete;
   WindowPictures& operator=(const WindowPictures&) = delete;
 
-  // Starts a picture; none may be under way.
+  // Starts a picture; none may be in progress.
   void begin(PictureOrder order);
   bool busy() const;
-  double seconds() const;  // [s] that the picture under way has taken so far, else 0
-  // What came of the picture before, waiting for it.
+  double seconds() const;  // [s] time taken so far by the current picture, else 0
+  // Waits for the previous picture and returns its result.
   const PictureDone& done();
-  // False: after so long [s] a picture is still under way.
+  // Returns false if a picture is still in progress after this time [s].
   bool wait(double seconds);
 
  private:
@@ -79,16 +79,16 @@ class WindowPictures {
   std::optional<Overlay> overlay_;
   gpu::Framebuffer coarse_;  // the picture at less than full resolution
   double share_ = 1.0;       // [1] of the window's resolution, each way
-  double draw_ms_ = 0.0;     // [ms] of the picture before
+  double draw_ms_ = 0.0;     // [ms] of the previous picture
   std::uint64_t awake_ = 0;
-  PictureOrder order_;  // this thread's while a picture is under way, else the other's; so is done_
+  PictureOrder order_;  // owned by this thread during a picture, else by the other; likewise done_
   PictureDone done_;
   std::exception_ptr failure_;  // of the thread, before its first picture
-  mutable std::mutex mutex_;    // of the four below
+  mutable std::mutex mutex_;    // guards the four members below
   std::condition_variable changed_;
   bool busy_ = false, stop_ = false;
   std::uint64_t began_ns_ = 0;
-  std::thread thread_;  // last: everything else is there when it starts
+  std::thread thread_;  // last member: everything else exists when it starts
 };
 
 }  // namespace pliant

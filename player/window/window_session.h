@@ -1,4 +1,4 @@
-// A level in a window, until it is closed or another level takes its place: the loop of the visual clock.
+// Runs a level in a window until it is closed or another level replaces it: the loop of the visual clock.
 #pragma once
 
 #include <functional>
@@ -21,39 +21,39 @@ namespace pliant {
 
 struct WindowSession {
   Window& window;
-  InputScript& script;  // what a file says beside the hand; may be empty
+  InputScript& script;  // scripted input beside the user's; may be empty
   World& world;         // prepared
-  Runner& runner;       // of it; devices and the journal are attached
+  Runner& runner;       // of `world`; devices and the journal are attached
   Journal& journal;
   Keeper& keeper;
   OutputFolder& out;
   const Interrupt& interrupt;
-  DeviceLinks* devices = nullptr;             // none: no device
-  std::string level;                          // what `R` opens again
+  DeviceLinks* devices = nullptr;             // null: no device
+  std::string level;                          // level that `R` opens again
   std::string stop_keys;                      // of the emergency stop, "F9"
   double rate = 1000.0;                       // [Hz]
-  std::uint64_t ticks = 0;                    // at most
-  std::vector<std::uint64_t> frame_ticks;     // after which pictures are staged, ascending
+  std::uint64_t ticks = 0;                    // upper limit
+  std::vector<std::uint64_t> frame_ticks;     // ticks after which pictures are staged, ascending
   int frame_width = 960, frame_height = 540;  // [pixel] of those
-  // What the level asks for beyond what a level may, line by line; empty: nothing. `allow` remembers that it may.
+  // The level's device requests that are not permitted, line by line; empty: none. `allow` stores the permission.
   std::vector<std::string> question;
   std::function<Status()> allow;
-  // Prepares another level on a thread of its own; nothing: it is ready, else why not.
+  // Prepares another level on a separate thread. Empty: it is ready; else the error.
   std::function<std::optional<Error>(const std::string& file)> open;
 };
 
 struct WindowFigures {
   FrameFigures frames;
   std::uint64_t overruns = 0;
-  std::size_t pictures = 0;  // staged
-  bool opened = false;       // another level is ready and takes this one's place
-  Status ended = Done{};     // what kept it from drawing
-  bool hung = false;         // a picture is under way that does not end: its thread uses window and world from now on
-  std::future<std::optional<Error>> opening;  // a level that is still being opened, into what `open` fills
+  std::size_t pictures = 0;                   // staged
+  bool opened = false;                        // another level is ready and replaces this one
+  Status ended = Done{};                      // the error that prevented drawing
+  bool hung = false;                          // a picture is stuck: its thread keeps using window and world
+  std::future<std::optional<Error>> opening;  // a level still being opened, into the target that `open` fills
 };
 
-// Returns when the window is closed, on Ctrl-C, after `ticks`, or when another level is ready. Devices have been let go
-// with zero force by then.
+// Returns when the window is closed, on Ctrl-C, after `ticks`, or when another level is ready. By then devices have
+// been released with zero force.
 WindowFigures run_window(WindowSession& session);
 
 }  // namespace pliant

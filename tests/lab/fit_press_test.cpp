@@ -1,4 +1,4 @@
-// `pliant fit` on measured presses: the parameters of synthetic data are recovered, within the reported intervals.
+// `pliant fit` on measured presses: the parameters of synthetic data are recovered within the stated intervals.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -22,15 +22,15 @@ double depth_at(double t) {  // up, a rest, down [m]
   return 0.006 * (t < 1 ? t : t < 2 ? 1.0 : std::max(0.0, 3 - t));
 }
 
-// The force of a surface with these keys along that path, by the closed forms of methods.md 1.2 rather than by the
-// engine: the standard linear solid by the convolution of its ramps.
+// Force of a surface with these keys along that path, by the closed forms of methods.md 1.2 instead of the engine. The
+// standard linear solid is the convolution of its ramps.
 double truth(const std::string& law, double t) {
   const double d = depth_at(t);
   if (law == "linear") return 250 * d;
   if (law == "cubic") return 150 * d + 4e6 * d * d * d;
   if (law == "exponential") return 90 / 180.0 * std::expm1(180 * d);
   if (law == "hertz") return 4.0 / 3.0 * 8e3 / (1 - 0.45 * 0.45) * std::sqrt(0.004) * std::pow(d, 1.5);
-  // sls: q = k1 tau v (1 - e^(-s/tau)) since each change of the rate v.
+  // sls: each change of the rate v contributes q = k1 tau v (1 - e^(-s/tau)).
   const double k = 200, k1 = 150, tau = 0.4, v = 0.006;
   const auto ramp = [&](double since) { return since > 0 ? k1 * tau * v * -std::expm1(-since / tau) : 0.0; };
   return std::max(0.0, k * d + ramp(t) - ramp(t - 1) - ramp(t - 2));
@@ -62,14 +62,14 @@ TEST(FitPress, WithoutNoiseEveryLawGivesItsParametersBack) {
     const auto fit = fit_record(record_of(law, 0.0, 1), wish);
     ASSERT_TRUE(fit.ok()) << fit.error().message();
     for (std::size_t i = 0; i < values.size(); ++i)
-      // The record's path is cut between rows where its rate changes, which the sampled solid cannot know.
+      // The rate of the record's path changes between rows, which the sampled solid cannot represent.
       EXPECT_NEAR(fit->laws[0].parameters[i].value / values[i], 1.0, law == "sls" ? 0.02 : 1e-6) << law << i;
   }
 }
 
 TEST(FitPress, TheTruthIsWithinTheNinetyPercentIntervalForAboutNinetySeedsInAHundred) {
   for (const auto& [law, values] : kTruths) {
-    if (law == "sls") continue;  // the truth is not quite the sampled law: above
+    if (law == "sls") continue;  // the true law differs slightly from the sampled one: above
     std::vector<int> inside(values.size(), 0);
     constexpr int kSeeds = 400;
     for (unsigned seed = 0; seed < kSeeds; ++seed) {
@@ -84,8 +84,8 @@ TEST(FitPress, TheTruthIsWithinTheNinetyPercentIntervalForAboutNinetySeedsInAHun
         inside[i] += p.low <= values[i] && values[i] <= p.high;
       }
     }
-    // Of 400 trials at 0.9: mean 360, standard deviation 6; tolerance four of these, which intervals of a wrong width
-    // do not meet.
+    // Of 400 trials at 0.9: mean 360, standard deviation 6. The tolerance is four of these; intervals of arbitrary
+    // width would exceed it.
     for (const int count : inside) EXPECT_NEAR(count, 360, 24) << law;
   }
 }
@@ -102,7 +102,7 @@ TEST(FitPress, TheLawThatTheDataHaveIsTheOneThatIsTaken) {
 }
 
 TEST(FitPress, ABoxHoldsAndWhatStandsOnItHasNoInterval) {
-  // A force that falls below a line cannot stiffen: the exponent takes its minimum.
+  // A force that grows less than linearly does not stiffen: the exponent goes to its lower bound.
   PressRecord record = record_of("linear", 0.0, 1);
   for (double& f : record.force) f = 20 * (1 - std::exp(-f / 20));
   RecordWish wish;
@@ -120,7 +120,7 @@ TEST(FitPress, AnyShareOfTheRowsIsHeldOutInStretchesAllOverTheRecord) {
       const std::vector<bool> held = held_rows(rows, share);
       const auto count = std::count(held.begin(), held.end(), true);
       EXPECT_EQ(count, std::max(1L, std::lround(share * static_cast<double>(rows)))) << rows << ' ' << share;
-      // None is longer than a twentieth, and each half of the record has its share.
+      // None is longer than a twentieth, and each half of the record has some.
       std::size_t run = 0, longest = 0;
       for (const bool each : held) longest = std::max(longest, run = each ? run + 1 : 0);
       EXPECT_LE(longest, rows / 20 + 2) << rows << ' ' << share;
@@ -140,7 +140,7 @@ TEST(FitPress, TheLawThatTheDataHaveIsTakenWhateverShareIsHeldOut) {
       wish.hold_out = share;
       const auto fit = fit_record(record_of(law, 0.001, 11), wish);
       ASSERT_TRUE(fit.ok());
-      if (share == 0.0)  // the model with more parameters never has the larger error on the fitted data
+      if (share == 0.0)  // more parameters never give a larger error on the fitted rows
         EXPECT_LT(fit->laws[fit->best].rms, 0.0012) << law;
       else
         EXPECT_EQ(fit->laws[fit->best].model.law, law) << share;
@@ -152,7 +152,7 @@ TEST(FitPress, TheLawThatTheDataHaveIsTakenWhateverShareIsHeldOut) {
   EXPECT_THAT(few->notes, ::testing::Contains(HasSubstr("too few to tell laws apart")));
 }
 
-// The same presses, measured from another zero of depth.
+// The same presses with another zero of depth.
 PressRecord moved(PressRecord record, double by) {
   for (double& depth : record.depth) depth += by;
   return record;
@@ -176,7 +176,7 @@ TEST(FitPress, WhereTheIndenterMetTheSurfaceIsFoundWhereverTheRecordBegins) {
 }
 
 TEST(FitPress, ARecordThatBeginsPressedHasABoxForItsContact) {
-  // Depths of 9.5 to 9.975 mm: the whole record lies in the former last tenth.
+  // Depths of 9.5 to 9.975 mm: the whole record lies in the last tenth of the depth range from zero.
   for (const double met : {0.0, 0.009, 0.0094}) {
     PressRecord record;
     record.name = "preload";
@@ -206,7 +206,7 @@ TEST(FitPress, ARecordThatBeginsPressedHasABoxForItsContact) {
 TEST(FitPress, TheDamperOfTheContactIsFound) {
   PressRecord record;
   record.name = "damped";
-  for (int i = 0; i <= 200; ++i) {  // down and up by a sine: at the engine's own rule, force from 0 on
+  for (int i = 0; i <= 200; ++i) {  // down and up by a sine: by the engine's rule the force starts at 0
     const double t = 0.01 * i, d = 0.004 * (1 - std::cos(M_PI * t)) / 2;
     record.time.push_back(t);
     record.depth.push_back(d);
@@ -292,14 +292,14 @@ TEST(FitPress, TablesAsProgramsWriteThemAreRead) {
   read("depth_mm,force_N,", "#.5,1.#");
   read("depth_mm;force_N;;", "#.5;1.#;;");
   read("depth_mm\tforce_N\t", "#.5\t1.#\t");
-  // Decimal commas where commas are not between cells.
+  // Decimal commas if commas do not separate cells.
   read("depth_mm;force_N", "#,5;1,#");
   read("depth_mm\tforce_N", "#,5\t+1,#");
   // Commas and quotes in names and texts.
   read("\"note, any\";depth_mm;force (N)", "x;#,5;1,#");
   read("note,depth_mm,force_N", "\"a \"\"soft\"\", wet pad\",#.5,1.#");
   read("note,depth_mm,force_N", "\"\"\"\",#.5,\"1.#\"");
-  // Other files with such a name are not read.
+  // Other quantities with such a name are ignored.
   EXPECT_THAT(
       read("f_Hz,load_cell,depth_mm,force_N", "1,2,#.5,1.#"),
       ::testing::ElementsAre(HasSubstr("'f_Hz' is not read: 'Hz' is no unit of force"), HasSubstr("'load_cell'")));

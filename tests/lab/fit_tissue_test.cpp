@@ -1,4 +1,4 @@
-// `pliant fit` on finite elements: the punch against closed forms, and a surface from an object.
+// `pliant fit` on finite elements: the punch against closed forms, and a surface fitted to an object.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -88,9 +88,9 @@ PressPlace middle_of(const Mesh& mesh) {
   return {};
 }
 
-// The punch's pressure is sqrt(1 - r^2) times a polynomial: on a half-space 28/15 E* a, of a flat punch's 2 E* a. The
-// elements are too stiff by an error quadratic in the cell, which two lattices determine; 2 % are allowed for the
-// block's finite width.
+// The punch's pressure is sqrt(1 - r^2) times a polynomial: on a half-space 28/15 E* a, against 2 E* a for a flat
+// punch. The elements' excess stiffness is of second order in the cell size, found from two lattices; 2 % are left for
+// the block's finite width.
 TEST(FitTissue, WithoutTheErrorOfItsCellsASmallPressIntoABondedLayerIsItsClosedForm) {
   for (const double poisson : {0.3, 0.45})
     for (const double radius : {0.003, 0.005}) {
@@ -118,7 +118,7 @@ TEST(FitTissue, WithSmallStrainsForceAndDentAreProportionalToTheDepth) {
   ASSERT_EQ(presses.size(), 2u);
   EXPECT_NEAR(presses[1].force / presses[0].force, 2.0, 1e-3);
   EXPECT_NEAR(presses[1].force / 0.002, punch.stiffness(), 1e-3 * punch.stiffness());
-  // Under the punch the mean of the dent is the depth.
+  // The mean dent under the punch equals the depth.
   double sum = 0.0, area = 0.0;
   for (std::size_t i = 0; i < under.size(); ++i) {
     const dvec3 away = (under[i].position - place.position) / 0.005;
@@ -220,7 +220,7 @@ TEST(FitTissue, WhatNoDentCanGiveIsWhatDependsOnMoreThanTheDistance) {
 TEST(FitTissue, AnEdgeIsNearWhereAnotherSideIsWithinThePress) {
   const auto built = build_mesh("block", std::vector<Primitive>{block()}, mat4(1.0f), {});
   ASSERT_TRUE(built.ok());
-  const auto at = [&](float x) {  // on the top, this far from the right side
+  const auto at = [&](float x) {  // on the top, at this distance from the right side
     PressPlace place;
     place.position = {kWide - x, 0, 0};
     return place;
@@ -230,7 +230,7 @@ TEST(FitTissue, AnEdgeIsNearWhereAnotherSideIsWithinThePress) {
   EXPECT_TRUE(is_near_an_edge(built->mesh, at(0.02f), 0.01)) << "the bottom";
 }
 
-// Scans of organs have them: two sheets, a wall's thickness apart.
+// Organ scans have such walls: two sheets, a wall's thickness apart.
 TEST(FitTissue, AWallThatIsFilledIsNotPressedOnItsInnerSheet) {
   Level level = block_level(0.4);
   Primitive inner = block();

@@ -1,5 +1,4 @@
-// `pliant plot` and the run of a sweep nearest to a measurement: figures against closed forms, and reports on differing
-// runs.
+// `pliant plot` and a sweep's nearest run: figures against closed forms, and notes about runs that differ.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -69,7 +68,7 @@ TEST(PlotRuns, TicksEndWhateverTheRange) {
   }
   EXPECT_EQ(tick_values(-1, 1, 0.5), (std::vector<double>{-1, -0.5, 0, 0.5, 1}));
   EXPECT_EQ(tick_values(0, 0.3, 0.1).size(), 4u);
-  for (const double least : {5e-324, 1e-300, 1.0, 1e300}) {  // by powers of ten
+  for (const double least : {5e-324, 1e-300, 1.0, 1e300}) {  // logarithmic
     const PlotScale scale{least, least * 1e4, true, {}};
     EXPECT_LE(scale.ticks().size(), 20u) << least;
   }
@@ -96,7 +95,7 @@ TEST(PlotRuns, TheSpectrumHasTheToneAndItsPower) {
 
 TEST(PlotRuns, TheSpectrumHasTheLastRowsToo) {
   ForceSeries s;
-  for (int i = 0; i < 6000; ++i) {  // one whole window of 4096 and a part of one
+  for (int i = 0; i < 6000; ++i) {  // one whole window of 4096 and part of another
     s.time.push_back(i * 1e-3);
     s.depth.push_back(0.001);
     s.normal.push_back(i < 4500 ? 1.0 : 1.0 + 0.2 * std::sin(2 * M_PI * 125 * s.time.back()));
@@ -177,7 +176,7 @@ TEST_F(PlotCommandTest, ARunOfAToolIsNotFittedAndItsOffsetIsNoDepth) {
   EXPECT_THAT(said.err, HasSubstr("is a tool"));
 }
 
-// A press measured with other rows and another time in the air is nearest to the same run.
+// A press with other rows and another time out of contact is nearest to the same run.
 TEST_F(PlotCommandTest, RunsAreComparedInContactAndByTime) {
   PressRecord even, sparse;
   const auto add = [](PressRecord& to, double t) {
@@ -188,7 +187,7 @@ TEST_F(PlotCommandTest, RunsAreComparedInContactAndByTime) {
     to.contact.push_back(d > 0);
   };
   for (int i = 1; i < 1000; ++i) add(even, i * 1e-3);
-  for (double t = -0.5; t<1.7; t += t> 0.2 && t < 0.4 ? 5e-4 : 4e-3) add(sparse, t);  // denser where it is weak
+  for (double t = -0.5; t<1.7; t += t> 0.2 && t < 0.4 ? 5e-4 : 4e-3) add(sparse, t);  // denser where the force is small
   const auto a = figures_of(even), b = figures_of(sparse);
   EXPECT_NEAR(a.at("rms_contact_N"), 1.0 / std::sqrt(2.0), 1e-3);
   EXPECT_NEAR(b.at("rms_contact_N"), 1.0 / std::sqrt(2.0), 5e-3);
@@ -208,7 +207,7 @@ TEST_F(PlotCommandTest, RunsAreComparedInContactAndByTime) {
   const double distance = Json::parse(read_text(folder / "r" / "fit.json"))["distance"].get<double>();
   EXPECT_LT(distance, 1e-3) << "the same press, with air behind it";
   EXPECT_THAT(said.err, ::testing::Not(HasSubstr("in contact for")));
-  // Half of the press: a different contact time, which is reported.
+  // Half of the press: another time in contact, which a note mentions.
   std::istringstream whole(read_text(folder / "truth" / "forces.csv"));
   std::string half, line;
   std::vector<std::string> cells;
@@ -237,7 +236,7 @@ TEST_F(PlotCommandTest, TheNearestRunOfASweepIsFoundAndTheSettingBetweenRuns) {
   const Said said = pliant({"fit", "--sweep", "s", "--target", "truth/forces.csv", "--report", "r"});
   ASSERT_EQ(said.status, 0) << said.err;
   const Json report = Json::parse(read_text(folder / "r" / "fit.json"));
-  EXPECT_NEAR(report["distance"].get<double>(), 30.0 / 330, 0.005);  // the nearest is 300 N/m: all forces grow with it
+  EXPECT_NEAR(report["distance"].get<double>(), 30.0 / 330, 0.005);  // nearest: 300 N/m; forces are proportional
   ASSERT_EQ(report["between"].size(), 1u);
   EXPECT_NEAR(report["between"][0]["value"].get<double>(), 330, 1);
 }

@@ -33,7 +33,7 @@ constexpr Ran kRuns[] = {
 #undef STUDY
 };
 
-// Studies whose table is not one of cost against error.
+// Tables that are not cost against error.
 const std::map<std::string, std::vector<std::string>> kColumns{
     {"walls", {"model", "delay_s", "stiffness_N_m", "damping_Ns_m", "verdict", "linear_stable", "passive"}},
     {"scale", {"panel", "curve", "size", "also", "also_size", "cost", "unit", "power", "power_within_95", "straight"}},
@@ -126,7 +126,7 @@ TEST_P(Studies, WritesATableAPictureAndTwoSentences) {
     for (const std::string& column : known->second) EXPECT_TRUE(columns.contains(column)) << column;
     return;
   }
-  // A table of cost against error: the JSON has the CSV's rows and columns, its numbers are numbers.
+  // In a table of cost against error, the JSON has the CSV's rows and columns, and its numbers are numbers.
   ASSERT_EQ(json.at("rows").size() + 1, cells.size());
   for (const Json& row : json.at("rows")) {
     std::set<std::string> keys{"on_front"};
@@ -141,7 +141,7 @@ TEST_P(Studies, WritesATableAPictureAndTwoSentences) {
     EXPECT_TRUE(std::any_of(json.at("rows").begin(), json.at("rows").end(), [&](const Json& row) {
       return row.at("group") == point.at("group") && row.at("label") == point.at("label");
     })) << point;
-  // Costs and errors are positive, as logarithmic axes need.
+  // Costs and errors can be drawn on logarithmic axes.
   const auto at = [&](const std::string& column) {
     return static_cast<std::size_t>(std::find(cells[0].begin(), cells[0].end(), column) - cells[0].begin());
   };

@@ -42,7 +42,7 @@ TEST(StudyCollision, NothingIsMissedOnASphereWhateverTheSearch) {
   }
 }
 
-// Two sheets face each other 10 mm apart; the path goes from one to the other: a walk stays on the first.
+// Two sheets face each other 10 mm apart, and the path goes from one to the other: a walk stays on the first.
 TEST(StudyCollision, AWalkMissesTheOtherWallOfAGapAndATreeDoesNot) {
   Primitive p = scenes::sheet(20, 0.1);
   const auto count = static_cast<std::uint32_t>(p.position.size());

@@ -47,7 +47,7 @@ TEST(StudyFidelity, AFittedLawIsFoundAgainWhereTheTruthIsOne) {
   DeformableParameters law;
   law.spring = SpringLaw::kExponential;
   Indentation truth;
-  const double alpha = 0.1 / depths.back();  // on the fit's list
+  const double alpha = 0.1 / depths.back();  // a value in the fit's list
   for (const double d : depths) truth.force.push_back(90 * std::expm1(alpha * d) / alpha);
   const DeformableParameters found = fitted_law(law, depths, truth.force);
   EXPECT_NEAR(found.stiffness, 90, 1e-6);

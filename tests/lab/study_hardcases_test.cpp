@@ -52,7 +52,7 @@ TEST_P(HardCases, Holds) {
 INSTANTIATE_TEST_SUITE_P(Table, HardCases, ::testing::ValuesIn(untimed()),
                          [](const auto& each) { return std::string(each.param.name); });
 
-// The bold names of an item of docs/methods.md section 3, without the item's own.
+// The bold names in an item of docs/methods.md section 3, without the item's own name.
 std::set<std::string> entries_of(int item) {
   std::ifstream file(std::string(PLIANT_SOURCE_DIR) + "/docs/methods.md");
   std::set<std::string> entries;
@@ -84,7 +84,7 @@ TEST(HardTable, HasEveryEntryOfBothListsByNameAndNoOther) {
   EXPECT_THAT(entries, ::testing::ContainerEq(wanted));
 }
 
-// A figure that is NaN, or a failed condition, must never look like a small value.
+// A non-finite figure, or a failed condition, must never look like a small figure.
 TEST(HardFigure, IsTheWorstAndFailuresAreWorse) {
   HardFigure figure;
   figure.add(0.5, "a");

@@ -1,4 +1,4 @@
-// The study `integrators` against closed forms: its truth, its schemes' orders and their stability limits.
+// The study `integrators` against closed forms: its reference, the order of its schemes and their stability limits.
 #include "lab/study/study_integrators.h"
 
 #include <gtest/gtest.h>
@@ -42,9 +42,9 @@ TEST(StudyIntegrators, EachSchemeGainsItsOrderWhenTheStepIsHalved) {
          {Order{Integrator::kExplicit, 1}, Order{Integrator::kSemiImplicit, 1}, Order{Integrator::kImplicit, 1},
           Order{Integrator::kMidpoint, 2}, Order{Integrator::kDiscreteGradient, 2},
           Order{Integrator::kRungeKutta, 4}}) {
-      if (law == SpringLaw::kExponential && order == 4) continue;  // its kink at rest costs smoothness
+      if (law == SpringLaw::kExponential && order == 4) continue;  // its kink at rest reduces the smoothness
       const VertexProblem p = vertex_problem(law, 1.0, 0.3);
-      const std::vector<double> truth = true_heights(p, kDent, 5e-4, 40);  // before the first crossing of rest
+      const std::vector<double> truth = true_heights(p, kDent, 5e-4, 40);  // before the first zero crossing
       const double coarse = integration_error(integrator, p, 1e-3, 5e-4, truth),
                    fine = integration_error(integrator, p, 5e-4, 5e-4, truth);
       EXPECT_NEAR(std::log2(coarse / fine), order, 0.15) << name_of(law) << ' ' << name_of(integrator);
@@ -82,7 +82,7 @@ TEST(StudyIntegrators, TheEnginesStepIsTheExactOneOfTheLinearLawsToSinglePrecisi
   }
 }
 
-// RK4 is not judged by RK4 in the same steps.
+// RK4 is not compared with RK4 at the same step.
 TEST(StudyIntegrators, NoSchemeIsItsOwnTruth) {
   for (const SpringLaw law : {SpringLaw::kCubic, SpringLaw::kExponential})
     for (const double k : {1.0, 1e3}) {
@@ -93,8 +93,8 @@ TEST(StudyIntegrators, NoSchemeIsItsOwnTruth) {
     }
 }
 
-// Explicit Euler's swing grows by sqrt(1 + (omega T)^2) a step: too little in 0.1 s to be seen, 2.7 times in 2,000
-// steps.
+// Explicit Euler's oscillation grows by sqrt(1 + (omega T)^2) per step: too little in 0.1 s to be visible, 2.7 times in
+// 2,000 steps.
 TEST(StudyIntegrators, ASwingThatGrowsSlowlyIsUnstableInTheGridToo) {
   for (const IntegratorCase& c : integrate_grid({1.0}, {0.0}, {1e-3})) {
     if (c.law != SpringLaw::kLinear) continue;
@@ -102,7 +102,7 @@ TEST(StudyIntegrators, ASwingThatGrowsSlowlyIsUnstableInTheGridToo) {
   }
 }
 
-// For any step size, a swing to the soft side of the law is not mistaken for growth.
+// For any step length, the oscillation to the soft side of the law does not count as growth.
 TEST(StudyIntegrators, ASwingIsWatchedForWholePeriods) {
   for (const SpringLaw law : kLaws)
     for (const Integrator integrator : {Integrator::kImplicit, Integrator::kDiscreteGradient, Integrator::kExact})

@@ -1,4 +1,4 @@
-// The study `scale`: its fit against known powers, and the content of its scenes.
+// The study `scale`: its fit against known powers, and the contents of its scenes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ TEST(StudyScale, AnExactPowerIsFittedWithoutUncertainty) {
   EXPECT_NEAR(law.within, 0.0, 1e-7);
 }
 
-// y = x with errors of -a, 0, +2a, 0, -a in the logarithm, even steps of 1: orthogonal to constant and slope.
+// y = x with errors of -a, 0, +2a, 0, -a in the logarithm, at even steps of 1: orthogonal to constant and slope.
 TEST(StudyScale, TheIntervalIsStudentsOfTheResiduals) {
   const double a = 0.1, shape[] = {-a, 0, 2 * a, 0, -a};
   std::vector<double> size, cost;
@@ -64,7 +64,7 @@ TEST(StudyScale, TheParabolaAndItsIntervalAreThoseOfTheClosedForm) {
   const PowerLaw law = fit_power(size, cost);
   EXPECT_NEAR(law.curvature, 2 * c, 1e-12);
   EXPECT_NEAR(law.power_at_end, 1 + 2 * c * 2, 1e-12);
-  // The second power's variance is the residuals' over the sum of (x^2 - 2)^2, 14.
+  // The variance of the second coefficient is that of the residuals over the sum of (x^2 - 2)^2, 14.
   EXPECT_NEAR(law.curvature_within, 2 * 4.303 * std::sqrt(10 * a * a / 2 / 14), 1e-12);
   EXPECT_FALSE(law.straight());
 }

@@ -18,7 +18,8 @@ namespace {
 constexpr double kContact = 0.004;  // [m]
 
 TEST(StudyShapes, TheTrueProfilesAreContinuousAtTheContactsEdgeAndFallAsAPointLoadFarAway) {
-  // Far away both are the point load's F / (pi E* r): a flat punch's 2 a d / (pi r), a sphere's 4/3 a d / (pi r).
+  // In the far field both are the point load's F / (pi E* r): a flat punch's 2 a d / (pi r), a sphere's 4/3 a d / (pi
+  // r).
   const PressTruth punch = punch_truth(kContact), ball = hertz_truth(kContact);
   EXPECT_NEAR(punch.share(kContact), 1.0, 1e-12);
   EXPECT_NEAR(ball.share(kContact * (1 - 1e-9)), ball.share(kContact * (1 + 1e-9)), 1e-6);
@@ -34,10 +35,10 @@ TEST(StudyShapes, TheEnginesPunchAndHertzAreTheTruthInsideHalfTheirReach) {
 }
 
 TEST(StudyShapes, NoShapeThatIsNotAPunchIsNearOne) {
-  // methods.md 1.3 has 34 % for Wendland's at its best.
+  // methods.md 1.3 states 34 % for the best Wendland shape.
   const PressTruth punch = punch_truth(kContact);
   const double reach = best_reach(Shape::kWendland, punch);
-  // Of several exact reaches the smallest: half of it lies beyond the compared range.
+  // Of all exact reaches the smallest: half of it lies outside the compared region.
   EXPECT_NEAR(best_reach(Shape::kPunch, punch), 10 * kContact, 0.2 * kContact);
   EXPECT_NEAR(shape_error(engine_share(Shape::kWendland, kContact, reach), punch).profile, 0.336, 0.005);
   EXPECT_GT(shape_error(engine_share(Shape::kWendland, kContact, 1.3 * reach), punch).profile, 0.336);
@@ -55,7 +56,7 @@ TEST(StudyShapes, TheForceOnABlockIsLinearInTheDepthAndNearsTheHalfSpacesAsItGet
   for (press.cells = 2; press.cells <= 4; ++press.cells) deep.push_back(press_block(press, 1e-4)->force);
   const double half_space = 2 * 10e3 / (1 - 0.09) * kContact * 1e-4, limit = grid_limit({2, 3, 4}, deep).limit;
   EXPECT_GT(thin->force, 1.3 * half_space);
-  EXPECT_GT(limit, half_space);  // bonded and finite: both make it stiffer
+  EXPECT_GT(limit, half_space);  // bonding and finite size both increase the stiffness
   EXPECT_LT(limit, 1.2 * half_space);
 }
 
@@ -73,7 +74,7 @@ TEST(StudyShapes, AGridsLimitIsFoundWhereValuesFallWithAPowerOfTheCells) {
   EXPECT_EQ(none.limit, 1.5);
 }
 
-// Hayes et al. 1972 for a frictionless punch on a bonded layer, times the effect of a bonded punch on a half-space.
+// Hayes et al. 1972 for a frictionless punch on a bonded layer, times the bonding factor of the punch on a half-space.
 TEST(StudyShapes, TheLimitOfBlocksIsTheClosedFormOfABondedLayer) {
   for (const auto& [thickness, poisson] : {std::pair{10.0, 0.3}, {2.0, 0.45}}) {
     std::vector<double> force;
@@ -87,7 +88,7 @@ TEST(StudyShapes, TheLimitOfBlocksIsTheClosedFormOfABondedLayer) {
   }
 }
 
-// A disc between its nodes' arcs: the same area from above and below.
+// A disc except for the arcs between its nodes: the area is bounded from above and below.
 TEST(StudyShapes, ThePunchIsADisc) {
   for (const int n : {2, 4}) {
     const auto block = press_block({10e3, 0.3, kContact, 2 * kContact, 8 * kContact, n}, 1e-4);

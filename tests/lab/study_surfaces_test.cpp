@@ -33,8 +33,7 @@ TEST(StudySurfaces, AMeshFacesTheWayThatItsSurfaceDoes) {
   }
 }
 
-// A facet of a circle of radius R, seen from the depth d behind it, ends at e / (2 (R - d)) from its middle's
-// direction.
+// A facet of a circle of radius R, seen from the depth d behind it, ends at the angle e / (2 (R - d)) from its centre.
 TEST(StudySurfaces, FacetsTurnTheForceByHalfAnEdgeOverTheRadius) {
   const SmoothSurface sphere = smooth_sphere();
   const Mesh mesh = sphere.mesh(5000);
@@ -44,7 +43,7 @@ TEST(StudySurfaces, FacetsTurnTheForceByHalfAnEdgeOverTheRadius) {
   EXPECT_LT(errors.turned, 2.0 * want);
 }
 
-// A conservative force gives no more energy than the summation error; a non-conservative one gives more.
+// The work of a conservative surface is below the resolution of the sampled sum; that of another is above it.
 TEST(StudySurfaces, FacetsAndPatchesAreConservativeAndInterpolatedNormalsAreNot) {
   const SmoothSurface torus = smooth_torus();
   const Mesh mesh = torus.mesh(5000);

@@ -24,7 +24,7 @@ TEST(StudyTimeStep, AFallingBlockIsWhereTheClosedFormOfEachSchemeHasIt) {
     fall.seconds = kEnd;
     const StepTrace trace = trace_of(fall, scheme, kStep, kEnd);
     ASSERT_EQ(trace.size(), 1u);
-    // Implicit Euler takes the velocity at each step's end: g T t / 2 too far.
+    // Implicit Euler uses the velocity at the end of each step: the position is g T t / 2 too far.
     const double late = scheme == StepScheme::kEuler ? 0.5 * kStep * kEnd : 0.0;
     const double way = fall.velocity.y * kEnd + fall.gravity.y * (0.5 * kEnd * kEnd + late);
     for (std::size_t i = 0; i < trace[0].size(); ++i)
@@ -55,7 +55,7 @@ TEST(StudyTimeStep, TheGroundStopsABlockWhoseEnergyIsThenInTheSpringsAndTheTissu
     last = at[0].y;
     for (const dvec3 p : at) lowest = std::min(lowest, p.y);
   }
-  // The block's kinetic energy and weight against four springs alone bound the dent.
+  // The block's kinetic energy and weight, acting on four springs alone, bound the dent.
   double mass = 1000 * 0.04 * 0.04 * 0.04;
   const double deepest = 0.5 * std::sqrt(mass / (4 * impact.stiffness)) + 9.81 * mass / (2 * impact.stiffness);
   EXPECT_LT(lowest, -0.01);
@@ -86,7 +86,7 @@ TEST(StudyTimeStep, ALevelsBallPressesAndItsGroundStops) {
   double deepest = 0.0;
   for (std::size_t i = 0; i < press.mesh.nodes.size(); ++i)
     deepest = std::max(deepest, press.mesh.nodes[i].y - pressed.back()[i].y);
-  EXPECT_NEAR(deepest, 0.008, 0.002);  // the ball's largest depth
+  EXPECT_NEAR(deepest, 0.008, 0.002);  // the depth reached by the ball
   TissueScene impact = scenes[3];
   impact.seconds = 0.1;
   const StepTrace fallen = engine_trace(impact, 1.0 / 480, 1.0 / 480);
@@ -94,7 +94,7 @@ TEST(StudyTimeStep, ALevelsBallPressesAndItsGroundStops) {
   for (const std::vector<dvec3>& at : fallen)
     for (const dvec3 x : at) lowest = std::min(lowest, x.y);
   EXPECT_NEAR(lowest, -0.01, 1e-3);  // the ground
-  // Thrown: after the first step it has the scene's speed plus that of gravity.
+  // A thrown block: after the first step its velocity is the scene's initial one plus gravity's.
   const double T = 1.0 / 480, way = impact.velocity.y * T + impact.gravity.y * T * T;
   EXPECT_NEAR(fallen[0][0].y - impact.mesh.nodes[0].y, way, 1e-9);
 }

@@ -1,4 +1,4 @@
-// A sweep over a small plate, run by the command, and its output.
+// Runs a sweep over a small plate by the command and reads its output.
 #pragma once
 
 #include <set>
@@ -12,8 +12,8 @@
 
 namespace pliant::testing {
 
-// Prefix that limits a command's memory [kB] and CPU time [s]. A sanitizer's shadow memory exceeds any limit, so there
-// only time is limited.
+// Shell prefix that limits a command's memory [kB] and CPU time [s]. A sanitizer's shadow memory exceeds any limit, so
+// only time is limited there.
 inline std::string limited(int memory, int time) {
 #ifdef PLIANT_SANITIZED
   memory = 0;
@@ -31,7 +31,7 @@ class Sweep : public CommandTest {
     write_text(folder / "press.csv", "time_s,x,y,z\n0,0,0.002,0\n0.02,0,-0.004,0\n0.05,0.004,-0.004,0\n");
   }
 
-  // A plan on the plate, 50 ticks a run, with this for its axes (and more, if need be).
+  // A plan on the plate with 50 ticks per run and these axes (and other members, if given).
   void write_plan(const std::string& rest, const std::string& name = "plan.json") const {
     write_text(
         folder / name,
@@ -67,7 +67,7 @@ class Sweep : public CommandTest {
   static inline const std::string kNoRank =
       "env -u SLURM_ARRAY_TASK_ID -u SLURM_STEP_ID -u OMPI_COMM_WORLD_RANK -u PMI_RANK -u PMIX_RANK ";
 
-  // Every whole line of every shard.
+  // Every complete line of every shard.
   std::vector<Json> lines(const std::string& out = "out") const {
     std::vector<Json> all;
     for (const auto& entry : fs::directory_iterator(folder / out)) {
@@ -79,7 +79,7 @@ class Sweep : public CommandTest {
     return all;
   }
 
-  // Files that must have the same bytes for every distribution of the runs.
+  // The files that must be identical however the runs were distributed.
   std::map<std::string, std::string> merged(const std::vector<std::string>& folders, const std::string& out) const {
     std::vector<std::string> words{"sweep", "merge"};
     words.insert(words.end(), folders.begin(), folders.end());

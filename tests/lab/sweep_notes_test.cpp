@@ -11,7 +11,7 @@
 namespace pliant::testing {
 namespace {
 
-// The first of two plates is soft; the second wants more force than the device may have.
+// The first of two plates is soft; the second requires more force than the device's limit.
 constexpr const char* kSoftAndStiff = R"("axes": {"*.deformable.stiffness": [100, 100000]})";
 
 TEST_F(Sweep, ForcesThatWereClippedAreSaidByTheSweepAndByMerge) {
@@ -39,7 +39,7 @@ TEST_F(Sweep, ForcesThatWereClippedAreSaidByTheSweepAndByMerge) {
 }
 
 TEST_F(Sweep, NotesThatRunsShareAreSaidOnceWithHowManySaidThem) {
-  // The path is cut in every run.
+  // The path is cut short in every run.
   write_text(folder / "press.csv", "time_s,x,y,z\n0,0,0.002,0\n0.02,0,-0.004,0\n9,0.004,-0.004,0\n");
   write_plan(R"("axes": {"*.deformable.stiffness": [100, 200, 300]})");
   const Said said = sweep();
@@ -52,7 +52,7 @@ TEST_F(Sweep, NotesThatRunsShareAreSaidOnceWithHowManySaidThem) {
 }
 
 TEST_F(Sweep, AxesAlongWhichNothingChangesAreNamed) {
-  // `cubic` is read by another spring than the plate has.
+  // `cubic` belongs to another spring law than the plate's.
   write_plan(R"("axes": {"*.deformable.stiffness": [100, 200], "*.deformable.cubic": [0, 1000]})");
   const Said swept = sweep();
   ASSERT_EQ(swept.status, 0) << swept.err;
@@ -95,7 +95,7 @@ TEST_F(Sweep, AFullDiskIsNoFailureOfARun) {
   const Said again = sweep();
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_NE(again.out.find("2 done now, 0 before"), std::string::npos) << again.out;
-  // Treated as a failure by an older sweep.
+  // A line that an older sweep recorded as a failure.
   std::string text;
   for (const Json& line : lines())
     text += Json{{"id", line["id"]},

@@ -1,4 +1,4 @@
-// pliant sweep: the runs of a plan, rejected plans, and the contents of an id.
+// pliant sweep: expansion of a plan, rejected plans, and the inputs of a run's id.
 #include <cmath>
 #include <set>
 
@@ -95,14 +95,14 @@ TEST_F(Sweep, AnIdChangesWithAValueAnOptionTheLevelAndTheFilesItNames) {
   expect_new("script of a probe");
   write_text(folder / "plate.obj", plate_obj(7));
   expect_new("mesh");
-  // A script that the level itself names.
+  // A script named by the level itself.
   for (const char* name : {"minimal.gltf", "minimal.bin", "minimal.csv"})
     fs::copy(fs::path(PLIANT_SOURCE_DIR) / "content" / "levels" / name, folder / name);
   write_text(folder / "plan.json", R"({"level": "minimal.gltf", "axes": {"sheet.deformable.stiffness": [100]}})");
   expect_new("level");
   write_text(folder / "minimal.csv", "time_s,x,y,z\n0,0,0.01,0\n1,0,-0.01,0\n");
   expect_new("script of the level");
-  // Its error budget, and the keys that this leaves open because the level does not state them.
+  // Its error budget, and the keys open to it. A key that the level sets is not open, even at its default value.
   std::string level = read_text(folder / "minimal.gltf");
   const std::string key = "\"PLIANT_deformable\": {";
   const auto add_key = [&](const std::string& text) {
@@ -114,7 +114,7 @@ TEST_F(Sweep, AnIdChangesWithAValueAnOptionTheLevelAndTheFilesItNames) {
   expect_new("error budget of the level");
   add_key("\"distance\": \"chord\", ");
   expect_new("a key that is said at its default");
-  // A file that only the plan's settings name.
+  // A file named only by the plan's settings.
   write_text(folder / "other.csv", "time_s,x,y,z\n0,0,0.01,0\n");
   const std::string set = R"({"level": "minimal.gltf", "options": {"set": ["tip.haptic_device.file=other.csv"]},
                               "axes": {"sheet.deformable.stiffness": [100]}})";
@@ -141,7 +141,7 @@ TEST_F(Sweep, AnIdGoesByWhatIsInAFileAndNotByWhereItLies) {
 }
 
 TEST_F(Sweep, ASimulatedHandOfAPlanIsHeldByAHandAndItsScriptIsFoundFromThePlan) {
-  // From another folder, and with separator characters of a hand's options in the folder's name.
+  // From another folder, whose name contains the separators of a hand's words.
   const fs::path there = folder / "k=300, soft|stiff";
   fs::create_directories(there);
   for (const char* name : {"plate.obj", "press.csv"}) fs::rename(folder / name, there / name);
@@ -158,7 +158,7 @@ TEST_F(Sweep, ASimulatedHandOfAPlanIsHeldByAHandAndItsScriptIsFoundFromThePlan) 
   ASSERT_EQ(alone.status, 0) << alone.err;
   EXPECT_EQ(report("alone")["probes"][0]["source"].get<std::string>().substr(0, 5), "hand:");
   EXPECT_EQ(lines()[0]["figures"]["hash"], report("alone")["hash"]);
-  // Its script and the hand count.
+  // Its script and its hand options count.
   const auto id_of = [&] { return expanded(fs::relative(there / "plan.json", folder)).runs[0].id; };
   std::set<std::string> seen{id_of()};
   write_text(there / "press.csv", "time_s,x,y,z\n0,0,0.002,0\n0.02,0,-0.005,0\n");
@@ -206,7 +206,7 @@ TEST_F(Sweep, APlanThatMakesNoSenseIsRefusedWithItsPlace) {
   bad(R"("axes": {"--out": ["a", "b"]})", "the option --out is the sweep's own");
   bad(R"("axes": {"--set": ["a"]})", "is no axis");
   bad(R"("axes": {"--threads": [1, 2]})", "/axes/--threads: is no axis: it changes no result");
-  // A value inside the name would bypass the checks.
+  // A value in the name would bypass the list of refused options.
   for (const char* name : {"record=/tmp/x.pose", "out=here", "window=", "", "frames=3"}) {
     bad(std::string(R"("options": {")") + name + R"(": true}, "axes": {"*.deformable.stiffness": [1]})",
         std::string("/options/") + (*name == 'r' ? "record=~1tmp~1x.pose" : name) + ": '--" + name + "' is no name");
@@ -239,7 +239,7 @@ TEST_F(Sweep, APlanThatMakesNoSenseIsRefusedWithItsPlace) {
   expect_refused({"sweep", "merge", "nowhere", "--out", "m"}, 1, "sweep.json");
 }
 
-// Plans are counted before they are expanded.
+// Plans are counted before anything is created from them.
 TEST_F(Sweep, AHostilePlanIsRefusedAtOnceAndInLittleMemory) {
   const auto bad = [&](const std::string& rest, const std::string& word) {
     write_text(folder / "plan.json", R"({"level": "plate.obj", )" + rest + "}");
@@ -284,13 +284,13 @@ TEST_F(Sweep, DryRunAndListSayWhatWouldBeDoneAndWriteNothing) {
   EXPECT_EQ(count_files(), before);
   for (const std::string& id : ids()) EXPECT_NE(list.out.find(id + "  to do"), std::string::npos) << id;
   EXPECT_EQ(std::count(dry.out.begin(), dry.out.end(), '\n'), 4) << dry.out;
-  // Its output can be run by a shell.
+  // The printed command can be run by a shell.
   const std::string first = dry.out.substr(0, dry.out.find('\n'));
   ASSERT_TRUE(first.starts_with("pliant run ")) << first;
   const std::string line =
       "cd " + quoted(folder.string()) + " && " + quoted(PLIANT_BINARY) + first.substr(6) + " >.o 2>&1";
   EXPECT_EQ(std::system(line.c_str()), 0) << read_text(folder / ".o");
-  // Also from elsewhere, where the plan's files are not.
+  // Also from a folder without the plan's files.
   fs::create_directories(folder / "far");
   const Said far = pliant({"sweep", "../plan.json", "--dry-run", "--shard", "1/12"}, kNoRank + "-C far");
   const std::string one = far.out.substr(0, far.out.find('\n')), begin = "cd " + folder.string() + " && pliant run ";

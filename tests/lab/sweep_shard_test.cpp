@@ -1,4 +1,4 @@
-// pliant sweep among other processes: shards, locks, parents and kills.
+// pliant sweep with other processes: shards, locks, parents and kills.
 #include <set>
 
 #include "lab/sweep/lines.h"
@@ -22,7 +22,7 @@ TEST_F(Sweep, ASweepThatIsKilledTakesItsRunsWithIt) {
              "cd " + quoted(folder.string()) + "\n" + kNoRank + quoted(PLIANT_BINARY) +
                  " sweep plan.json --out out --jobs 2 >/dev/null 2>&1 &\npid=$!\n"
                  "runs() { grep -l -- \"$PWD/out/[.]work\" /proc/[0-9]*/cmdline 2>/dev/null | wc -l; }\n"
-                 // The sweep's own children: a run's importer has the command line of its run.
+                 // The sweep's direct children only: a run's importer has the command line of its run.
                  "own() { grep -l \"^PPid:.$pid$\" /proc/[0-9]*/status 2>/dev/null | sed s/status$/cmdline/ |\n"
                  "  xargs -r grep -l -- \"$PWD/out/[.]work\" 2>/dev/null | wc -l; }\n"
                  "for i in $(seq 500); do [ $(own) = 2 ] && break; sleep 0.01; done\n"
@@ -86,7 +86,8 @@ TEST(SweepShard, EveryRunHasOneShardWhateverTheEnvironment) {
   step["OMPI_COMM_WORLD_RANK"] = "0";  // mpirun within it
   step["OMPI_COMM_WORLD_SIZE"] = "2";
   EXPECT_EQ(choose(step)->count, 2u);
-  // The batch script itself is task 0 of eight without the others; a shell within has its own kind of step.
+  // The batch script itself has task 0 of eight but must do all runs; a shell within has a step id of the reserved
+  // range.
   EXPECT_EQ(choose({{"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "8"}})->count, 1u);
   for (const char* special : {"4294967290", "4294967291", "-5"})
     EXPECT_EQ(choose({{"SLURM_STEP_ID", special}, {"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "8"}})->count, 1u);
@@ -97,7 +98,7 @@ TEST(SweepShard, EveryRunHasOneShardWhateverTheEnvironment) {
                     {"SLURM_NTASKS", "8"}})
                 ->count,
             3u);
-  // Tasks of an array that have ranks each.
+  // Array tasks with several ranks each.
   std::vector<int> owners(100, 0);
   std::set<std::string> files;
   for (int task = 1; task <= 3; ++task)
@@ -130,7 +131,7 @@ TEST_F(Sweep, TwoSweepsWithOneShardDoNotAddToOneFile) {
 TEST_F(Sweep, AFileSystemWithoutLocksIsRefusedAndNothingOfOthersIsRemoved) {
   write_plan(kTwelve);
   fs::create_directories(folder / "out" / ".work-1-of-1-4");
-  // A library before the system's, as a mount without locks answers.
+  // A preloaded library that answers like a mount without locks.
   write_text(folder / "no_locks.c", "#include <errno.h>\nint flock(int f, int o) { errno = ENOLCK; return -1; }\n");
   if (std::system(("cd " + quoted(folder.string()) + " && cc -shared -fPIC -o no_locks.so no_locks.c").c_str()) != 0)
     GTEST_SKIP() << "no C compiler";

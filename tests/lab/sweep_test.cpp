@@ -1,5 +1,5 @@
-// pliant sweep: every run is done exactly once, and merged results have the same bytes for every distribution of the
-// runs.
+// pliant sweep: every run is done exactly once in every case, and merged files are identical however the runs were
+// distributed.
 #include <cmath>
 
 #include "lab/sweep/lines.h"
@@ -39,7 +39,7 @@ TEST_F(Sweep, OneProcessAndFourShardsMergeToTheSameBytes) {
   ASSERT_EQ(sweep().status, 0);
   for (const char* shard : {"1/4", "2/4"})
     ASSERT_EQ(pliant({"sweep", "plan.json", "--out", "four", "--shard", shard}).status, 0);
-  for (const char* shard : {"4/4", "3/4"})  // in a folder of their own, as on another machine; two runs at a time
+  for (const char* shard : {"4/4", "3/4"})  // in a separate folder, as on another machine; two runs at a time
     ASSERT_EQ(pliant({"sweep", "plan.json", "--out", "other", "--shard", shard, "--jobs", "2"}).status, 0);
   EXPECT_EQ(lines("four").size(), 6u);
   EXPECT_EQ(lines("other").size(), 6u);
@@ -65,10 +65,10 @@ TEST_F(Sweep, OneProcessAndFourShardsMergeToTheSameBytes) {
     EXPECT_TRUE(row.starts_with(run.id + "," + text_of(run.values[0]) + "," + text_of(run.values[1]) + ",done,"))
         << row;
   }
-  // A stiffer plate gives a larger force: the table has the values in the right rows.
+  // A stiffer plate gives a larger force: the table has the measured values in the right rows.
   EXPECT_LT(report["figures"]["tip.max_force_N"]["min"].get<double>(),
             report["figures"]["tip.max_force_N"]["max"].get<double>() / 2);
-  // Merging again replaces nothing.
+  // A second merge replaces nothing.
   EXPECT_EQ(merged({"out"}, "m1").at("results.csv"), one.at("results.csv"));
   EXPECT_TRUE(fs::exists(folder / "m1-2" / "results.csv"));
   expect_no_work_left();
@@ -87,7 +87,7 @@ TEST_F(Sweep, ATornLastLineIsLeftBehindAndItsRunDoneAgain) {
     EXPECT_EQ(said.status, 0) << said.err;
     EXPECT_NE(said.err.find("middle of a line"), std::string::npos) << said.err;
     EXPECT_EQ(lines().size(), 12u) << cut;
-    // Without its newline alone a line is whole.
+    // A line that lacks only its newline is complete.
     EXPECT_NE(said.out.find(cut == text.size() - 1 ? "0 done now, 12 before" : "1 done now, 11 before"),
               std::string::npos)
         << said.out;
@@ -99,7 +99,7 @@ TEST_F(Sweep, ATornLastLineIsLeftBehindAndItsRunDoneAgain) {
 TEST_F(Sweep, KilledTwiceItGoesOnAndMergesToTheSameBytes) {
   write_plan(R"("axes": {"*.deformable.stiffness": {"from": 100, "to": 500, "steps": 20}})");
   ASSERT_EQ(pliant({"sweep", "plan.json", "--out", "whole"}).status, 0);
-  for (int kill = 1; kill <= 2; ++kill) {  // once it has added some lines
+  for (int kill = 1; kill <= 2; ++kill) {  // after it has appended some lines
     const std::string wanted = std::to_string(5 * kill);
     write_text(folder / "kill.sh", "cd " + quoted(folder.string()) + "\n" + kNoRank + quoted(PLIANT_BINARY) +
                                        " sweep plan.json --out out >/dev/null 2>&1 &\npid=$!\n"
@@ -137,7 +137,7 @@ TEST_F(Sweep, CtrlCEndsItWithASentenceAndTheSameCommandGoesOn) {
 }
 
 TEST_F(Sweep, AFailureIsALineWithItsSentenceAndIsDoneAgainOnlyWhenAsked) {
-  // Half of the runs have almost no memory; the plan does not predict this.
+  // Half of the runs have almost no memory allowance; the plan alone does not reveal it.
   write_plan(R"("axes": {"--limits": [1e-6, 1], "*.deformable.stiffness": [100, 200]})");
   const Said said = sweep();
   EXPECT_EQ(said.status, 0) << said.err;
@@ -162,14 +162,14 @@ TEST_F(Sweep, AFailureIsALineWithItsSentenceAndIsDoneAgainOnlyWhenAsked) {
   EXPECT_EQ(lines().size(), 6u);
 }
 
-// Of several failures of one run the latest counts, whatever its file and text.
+// Of several failures of one run the latest counts, in any file and with any message.
 TEST_F(Sweep, TheLatestFailureIsTheOneThatIsTold) {
   write_plan(R"("axes": {"--limits": [1e-6], "*.deformable.stiffness": [100]})");
   ASSERT_EQ(sweep().status, 0);
   Json line = lines().at(0);
   EXPECT_FALSE(line.contains("attempt"));
   const fs::path file = folder / "out" / "runs-1-of-1.jsonl";
-  line["error"] = "0: an old sentence";  // before all others as text
+  line["error"] = "0: an old sentence";  // first in text order
   write_text(file, line.dump() + "\n");
   ASSERT_EQ(sweep({"--retry-failed", "--shard", "1/2"}).status, 0);
   for (const Json& each : lines())
@@ -183,7 +183,7 @@ TEST_F(Sweep, TheLatestFailureIsTheOneThatIsTold) {
   fs::copy(folder / "out" / "sweep.json", folder / "other" / "sweep.json");
   for (const std::vector<std::string>& folders : {std::vector<std::string>{"out", "other"}, {"other", "out"}})
     EXPECT_EQ(merged(folders, "m" + folders[0]), merged_now);
-  // A completed run has precedence over any failure.
+  // A completed run takes precedence over any failure.
   Lines all;
   line["status"] = "done";
   line["figures"] = Json::object();
@@ -192,7 +192,7 @@ TEST_F(Sweep, TheLatestFailureIsTheOneThatIsTold) {
   EXPECT_TRUE(is_done(all.runs.at(line["id"].get<std::string>())));
 }
 
-// Different values may denote the same run: the value in a line does not matter.
+// Different values may denote the same run; the value in a line does not matter.
 TEST_F(Sweep, RunsThatAreOneMergeToTheSameBytesWhateverShardDidThem) {
   write_text(folder / "again.csv", read_text(folder / "press.csv"));
   write_text(folder / "plan.json", R"({"level": "plate.obj", "options": {"seconds": 0.05}, "axes": {"--probe":
@@ -243,7 +243,7 @@ TEST_F(Sweep, APlanThatGrowsKeepsWhatItHasDone) {
   const Json report = Json::parse(merged({"out"}, "m").at("report.json"));
   EXPECT_EQ(report["runs"], 2);
   EXPECT_EQ(report["done"], 2);
-  // A file of the user's with that name stays.
+  // A user's file of that name is kept.
   fs::create_directories(folder / "mine");
   write_text(folder / "mine" / "sweep.json", "{\"notes\": 1}");
   expect_refused({"sweep", "plan.json", "--out", "mine"}, 1, "was not written by a sweep");
@@ -281,7 +281,7 @@ TEST_F(Sweep, ARunWithOtherFiguresThanBeforeIsSaid) {
   EXPECT_EQ(report("m")["disagree"], Json::array({line["id"]}));
 }
 
-// Results that differ only by rounding count as constant, and are not plotted on a degenerate axis.
+// Figures that differ between runs by one rounding are constant, and get no plot, whose axis would never end.
 TEST_F(Sweep, FiguresThatDifferByRoundingAreConstant) {
   write_plan(R"("axes": {"*.deformable.stiffness": [100, 200, 300]})");
   ASSERT_EQ(sweep().status, 0);

@@ -1,4 +1,4 @@
-// The command's response to arguments: exit status, one line, no files written.
+// Responses of the command to its arguments: exit status, one line, no files.
 #include "tests/player/command.h"
 
 namespace pliant::testing {
@@ -36,7 +36,7 @@ TEST_F(Arguments, WrongOnesExitWithTwoAndOneLineThatSaysWhatToDo) {
   expect_refused({"run", "--frames", "3", "--fps", "10"}, 2, "--fps");
   expect_refused({"run", "--lockstep", "--realtime"}, 2, "--lockstep");
   expect_refused({"run", "--headless", "--window"}, 2, "--headless");
-  expect_refused({"run", "--window"}, 1, "DISPLAY");  // these tests have none
+  expect_refused({"run", "--window"}, 1, "DISPLAY");  // there is no display in these tests
   expect_refused({"run", "--window", "--lockstep"}, 2, "--lockstep");
   expect_refused({"run", "--window", "--replay", "x.pose"}, 2, "--replay");
   expect_refused({"run", "--input", "events.csv"}, 2, "--input");

@@ -1,4 +1,4 @@
-// The camera controlled by the mouse, against the geometry of perspective projection.
+// The user's camera against the geometry of perspective projection.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,13 +20,13 @@ Box unit_box() {
 
 const Viewpoint kHome{.eye = {1.0, 1.5, 3.0}, .target = {0.1, 0.2, -0.1}, .yfov = 0.7f};
 
-// The view after the motion has ended.
+// The view after the camera has come to rest.
 Viewpoint settled(CameraControl& camera) {
   camera.update(10.0);
   return camera.viewpoint();
 }
 
-// [pixel] where a point is seen, by the renderer's own matrices.
+// [pixel] Projection of a point by the renderer's matrices.
 dvec2 pixel_of(const Viewpoint& view, const dvec3& point) {
   const mat4 m = projection_of(view, unit_box(), static_cast<float>(kWidth) / kHeight) * view_of(view);
   const glm::dvec4 clip = glm::dmat4(m) * glm::dvec4(point, 1);

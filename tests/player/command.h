@@ -53,10 +53,10 @@ class CommandTest : public ::testing::Test {
     return text + "'";
   }
 
-  // In this test's folder. `before` goes in front of the command, for the shell.
+  // Runs in this test's folder. `before`: a shell prefix of the command.
   Said pliant(const std::vector<std::string>& arguments, const std::string& before = {},
               const std::string& program = PLIANT_BINARY) const {
-    // Without a display, so that no window opens on a user's desktop; `before` may set one.
+    // Without a display, so that no window opens on a desktop; `before` may set one.
     std::string line =
         "cd " + quoted(folder.string()) + " && env -u DISPLAY -u WAYLAND_DISPLAY " + before + " " + quoted(program);
     for (const std::string& argument : arguments) line += " " + quoted(argument);
@@ -69,7 +69,7 @@ class CommandTest : public ::testing::Test {
     return said;
   }
 
-  // Exit status, one line on stderr that begins and reads as promised, and not a file more than before.
+  // Expects this exit status, one line on stderr of the documented form, and no new file.
   void expect_refused(const std::vector<std::string>& arguments, int status, const std::string& word) const {
     std::string line;
     for (const std::string& argument : arguments) line += " " + argument;

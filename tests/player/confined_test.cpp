@@ -1,11 +1,11 @@
-// A file does not have the user's rights: a level can read no file outside its folder, and request no more force than
+// A level file has fewer rights than the user: it reads no file outside its folder, and cannot request more force than
 // the user allows.
 #include "tests/player/command.h"
 
 namespace pliant::testing {
 namespace {
 
-// A level in level/, and files beside that folder that it must not reach.
+// A level in level/, and beside that folder the files that it must not read.
 class Confined : public CommandTest {
  protected:
   void SetUp() override {

@@ -1,6 +1,6 @@
-// Devices in the window: emulated ones with the real drivers (emulated/emulated_pliant.cpp) move probes, are stopped by
-// the key, armed by the panel's button, unplugged and reconnected; the user is asked about devices that a level may not
-// open.
+// Devices in the window: emulated ones behind the real drivers (emulated/emulated_pliant.cpp) move probes, are stopped
+// by the key, armed by the panel's button, unplugged and found again. The window asks about devices that a level may
+// not open.
 #include <algorithm>
 #include <cmath>
 
@@ -78,7 +78,7 @@ TEST_F(DeviceWindowTest, CapAndPadMoveProbesAndTheStopKeyLatchesUntilThePanelArm
   EXPECT_NE(said.err.find("Novint Falcon"), std::string::npos) << "passed over, and said so: " << said.err;
   const Json all = report("out");
   for (const Json& probe : all["probes"]) {
-    if (probe["name"] == "mouse") continue;  // which the window adds
+    if (probe["name"] == "mouse") continue;  // added by the window
     EXPECT_EQ(probe["source"], probe["name"] == "cap" ? "device:spacemouse:emulated" : "device:dualsense:emulated");
     EXPECT_GT(probe["contact_ticks"], 200) << probe["name"];
   }
@@ -98,7 +98,7 @@ TEST_F(DeviceWindowTest, CapAndPadMoveProbesAndTheStopKeyLatchesUntilThePanelArm
   const auto felt = load_image(folder / "out" / "screenshot-001.png"),
              stopped = load_image(folder / "out" / "screenshot-002.png");
   ASSERT_TRUE(felt && stopped);
-  // The panel at the right: its bright text, and the bars that differ.
+  // The panel is at the right: its bright text, and the bars that change.
   std::size_t bright = 0, differ = 0;
   for (std::size_t y = 20; y < 600; ++y)
     for (std::size_t x = 450; x < 745; ++x) {

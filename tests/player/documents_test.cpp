@@ -1,4 +1,4 @@
-// Every command that a document shows is one that the command takes.
+// Every command shown in a document is accepted by the command line.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace pliant {
 namespace {
 namespace fs = std::filesystem;
 
-// The words of a line of a shell: blanks part them, quotes hold them together, # begins a comment.
+// The words of a shell line: separated by blanks, kept together by quotes, # begins a comment.
 std::vector<std::string> words_of_shell(const std::string& line) {
   std::vector<std::string> words;
   bool open = false;
@@ -43,7 +43,7 @@ struct ShownCommand {
   std::vector<std::string> words;
 };
 
-// Lines between ``` that call the command, by whatever path; `\` at an end joins the next line.
+// Lines between ``` that call the command, by any path; `\` at an end joins the next line.
 std::vector<ShownCommand> commands_of(const fs::path& document) {
   std::vector<ShownCommand> found;
   std::ifstream in(document);

@@ -1,5 +1,5 @@
-// However a run ends, results so far are reported, and no partial files are left: signals, closed streams, a full disk,
-// a picture that cannot be written.
+// However a run ends, its results are reported and no incomplete file is left: signals, closed streams, a full disk, a
+// picture that cannot be written.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -20,14 +20,14 @@ class Ends : public CommandTest {
   void SetUp() override {
     CommandTest::SetUp();
     write_text(folder / "plate.obj", plate_obj());
-    std::signal(SIGINT, SIG_DFL);  // these tests may have been started in the background of a script
+    std::signal(SIGINT, SIG_DFL);  // a script's background job may have started these tests
   }
 
   static std::string run_line(const std::string& more) {
     return "env -u DISPLAY -u WAYLAND_DISPLAY " + quoted(PLIANT_BINARY) + " run plate.obj --probe p=orbit " + more;
   }
 
-  // Runs shell lines in this test's folder; their output goes to .out and .err unless redirected.
+  // Runs shell lines in this test's folder; output goes to .out and .err unless redirected.
   Said shell(const std::string& lines) const {
     write_text(folder / ".sh", "cd " + quoted(folder.string()) + "\n" + lines + "\n");
     const int status = std::system(("bash " + quoted((folder / ".sh").string()) + " >" +
@@ -36,7 +36,7 @@ class Ends : public CommandTest {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(folder / ".out"),
             read_text(folder / ".err")};
   }
-  // Starts a run that would take ten minutes, sends `signals` as soon as it has started, and waits for it.
+  // Starts a run of ten minutes, sends `signals` as soon as it has begun, and waits for it.
   Said signalled(const std::string& signals, const std::string& more = "--frames 0") const {
     return shell(
         "(trap - INT; exec " + run_line("--realtime --seconds 600 --out out " + more) +  // shells ignore it
@@ -50,7 +50,7 @@ class Ends : public CommandTest {
       EXPECT_NE(entry.path().extension(), ".part") << entry.path();
     }
   }
-  // Everything that a run writes, and that it agrees.
+  // Expects all files of a run, and that they agree.
   void expect_results(const std::string& out, const std::string& ended) const {
     ASSERT_TRUE(fs::exists(folder / out / "report.json")) << out;
     const Json json = report(out);
@@ -117,7 +117,7 @@ TEST_F(Ends, TheThirdCtrlCEndsAtOnceAndLeavesNothingStagedAndTheSecondSaysSo) {
     interrupt.remove_if_forced(staged);
     for (int i = 0; i < presses; ++i) {
       std::raise(SIGINT);
-      std::raise(SIGINT);  // forwarded by a program: the same press
+      std::raise(SIGINT);  // forwarded by a program: counts as the same Ctrl-C
       std::this_thread::sleep_for(std::chrono::milliseconds(600));
       if (!interrupt.requested()) std::_Exit(98);
     }
@@ -145,7 +145,7 @@ TEST_F(Ends, ACtrlCThatIsMeantForTheForegroundLeavesARunInTheBackgroundAlone) {
 }
 
 TEST_F(Ends, TheNextRunRemovesWhatAKilledOneLeftAndNothingElse) {
-  fs::create_directories(folder / "out" / ".partial-1");  // belongs to another program
+  fs::create_directories(folder / "out" / ".partial-1");  // of another process
   write_text(folder / "out" / ".partial-1" / "notes.txt", "mine");
   write_text(folder / "out" / ".partial-2", "mine");
   write_text(folder / "out.rec.partial-1", "mine");
@@ -169,7 +169,7 @@ TEST_F(Ends, TheNextRunRemovesWhatAKilledOneLeftAndNothingElse) {
 TEST_F(Ends, ClosedStreamsDoNotLandInTheFiles) {
   for (const std::string closed : {">&-", "2>&-", "<&-", "<&- >&- 2>&-"}) {
     fs::remove_all(folder / "out");
-    // With stderr closed, long enough for progress messages.
+    // If stderr is closed, the run is long enough for progress to be shown.
     const std::string seconds = closed.ends_with("2>&-") ? "6" : "0.2";
     const Said said =
         shell(run_line("--realtime --seconds " + seconds + " --frames 0 --out out --record out.rec --force ") + closed);
@@ -202,7 +202,7 @@ TEST_F(Ends, ABrokenPipeIsSaidAndLosesNoFile) {
   }
 }
 
-// A file size limit acts like a full disk.
+// To the writer, a limit on the file size is like a full disk.
 TEST_F(Ends, AFullDiskEndsTheRunWhenItHappensAndKeepsWhatWasWritten) {
   const Said said = shell("ulimit -f 100\n" + run_line("--seconds 20000 --frames 0 --out out"));
   EXPECT_EQ(said.status, 1);
@@ -242,7 +242,7 @@ TEST_F(Ends, ARecordingThatDoesNotFitIsKeptAsFarAsItWent) {
   }
 }
 
-// The rows of a few ticks are within the limit, a picture is not.
+// The rows of a few ticks are within the limit, a picture exceeds it.
 TEST_F(Ends, APictureThatCannotBeWrittenEndsTheRunWithAReport) {
   for (const std::string clock : {"--lockstep", "--realtime"}) {
     fs::remove_all(folder / "out");
@@ -257,7 +257,7 @@ TEST_F(Ends, APictureThatCannotBeWrittenEndsTheRunWithAReport) {
   }
 }
 
-// A driver that is not there.
+// The driver is missing.
 TEST_F(Ends, AFieldOnTheGpuWithoutOneIsRefused) {
   const Said said = pliant({"run", "plate.obj", "--probe", "p=orbit", "--seconds", "0.1", "--field", "gpu"},
                            "__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere EGL_PLATFORM=bogus");

@@ -1,4 +1,4 @@
-// inspect, convert and validate on files small enough to know everything about.
+// inspect, convert and validate on files small enough to be known completely.
 #include "tests/player/command.h"
 
 namespace pliant::testing {
@@ -125,7 +125,7 @@ TEST_F(Files, ADeviceForTwoIsRefusedWhereItIsReadAndWhereItIsRun) {
   expect_refused({"run", "level.gltf"}, 1, "`left`");
 }
 
-// The pointer refers to the faulty node, whatever its name.
+// The pointer is that of the node that cannot be created, for any name.
 TEST_F(Files, ValidateNamesTheNodeThatCannotBeMade) {
   for (const std::string name : {"same", "x: node `same`", "same`"}) {
     write_text(folder / "level.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],)"

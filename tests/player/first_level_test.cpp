@@ -1,4 +1,5 @@
-// docs/first-level.md: its commands in order, on a mesh like the one described there; and errors of `pliant author`.
+// docs/first-level.md: its commands in sequence, on a mesh like the one that it describes; and arguments that `pliant
+// author` rejects.
 #include <cmath>
 #include <numbers>
 
@@ -70,7 +71,7 @@ TEST_F(FirstLevel, TheCommandsOfTheDocumentWorkInTheirOrder) {
   EXPECT_NE(said.find("object liver"), std::string::npos);
   EXPECT_NE(said.find("`liver` is soft"), std::string::npos);
   EXPECT_NE(said.find("level.glb: 0 errors, 0 warnings"), std::string::npos);
-  // The rod presses: a nonzero force for some time, and a picture of it.
+  // The rod presses: a noticeable force for some time, and a picture of it.
   const Json rod = report("out/first")["probes"][0];
   EXPECT_GT(rod["max_force_N"].get<double>(), 0.1) << rod;
   EXPECT_TRUE(fs::exists(folder / "out/first/frame-0002.png"));
@@ -107,7 +108,7 @@ TEST_F(FirstLevel, WhatCannotBeAuthoredIsRefusedAndNothingIsWritten) {
   write_text(folder / "a_rod.csv", "mine");
   expect_refused({"author", "organ.obj", "-o", "a.glb"}, 1, "a_rod.csv");
   EXPECT_EQ(read_text(folder / "a_rod.csv"), "mine");
-  // An open surface encloses nothing that could be filled.
+  // An open mesh has no interior that could be filled.
   write_text(folder / "open.obj", plate_obj(8));
   const Said open = pliant({"author", "open.obj", "-o", "b.glb"});
   EXPECT_EQ(open.status, 1);

@@ -1,4 +1,4 @@
-// Names with terminal control characters: the program never prints them unescaped.
+// Names may contain terminal control sequences: the program must never print them unescaped.
 #include <algorithm>
 
 #include "runtime/printable.h"
@@ -53,7 +53,7 @@ TEST_F(HostileNames, ARunEscapesThemOnTheTerminalAndInItsTables) {
   EXPECT_NE(csv.find(",tip " + kShown + ","), std::string::npos);
   EXPECT_NE(csv.find(",plate " + kShown + ","), std::string::npos) << "touched";
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 601) << "a row is a line";
-  // JSON contains names unchanged, in ASCII.
+  // JSON keeps names unchanged, in ASCII.
   expect_plain(read_text(folder / "out" / "report.json"), "report.json");
   EXPECT_EQ(report("out")["probes"][0]["name"], Json::parse("\"tip " + kJsonName + "\""));
   EXPECT_GT(fs::file_size(folder / "out" / "forces.png"), 1000u);
@@ -91,7 +91,7 @@ TEST_F(HostileNames, ErrorsAndArgumentsAreOneLine) {
   EXPECT_NE(nobody.err.find(kShown), std::string::npos) << nobody.err;
   EXPECT_EQ(std::count(nobody.err.begin(), nobody.err.end(), '\n'), 1) << nobody.err;
 
-  // Bytes that are not UTF-8: in arguments, in a probe's name, and in a document, which then is not JSON.
+  // Invalid UTF-8: in arguments, in a name of a probe, and in a document, which is then not JSON.
   const std::string odd = "a\x1b[31m\x9b\xff";
   const Said run =
       pliant({"run", "plate.obj", "--probe", odd + "=orbit", "--seconds", "0.05", "--frames", "0", "--out", "out"});

@@ -1,4 +1,4 @@
-// A level may not open the world: the command, with levels of a stranger.
+// A level cannot open devices or connections by itself: the command with untrusted levels.
 #include <arpa/inet.h>
 #include <sys/socket.h>
 
@@ -54,7 +54,7 @@ TEST_F(LevelDevices, FilesAreNeitherWrittenNorReadForALevel) {
     EXPECT_EQ(said({"validate", "level.gltf"}).status, 1) << id;
     EXPECT_NE(said({"inspect", "level.gltf"}).out.find("asks for more than a level may"), std::string::npos) << id;
   }
-  // The same words from the user are the user's.
+  // The same words are permitted when they come from the user.
   const Said allowed = said(run({"--probe", "stylus=device:simulated:touch,clock=tick|record=" + written}));
   EXPECT_EQ(allowed.status, 0) << allowed.err;
   EXPECT_TRUE(fs::exists(written));

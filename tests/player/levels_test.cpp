@@ -1,4 +1,4 @@
-// Every level that ships, and organs of the corpus, from the command line.
+// Every shipped level, and organs of the corpus, from the command line.
 #include "tests/player/command.h"
 
 namespace pliant::testing {
@@ -7,7 +7,7 @@ namespace {
 const fs::path kLevels = fs::path(PLIANT_SOURCE_DIR) / "content" / "levels";
 const fs::path kOrgans = fs::path(PLIANT_CORPUS_DIR) / "meshes-valid" / "hra";
 
-// Names of the glTF files in a folder, in order; one that is absent where there are none.
+// Names of the glTF files in a folder, in order; one placeholder if there are none.
 std::vector<std::string> files_in(const fs::path& folder) {
   std::vector<std::string> found;
   std::error_code absent;
@@ -54,7 +54,7 @@ TEST_P(ShippedLevel, RunsAndEveryProbeTouchesWithoutGettingEnergy) {
   const Json json = report("out");
   EXPECT_EQ(json["level"], fs::path(file).stem().string());
   EXPECT_EQ(json["overruns"], 0);
-  // A level that ships has nothing to explain; its beginning alone ends before its script, and before any touch.
+  // A shipped level causes no notes. Its beginning alone ends before its script, and before any contact.
   const auto of_beginning = [&](const std::string& sentence) {
     return begun && (sentence.find("never touched anything") != std::string::npos ||
                      sentence.find("and the run ends at") != std::string::npos);

@@ -1,4 +1,4 @@
-// The player's pieces by themselves: recordings, traces, plots' ticks, frames, panoramas.
+// Parts of the player in isolation: recordings, traces, plots' ticks, frames, panoramas.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ TEST(Csv, AnyNameIsOneCell) {
   EXPECT_EQ(csv_text("\x1b[31m,\xff"), "\"\\x1b[31m,\\xff\"");
 }
 
-// Cairo draws nothing after text that is not UTF-8.
+// Cairo stops drawing after text that is invalid UTF-8.
 TEST(Pen, GoesOnAfterTextThatIsNoUtf8) {
   Pen pen(64, 32);
   const double width = pen.text(0, 20, 12, 0,
@@ -169,7 +169,7 @@ TEST(Recording, EveryCutAndEveryFlippedBitIsNoticed) {
       std::string damaged = bytes;
       damaged[i] = static_cast<char>(damaged[i] ^ (1 << bit));
       const auto read = parse_recording("r", damaged);
-      // A pose's last byte is a yes or no: bits above the first that leave it a `no` are covered by the hash as well.
+      // A pose's last byte is a flag: the hash also covers higher bits that leave it false.
       EXPECT_FALSE(read) << "bit " << bit << " of byte " << i;
     }
   }
@@ -183,7 +183,7 @@ ProbeReading reading_at(double depth) {
   return r;
 }
 
-// Springs of 200 N/m and 0.5 N m/rad, loaded to 5 mm and 0.4 rad: k x^2 / 2 of each.
+// Springs of 200 N/m and 0.5 N m/rad, loaded to 5 mm and 0.4 rad: the work is k x^2 / 2 of each.
 TEST(Keeper, TheNetWorkOfAToolIsThatOfItsForceAndOfItsTorque) {
   World world;
   const Entity tool = world.registry.create();
@@ -206,7 +206,7 @@ TEST(Keeper, TheNetWorkOfAToolIsThatOfItsForceAndOfItsTorque) {
     device.torque_sent = -0.5 * angle * axis;
     journal.note(world, {i, 1e-3, 1e-3 * static_cast<double>(i)});
   }
-  device.position = dvec3(std::numeric_limits<double>::quiet_NaN());  // lost: no valid pose
+  device.position = dvec3(std::numeric_limits<double>::quiet_NaN());  // lost: no work is known
   device.force_sent = device.torque_sent = dvec3(0);
   journal.note(world, {101, 1e-3, 0.101});
   keeper->keep(journal);
@@ -226,7 +226,7 @@ TEST(SoftClock, ALateStepIsLongerUpToThreeStepsAndTheRestIsLost) {
   }
 }
 
-// A tool whose model stays at time 0 while ticks go on, and whose contacts twice took too long.
+// A tool whose model stays at time 0 while ticks continue, and whose contacts twice took too long.
 TEST(Keeper, TicksWithAnOldModelOrLateContactsAreCountedAndSaidWithTheirCure) {
   World world;
   const Entity tool = world.registry.create();
@@ -243,7 +243,7 @@ TEST(Keeper, TicksWithAnOldModelOrLateContactsAreCountedAndSaidWithTheirCure) {
   const fs::path csv = fs::temp_directory_path() / ("pliant-late-" + std::to_string(::getpid()));
   auto keeper = Keeper::create(world, journal.probes(), {"script"}, csv);
   ASSERT_TRUE(keeper);
-  for (std::uint64_t i = 0; i < 50; ++i) {  // before the handle is placed there is no model
+  for (std::uint64_t i = 0; i < 50; ++i) {  // before the handle is placed there is no model to be stale
     state.placed = i >= 10;
     if (i == 20 || i == 21) ++state.ticks_late;
     journal.note(world, {i, 1e-3, 1e-3 * static_cast<double>(i)});
@@ -315,12 +315,12 @@ TEST(Trace, KeepsWhichLimitsActedHoweverLongTheRun) {
   EXPECT_EQ(marked, 1u);
 }
 
-// A tool's curves differ in meaning from a probe's; the row's title and the caption below it distinguish them.
+// The captions of a tool's row, and the line under the title, differ from those of a probe.
 TEST(Plot, CaptionsAToolsCurvesAsAToolsAndAProbesAsAProbes) {
   const fs::path file = fs::temp_directory_path() / ("pliant-captions-" + std::to_string(::getpid()) + ".png");
   Trace trace;
   for (std::uint64_t t = 0; t < 1000; ++t) trace.add(t, reading_at(0.002));
-  const auto drawn = [&](bool tool, double from, double to) {  // the picture between two heights, 0 to 1
+  const auto drawn = [&](bool tool, double from, double to) {  // the part of the picture between two heights, 0 to 1
     EXPECT_TRUE(plot_forces(file, "level", {{"a", "orbit", &trace, tool}}, 1e-3, 1.0));
     const auto image = load_image(file);
     EXPECT_TRUE(image);
@@ -337,7 +337,7 @@ TEST(Plot, CaptionsAToolsCurvesAsAToolsAndAProbesAsAProbes) {
   fs::remove(file);
 }
 
-// The bands have colours that nothing else has.
+// The bands have unique colours.
 TEST(Plot, ShowsWhereTheForceWasClippedAndWhereItWasWithheld) {
   const fs::path file = fs::temp_directory_path() / ("pliant-plot-" + std::to_string(::getpid()) + ".png");
   const auto count = [&](std::uint8_t limited, Color color) {
@@ -422,7 +422,7 @@ TEST(Sources, AreANameAndWhatMovesIt) {
     EXPECT_FALSE(parse_source(wrong)) << wrong;
 }
 
-// A panorama whose color is its direction: each face of the cross must show its own axis in the middle.
+// A panorama whose colour is its direction: each face of the cross must show its axis in the centre.
 TEST(PanoramaPreview, PutsEveryDirectionOnItsFace) {
   Panorama panorama{"p", 256, 128, {}};
   for (std::uint32_t y = 0; y < panorama.height; ++y) {

@@ -1,4 +1,4 @@
-// The mouse as a probe and as a hand that moves a tool: their positions for a given picture.
+// The mouse as a probe, and as a hand that holds a tool: their positions for what the picture shows.
 #include "window/pointer.h"
 
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ TEST(Pointer, ADeepDentUnderTheCursorDoesNotTakeTheProbeDeeper) {
   pointer.hold(true);
   pointer.see(on(scene.plate, {0.01, 0, 0}, {0.01, 0, 0}), kDown);
   const dvec3 flat = settled(pointer);
-  for (int picture = 0; picture < 20; ++picture)  // each shows the dent that the press before made
+  for (int picture = 0; picture < 20; ++picture)  // each picture shows the dent of the previous press
     pointer.see(on(scene.plate, settled(pointer), {0.01, 0, 0}), kDown);
   EXPECT_LT(length(settled(pointer) - flat), 1e-12);
 }
@@ -108,7 +108,7 @@ TEST(Pointer, WhereNothingIsSeenTheProbeGoesWithTheRayThatSawNothing) {
   EXPECT_TRUE(pointer.free());
 }
 
-// A block that moves, and one that does not.
+// A movable block and a fixed one.
 struct BodyScene : PointerScene {
   Entity block, wall;
   BodyScene() {
@@ -223,7 +223,7 @@ TEST(Carrier, AToolOnAScriptIsTheMousesFromTheFirstHoldOnAndFromWhereItsDeviceIs
   carrier->update(0.1);
   EXPECT_EQ(carrier->position(), dvec3(0.3, 0, 0));
   carrier->release();
-  carrier->grab({0.3, 0, 0}, {0.9, 0, 0});  // it knows where it has left it
+  carrier->grab({0.3, 0, 0}, {0.9, 0, 0});  // the carrier remembers where it left the tool
   EXPECT_EQ(carrier->position(), dvec3(0.3, 0, 0));
 }
 
@@ -264,7 +264,7 @@ TEST(Carrier, AJumpOfThePointerBecomesAGlideThatStopsWhereItIsLetGo) {
   ASSERT_TRUE(carrier);
   const Viewpoint view{.eye = {0.1, 0, 1}, .target = {0.1, 0, 0}};
   carrier->grab({0.1, 0, 0}, {0.1, 0, 0});
-  const ViewRay right{view.eye, normalize(dvec3(0.25, 0, -1))};  // 0.25 m aside, in the tool's plane
+  const ViewRay right{view.eye, normalize(dvec3(0.25, 0, -1))};  // 0.25 m to the side, in the tool's plane
   carrier->follow(right, view);
   EXPECT_EQ(carrier->position(), dvec3(0.1, 0, 0));
   int turns = 0;
@@ -278,7 +278,7 @@ TEST(Carrier, AJumpOfThePointerBecomesAGlideThatStopsWhereItIsLetGo) {
   EXPECT_EQ(turns, 125);  // 0.25 m at 0.5 m/s
   EXPECT_NEAR(carrier->position().x, 0.35, 1e-9);
 
-  // A delayed picture does not allow a jump: the touch clock travels this distance in at most kMouseSlowestFrame.
+  // A hung picture does not permit a jump: the touch clock moves along the path in at most kMouseSlowestFrame.
   carrier->follow({view.eye, normalize(dvec3(-0.25, 0, -1))}, view);
   carrier->update(10.0);
   EXPECT_NEAR(carrier->position().x, 0.35 - kFastestCarry * kMouseSlowestFrame, 1e-9);

@@ -1,4 +1,4 @@
-// Output folders of results: only results of an earlier run may be replaced, and only on request.
+// Folders of results, and what they may replace: only files of an earlier run, and only on request.
 #include <array>
 
 #include "tests/player/command.h"
@@ -161,7 +161,7 @@ TEST_F(Results, ConvertReplacesByForceOnly) {
     ASSERT_EQ(pliant({"convert", in, out, "--force"}).status, 0) << out;
     EXPECT_NE(read_text(folder / there), "mine") << out;
   }
-  // A .bin is replaced only with its own .gltf.
+  // A .bin belongs to its own .gltf only.
   write_text(folder / "c.bin", "mine");
   for (const bool force : {false, true}) {
     std::vector<std::string> convert{"convert", "plate.obj", "c.gltf"};

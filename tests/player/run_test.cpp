@@ -1,4 +1,4 @@
-// pliant run from the command line, on meshes small enough to know the answer.
+// pliant run from the command line, on meshes with known results.
 #include <cmath>
 
 #include "tests/player/command.h"
@@ -76,7 +76,7 @@ TEST_F(Run, TheForceIsTheLawOfTheDepthAndTheReportSaysWhatTheRowsSay) {
       EXPECT_EQ(norm, 0.0) << "nothing is felt in the air";
       EXPECT_EQ(forces.rows[i].at("objects"), "0") << i;
     }
-    if (time > 0.55 && time < 0.69) {  // constant: 300 N/m times 2 mm
+    if (time > 0.55 && time < 0.69) {  // at rest: 300 N/m times 2 mm
       EXPECT_NEAR(fn, 0.6, 0.6e-3) << time;
       ++held;
     }
@@ -134,7 +134,7 @@ TEST_F(Run, AProbeThatTouchesNothingSaysByHowMuchItMissed) {
   EXPECT_NE(json["dropped"].dump().find("never touched anything"), std::string::npos);
 }
 
-// Every ray through the middle of a lying ring misses it.
+// Every ray through the centre of a horizontal ring misses it.
 TEST_F(Run, AnOrbitFindsARingRoundAnEmptyMiddle) {
   std::ostringstream obj;
   constexpr int kAround = 32, kTube = 12;
@@ -227,7 +227,7 @@ TEST_F(Run, AReplayHasTheErrorBudgetOfItsRecording) {
   EXPECT_EQ(report("again")["hash"], report("first")["hash"]);
   EXPECT_NE(replayed.err.find("the recording's error budget holds: --error=0.9"), std::string::npos) << replayed.err;
   EXPECT_EQ(replayed.err.find("forces will differ"), std::string::npos) << replayed.err;
-  // The replay's own option has precedence, and a recording of the replay contains it.
+  // The replay's own value overrides it, and a recording of the replay stores that value.
   const Said other = pliant({"run", "plate.obj", "--replay", "p.rec", "--error", "1e-6", "--record", "q.rec",
                              "--frames", "0", "--out", "other"});
   ASSERT_EQ(other.status, 0) << other.err;
@@ -238,7 +238,7 @@ TEST_F(Run, AReplayHasTheErrorBudgetOfItsRecording) {
   EXPECT_EQ(report("third")["hash"], report("other")["hash"]);
 }
 
-// Mesh, hierarchy and animations matter for a recording like keys.
+// Mesh, hierarchy and animations are part of a recording's scene hash, as keys are.
 TEST_F(Run, AReplayOnALevelThatIsNotAsItWasSaysSo) {
   for (const char* name : {"minimal.gltf", "minimal.bin", "minimal.csv"})
     fs::copy(fs::path(PLIANT_SOURCE_DIR) / "content" / "levels" / name, folder / name);
@@ -312,7 +312,7 @@ TEST_F(Run, AReplayRepeatsTheRecordingToTheBit) {
   EXPECT_EQ(report("again")["probes"][0]["source"], "replay:press.rec");
 }
 
-// Reported before the run, not after it.
+// The error comes before the run, not after it.
 TEST_F(Run, ARecordingThatCannotBeWrittenIsRefusedBeforeAnythingRuns) {
   fs::create_directory(folder / "taken");
   for (const char* file : {"taken", "nowhere/press.rec"})
@@ -417,7 +417,7 @@ TEST_F(Run, CtrlCEndsARealTimeRunCleanlyWithAReport) {
   EXPECT_LT(json["ticks"], 600000);
 }
 
-// Stopped as soon as its folder is there: while graphics are made ready, long before the first tick.
+// Stopped as soon as its folder exists: while graphics are prepared, long before the first tick.
 TEST_F(Run, ASignalBeforeTheFirstTickLeavesNothingHalfWrittenBehind) {
   const std::string line =
       "cd " + quoted(folder.string()) + " && { env -u DISPLAY -u WAYLAND_DISPLAY " + quoted(PLIANT_BINARY) +
@@ -441,7 +441,7 @@ TEST_F(Run, PicturesAreSpreadOverTheRunAndDoNotChangeIt) {
   for (const char* name : {"frame-0000.png", "frame-0001.png", "frame-0002.png"})
     EXPECT_EQ(read_text(folder / "with" / name).substr(1, 3), "PNG") << name;
   EXPECT_FALSE(fs::exists(folder / "with" / "frame-0003.png"));
-  // A shorter run that takes its place leaves no picture of the longer one behind.
+  // A shorter run that replaces it leaves no picture of the longer one.
   EXPECT_NE(said.out.find("forces.png, 3 pictures\n"), std::string::npos) << said.out;
   const Said shorter = pliant({"run", "plate.obj", "--probe", "tip=script:press.csv", "--out", "with", "--frames", "1",
                                "--size", "160x90", "--force"});

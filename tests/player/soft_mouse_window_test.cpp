@@ -1,4 +1,4 @@
-// The mouse on soft and rigid bodies in an invisible window: it presses them like surfaces, and drags them.
+// The mouse on soft and rigid bodies in an invisible window: it presses and pulls them as it presses surfaces.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ class SoftMouseWindowTest : public CommandTest {
       GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
     write_text(folder / "block.obj", block_obj());
   }
-  // A cube of 60 mm about the origin, 8 x 8 squares a side.
+  // A cube of 60 mm about the origin, 8 x 8 squares per side.
   static std::string block_obj() {
     std::ostringstream obj;
     obj << "o block\n";

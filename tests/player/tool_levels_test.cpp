@@ -1,5 +1,5 @@
-// The shipped levels with tools, from the command line: a force that does not depend on a shorter soft step, a tower
-// that stands until it is pushed, an instrument with a nonzero force.
+// The shipped levels with tools, from the command line: a force that is independent of the soft step, a tower that
+// stands until it is pushed, an instrument with force feedback.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@ class ToolLevel : public CommandTest {
     return said.status == 0 ? report(out) : Json();
   }
 
-  // Root mean square of the difference of the force on every probe and tool, over that of `reference`. [1]
+  // [1] RMS difference of the forces on every probe and tool, over the RMS of `reference`.
   double difference(const std::string& out, const std::string& reference) const {
     const ForcesTable a = read_forces(folder / out / "forces.csv"), b = read_forces(folder / reference / "forces.csv");
     EXPECT_EQ(a.rows.size(), b.rows.size());
@@ -33,7 +33,7 @@ class ToolLevel : public CommandTest {
     return std::sqrt(apart / whole);
   }
 
-  // Final position of a body, from bodies.csv. [m]
+  // [m] Final position of a body, from bodies.csv.
   std::array<double, 3> last_place(const std::string& out, const std::string& body) const {
     const ForcesTable bodies = read_forces(folder / out / "bodies.csv");
     for (std::size_t i = bodies.rows.size(); i-- > 0;)
@@ -44,10 +44,10 @@ class ToolLevel : public CommandTest {
   }
 };
 
-// How long a level is run.
+// A level and how long it is run.
 struct Beginning {
   const char* level;
-  double seconds;  // [s] from the script's beginning
+  double seconds;  // [s] from the start of the script
 };
 
 class ToolLevelForce : public ToolLevel, public ::testing::WithParamInterface<Beginning> {};

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kHeight = 0.04;  // [m] of the block
 
-// About the origin, n x n squares a face: tissue is pushed where its collision mesh has vertices.
+// A box about the origin, n x n squares per face: tissue has contacts at the vertices of its collision mesh.
 Primitive box(vec3 size, int n) {
   Primitive p;
   for (int axis = 0; axis < 3; ++axis)
@@ -65,7 +65,7 @@ class ToolRun : public CommandTest {
     ground.rigid_body->fixed = true;
     level.nodes = {tool, arm, ground};
     ASSERT_TRUE(save_level(level, folder / "block.glb").ok());
-    // Down by 3 mm into the ground, rotated a little, kept there, and up again.
+    // Down by 3 mm into the ground with a small rotation, a rest, and up again.
     write_text(folder / "press.csv",
                "time_s,x,y,z,qw,qx,qy,qz\n0,0,0.05,0,1,0,0,0\n0.4,0,0.017,0,1,0,0,0\n"
                "0.5,0,0.017,0,0.9999,0,0.0141,0\n0.8,0,0.017,0,0.9999,0,0.0141,0\n1.0,0,0.05,0,1,0,0,0\n");
@@ -153,7 +153,7 @@ TEST_F(ToolRun, TheForceIsMadeAsTheKeySaysUnlessTheOptionSaysOtherwise) {
   ASSERT_EQ(press("both", {"--set", "hand.handle.force=held", "--tool-force", "linear"}).status, 0);
   EXPECT_EQ(hash("both"), hash("linear")) << "the option stands above the key";
 
-  // The zero-order hold differs from the contact solution, in the force on the hand too.
+  // A constant force differs from one that is solved again, also on the hand.
   const ForcesTable held = read_forces(folder / "held" / "forces.csv"),
                     solved = read_forces(folder / "contacts" / "forces.csv");
   double apart = 0.0;
@@ -199,8 +199,8 @@ TEST_F(ToolRun, InspectSaysHowEachToolsForceIsMade) {
   EXPECT_NE(pliant({"inspect", "block.glb"}).out.find("tool hand: device arm, force contacts"), std::string::npos);
 }
 
-// Semi-implicit Euler gives x_k = x_0 + g T^2 (k + 1) (k + 2) / 2 for a free fall; after a time t the error is g t T /
-// 2, relative to g t^2 / 2.
+// Semi-implicit Euler's free fall: x_k = x_0 + g T^2 (k + 1) (k + 2) / 2. After a time t it differs from g t^2 / 2 by g
+// t T / 2.
 class FallingRun : public CommandTest {
  protected:
   static constexpr double kStep = 1.0 / 60.0, kGravity = 9.81, kTop = 2.0;
@@ -248,7 +248,7 @@ TEST_F(FallingRun, BodiesAreWrittenWhereTheyFallTo) {
     EXPECT_NEAR(time, step * kStep, 1e-8);
     EXPECT_NEAR(bodies.number(i, "x"), crate ? 0.5 : -0.5, 1e-6);
     EXPECT_NEAR(y, height(step), 1e-6) << "as the integrator has it";
-    const double since = time + kStep;  // the row is the step's end
+    const double since = time + kStep;  // the row is at the step's end
     EXPECT_LE(std::abs(y - (kTop - 0.5 * kGravity * since * since)), 0.5 * kGravity * since * kStep + 1e-6);
     EXPECT_NEAR(bodies.number(i, "z"), 0.0, 1e-6);
     EXPECT_NEAR(bodies.number(i, "qw"), std::cos(0.3), 1e-6);
@@ -269,7 +269,7 @@ TEST_F(FallingRun, WhatNoBodyMovesInHasNoBodiesFileNotEvenAnOldOne) {
   EXPECT_EQ(said.out.find("bodies.csv"), std::string::npos);
 }
 
-// More soft steps than touch ticks: none of them is lost.
+// More soft steps than touch ticks: none is lost.
 TEST_F(FallingRun, StepsBetweenTicksAreAllWritten) {
   ASSERT_EQ(pliant({"run", "fall.glb", "--seconds", "0.3", "--rate", "10", "--set", "*.simulation.soft_step=0.001",
                     "--out", "out", "--frames", "0"})
@@ -289,7 +289,7 @@ TEST_F(ToolRun, LockstepGivesTheSameBitsAndAReplayTheSameAgain) {
   EXPECT_NE(report("first")["hash"], report("softer")["hash"]) << "the hash knows the tissue";
 }
 
-// The reference for a tool is soft steps at the touch rate: another rate has another error.
+// The reference of a tool is the soft step at the touch rate: another rate has another error.
 TEST_F(ToolRun, ABudgetIsMeasuredAtTheRateOfTheRun) {
   const auto note_of = [&](const std::vector<std::string>& more, const std::string& out) {
     std::vector<std::string> words{"--error", "0.5", "--seconds", "0.01"};
@@ -304,7 +304,7 @@ TEST_F(ToolRun, ABudgetIsMeasuredAtTheRateOfTheRun) {
   EXPECT_NE(usual, "");
   EXPECT_NE(usual, option);
   EXPECT_EQ(option, level);
-  // So is that of a replay, at its recording's rate.
+  // Likewise for a replay, at its recording's rate.
   ASSERT_EQ(press("d", {"--error", "0.5", "--rate", "400", "--seconds", "0.1", "--record", "p.rec"}).status, 0);
   const Said replayed = pliant({"run", "block.glb", "--replay", "p.rec", "--frames", "0", "--out", "e"});
   ASSERT_EQ(replayed.status, 0) << replayed.err;

@@ -1,5 +1,4 @@
-// Files opened by a spreadsheet, interrupted runs, two writers of one file: nothing is evaluated, lost or partially
-// written.
+// Files for spreadsheets, runs that end early, two writers of one file: nothing is evaluated, lost or incomplete.
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -16,7 +15,7 @@ const std::vector<std::string> kFormulas = {"=1+1", "+x",      "-x",     "@SUM(A
                                             "  =1", "'=1",     "''-a",   "a;=b",     "--rate",
                                             "-",    "\uFF1D1", "\"=1\"", "=1,=2\"=3"};
 
-// Cells that a spreadsheet would evaluate.
+// True if a spreadsheet would evaluate the cell.
 bool is_evaluated(const std::string& cell) {
   const std::size_t begin = cell.find_first_not_of(" \t\r");
   if (begin == std::string::npos || !std::strchr("=+-@", cell[begin])) return false;
@@ -69,7 +68,7 @@ class WholeFiles : public Sweep {
       if (entry.path().filename().string().find(".part") != std::string::npos) return true;
     return false;
   }
-  // Begins the command, sends the signal once a staged folder is there, and waits; its status.
+  // Starts the command, sends the signal once a staged folder exists, waits, and returns the status.
   int interrupted(const std::string& command, const std::string& out, const char* signal) const {
     write_text(folder / "end.sh",
                "cd " + quoted(folder.string()) + "\n(trap - INT TERM; exec " + quoted(PLIANT_BINARY) + " " + command +

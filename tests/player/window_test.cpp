@@ -1,4 +1,4 @@
-// The window on an invisible display (Xvfb), operated by events from a file and by X events.
+// The window on a virtual display (Xvfb), with input events from a file and from X.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace pliant::testing {
 namespace {
 
-// Under the leak sanitizer: display drivers do not free their memory, and are unloaded when it checks.
+// Under the leak sanitizer: display drivers keep allocations, from libraries that are unloaded at the check.
 constexpr const char* kDriversLeak = "ASAN_OPTIONS=detect_leaks=0 ";
 
 class WindowTest : public CommandTest {
@@ -37,7 +37,7 @@ class WindowTest : public CommandTest {
     ADD_FAILURE() << "no probe " << name;
     return {};
   }
-  // The last row of every probe has zero force.
+  // The last row of every probe has the final force on the hand.
   void expect_no_force_at_the_end() const {
     const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
     const std::size_t probes = report("out")["probes"].size();
@@ -47,7 +47,7 @@ class WindowTest : public CommandTest {
   }
 };
 
-// Standard deviation of a picture's pixel values, 0 to 255.
+// Standard deviation of a picture's pixels, 0 to 255.
 double contrast(const fs::path& file) {
   const auto image = load_image(file);
   if (!image) return 0.0;
@@ -194,7 +194,7 @@ TEST_F(WindowTest, TheMouseTakesAToolFromItsScriptAndLeavesItWhereItIsLetGo) {
 #ifdef PLIANT_SANITIZED
   GTEST_SKIP() << "tissue under a sanitizer takes minutes";
 #endif
-  // `./dev run hand`, as in the README: dragged at its first finger's knuckle, moved to the right, released.
+  // `./dev run hand`, as in the README: grabbed at its first finger's knuckle, moved to the right, released.
   const Said said =
       shown({"hand"},
             "0.0,key,Tab\n0.0,move,110 20\n1.0,press,\n2.5,move,120 20\n2.6,move,130 20\n2.7,move,140 20\n"
@@ -223,7 +223,7 @@ TEST_F(WindowTest, TheMouseTakesAToolFromItsScriptAndLeavesItWhereItIsLetGo) {
 
 TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {
   write_text(folder / "other.obj", plate_obj());
-  for (const std::string close : {"9.0", "40.0"}) {  // a slow machine is still loading it when the first one closes
+  for (const std::string close : {"9.0", "40.0"}) {  // on a slow machine it is still loading when the first one closes
     fs::remove_all(folder / "out");
     const Said said =
         shown({"plate.obj", "--set", "*.deformable.stiffness=500"}, "0.1,drop,other.obj\n" + close + ",close,\n");
@@ -236,7 +236,7 @@ TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {
 }
 
 TEST_F(WindowTest, TheSameLevelAnewIsWrittenBesideWhatWasWrittenOfIt) {
-  for (const std::string close : {"9.0", "40.0"}) {  // a slow machine is still loading it when the first one closes
+  for (const std::string close : {"9.0", "40.0"}) {  // on a slow machine it is still loading when the first one closes
     for (const char* old : {"out", "out-2", "out-3", "p.rec", "p-2.rec", "p-3.rec"}) fs::remove_all(folder / old);
     const std::string second = std::to_string(std::stod(close) / 2);
     const Said said =
@@ -257,7 +257,7 @@ TEST_F(WindowTest, AFailureBeforeTheFirstTickLeavesTheEarlierRecordingAndNothing
   fs::create_directory(folder / "no-shaders");
   const std::string before = std::string(kDriversLeak) + "PLIANT_SHADERS=" + quoted((folder / "no-shaders").string()) +
                              " timeout 60 xvfb-run -a -s '-screen 0 400x300x24' bash -c '\"$@\"; echo $? >status' -";
-  // Its own status: that of xvfb-run is another one where it cannot clean up.
+  // The command's own status: xvfb-run's differs if its cleanup fails.
   const auto expect_failure = [&](const std::vector<std::string>& arguments) {
     fs::remove(folder / "status");
     const Said said = pliant(arguments, before);

@@ -22,8 +22,7 @@ void pass_through_curved(HardFigure& worst) {
       const dvec3 u = normalize(towards);
       std::vector<double> steps{5e-5};
       for (int i = 0; i <= 40; ++i)
-        steps.push_back(0.003 + 2.5e-5 * i);  // start of the last step, which is 3 to 4 mm
-                                              // long
+        steps.push_back(0.003 + 2.5e-5 * i);  // [m] lengths of the last step, from 3 to 4 mm
       double slow = 0.0;
       for (const double last : steps) {
         Stage stage;

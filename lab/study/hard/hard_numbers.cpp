@@ -289,8 +289,8 @@ HardFigure lightest_surface(const HardSetting&) {
     for (int i = 0; i < 10; ++i) {
       double rise = 0.0;
       for (const vec4& s : stage.field(sheet).stream) rise = std::max(rise, static_cast<double>(s.w));
-      worst.need(rise < 0.25 * left * kPress + 1e-9, where + ": it swings over");  // vertices at the rim are above the
-                                                                                   // surface by their share
+      worst.need(rise < 0.25 * left * kPress + 1e-9, where + ": it swings over");  // vertices at the rim are above by
+                                                                                   // their share
       stage.tick();
     }
   }

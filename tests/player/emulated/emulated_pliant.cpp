@@ -1,6 +1,6 @@
-// The command `pliant` on a machine with two emulated devices, a SpaceMouse and a DualSense, with the real drivers and
-// emulated firmware. Each is moved by a hand that lifts it, comes down onto the object below, slides, and repeats this,
-// by a clock that starts at the first read. PLIANT_UNPLUG=FROM:TO [s] unplugs the SpaceMouse during that time.
+// The command `pliant` with two emulated devices, a SpaceMouse and a DualSense: the drivers are the real ones, and the
+// firmware is emulated behind their ports. The hand on each device lifts it, moves down onto the object below, slides,
+// and repeats this; its clock starts at the first read. PLIANT_UNPLUG=FROM:TO [s] unplugs the SpaceMouse for that time.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +16,7 @@
 namespace pliant {
 namespace {
 
-// [s] since a driver looked for a report first; 0 before.
+// [s] since a driver first read a report; 0 before.
 double seconds(bool looks = false) {
   using Clock = std::chrono::steady_clock;
   static Clock::time_point began{};
@@ -24,11 +24,11 @@ double seconds(bool looks = false) {
   return began == Clock::time_point{} ? 0.0 : std::chrono::duration<double>(Clock::now() - began).count();
 }
 
-// The hand's motion, share of the full deflection: x right, y up, z towards the user.
+// Deflection by the hand, as a share of the full one: x right, y up, z towards the user.
 dvec3 deflection(double t) {
   const auto within = [t](double from, double to) { return t >= from && t < to; };
   if (within(0.3, 0.6)) return {0, 0.8, 0};   // 24 mm up
-  if (within(0.6, 1.1)) return {0, -0.7, 0};  // and 35 mm down, into what lies at the middle
+  if (within(0.6, 1.1)) return {0, -0.7, 0};  // and 35 mm down, into the object at the centre
   if (within(1.4, 4.5)) return {0.12 * std::sin(1.5 * (t - 1.4)), 0, 0.12 * std::cos(1.5 * (t - 1.4))};
   if (within(4.5, 4.9)) return {0, 0.8, 0};
   if (within(5.2, 5.7)) return {0, -0.7, 0};
@@ -49,7 +49,7 @@ struct Bench {
     if (t - cap_said < 0.008) return;
     cap_said = t;
     const dvec3 d = deflection(t);
-    if (cap.hid.unplugged || (d == dvec3(0) && cap_rests)) return;  // a cap at rest sends nothing
+    if (cap.hid.unplugged || (d == dvec3(0) && cap_rests)) return;  // a cap at rest sends no reports
     cap_rests = d == dvec3(0);
     const auto counts = [](double share) { return static_cast<int>(350 * share); };
     cap.deflect({counts(d.x), counts(d.z), counts(-d.y), 0, 0, 0});
@@ -73,7 +73,7 @@ Bench& bench() {
   return one;
 }
 
-// Advances the firmware to the current time, whenever the driver reads.
+// Runs the firmware up to the current time whenever the driver reads.
 class BenchPort final : public PacketPort {
  public:
   BenchPort(EmulatedHid& hid, void (Bench::*run)(double)) : line_(hid), run_(run) {}
