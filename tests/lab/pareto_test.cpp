@@ -1,10 +1,5 @@
-<<<<<<< HEAD:tests/lab/pareto_test.cpp
-// What every study writes: the front of cost against error, and files that leave nothing out.
+// Output of every study: the front of cost against error, and complete files.
 #include "lab/study/pareto.h"
-=======
-// Output common to all studies: the Pareto front of cost against error, and complete files.
-#include "player/study/pareto.h"
->>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/pareto_test.cpp
 
 #include <gtest/gtest.h>
 

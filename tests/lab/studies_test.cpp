@@ -1,10 +1,5 @@
-<<<<<<< HEAD:tests/lab/studies_test.cpp
-// Every study from end to end, as small as it goes: which files it writes, and what must stand in them.
+// Every study from end to end at its smallest size: the files it writes and their contents.
 #include "lab/study/studies.h"
-=======
-// Every study from end to end, as small as possible: its files and their required content.
-#include "player/study/studies.h"
->>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/studies_test.cpp
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,10 +1,5 @@
-<<<<<<< HEAD:tests/lab/study_collision_test.cpp
-// The study `collision`: its way, its count of misses.
+// The study `collision`: its path and its count of misses.
 #include "lab/study/study_collision.h"
-=======
-// The study `collision`: its path, and its count of misses.
-#include "player/study/study_collision.h"
->>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/study_collision_test.cpp
 
 #include <gtest/gtest.h>
 

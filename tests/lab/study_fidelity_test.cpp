@@ -1,10 +1,5 @@
-<<<<<<< HEAD:tests/lab/study_fidelity_test.cpp
-// The study `fidelity` against what is known: P1's own law and shape, and small strains.
-#include "lab/study/study_fidelity.h"
-=======
 // The study `fidelity` against known results: P1's own law and shape, and small strains.
-#include "player/study/study_fidelity.h"
->>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/study_fidelity_test.cpp
+#include "lab/study/study_fidelity.h"
 
 #include <gtest/gtest.h>
 

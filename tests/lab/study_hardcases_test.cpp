@@ -1,12 +1,6 @@
-<<<<<<< HEAD:tests/lab/study_hardcases_test.cpp
-// Every hard case of the table (lab/study/hard) holds, or is a known defect and exactly that. The whole of what the
-// study does, but for costs; under a sanitizer the part of --quick.
+// Every hard case of the table (lab/study/hard) holds, or is a known defect with exactly its condition. Runs all of the
+// study except costs; under a sanitizer the part of --quick.
 #include "lab/study/study_hardcases.h"
-=======
-// Every hard case of the table (player/study/hard) passes, or has exactly its known defect. The whole study except for
-// costs; under a sanitizer the part of --quick.
-#include "player/study/study_hardcases.h"
->>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/study_hardcases_test.cpp
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,5 @@
-<<<<<<< HEAD:tests/lab/study_shapes_test.cpp
-// The study `shapes` against what is known: the closed forms' own integrals, and the block against the half-space.
+// The study `shapes` against known results: integrals of the closed forms, and the block against the half-space.
 #include "lab/study/study_shapes.h"
-=======
-// The study `shapes` against known results: the integrals of the closed forms, and the block against the half-space.
-#include "player/study/study_shapes.h"
->>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/study_shapes_test.cpp
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,5 @@
-<<<<<<< HEAD:tests/lab/study_surfaces_test.cpp
-// The study `surfaces` against closed forms: of its surfaces themselves, and of facets on a sphere.
+// The study `surfaces` against closed forms: of the surfaces themselves, and of facets on a sphere.
 #include "lab/study/study_surfaces.h"
-=======
-// The study `surfaces` against closed forms: of its surfaces, and of facets on a sphere.
-#include "player/study/study_surfaces.h"
->>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/study_surfaces_test.cpp
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,5 @@
-<<<<<<< HEAD:tests/lab/study_time_step_test.cpp
-// The study `time_step` against what is known: free fall, the order of each scheme, and a spring's deepest dent.
+// The study `time_step` against known results: free fall, the order of each scheme, and the deepest dent of a spring.
 #include "lab/study/study_time_step.h"
-=======
-// The study `time_step` against known results: free fall, the order of each scheme, and a spring's deepest dent.
-#include "player/study/study_time_step.h"
->>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/study_time_step_test.cpp
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,6 @@
-<<<<<<< HEAD:tests/lab/sweep_notes_test.cpp
-// What a sweep says at its end: limits that acted, notes of runs, axes along which nothing changes; the curves that it
-// keeps; and a full disk, which is no failure of a run.
+// Notes at the end of a sweep: limits that acted, notes of runs, axes without effect. Also the curves that it keeps,
+// and a full disk, which is not a failure of a run.
 #include "tests/lab/sweep_command.h"
-=======
-// Final report of a sweep: active limits, notes of runs, axes without effect; its curves; and a full disk, which is not
-// a failed run.
-#include "tests/player/sweep_command.h"
->>>>>>> af5a6735bc328f5d059ba447ed360606db66b470:tests/player/sweep_notes_test.cpp
 
 namespace pliant::testing {
 namespace {
