@@ -5,7 +5,7 @@
 //
 // A closed surface's winding number is the same wherever no triangle lies in between: a grid of boxes over its own box,
 // those that hold no triangle's box joined with their neighbours, needs one number a joined part. Points there are
-// looked up, in a tenth of the time; those in boxes that hold triangles are summed for.
+// looked up; those in boxes that hold triangles are summed for.
 #pragma once
 
 #include <vector>
