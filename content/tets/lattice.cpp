@@ -17,10 +17,10 @@
 namespace pliant {
 namespace {
 
-constexpr int kTries = 10;          // attempts to reach the usual number of tetrahedra
-constexpr double kTetsPerCube = 12.0;
-constexpr double kSamples = 20000;  // sample points in the box that estimate its enclosed share
-constexpr double kSure = 1.1;       // [1] of the limit: estimates above it are rejected
+constexpr int kTries = 10;             // attempts to reach the usual number of tetrahedra
+constexpr double kTetsPerCell = 12.0;  // of the lattice
+constexpr double kSamples = 20000;     // sample points in the box that estimate its enclosed share
+constexpr double kSure = 1.1;          // [1] of the limit: estimates above it are rejected
 
 // [1] Estimated number of tetrahedra for a cell: twelve per cell cube of the volume, which is sampled on a regular
 // grid. Filling a box with millions before rejecting them would take half a minute.
@@ -42,7 +42,7 @@ double estimated_tets(const FillRegion& region, double cell) {
   });
   const std::size_t sum = std::accumulate(enclosed.begin(), enclosed.end(), std::size_t{0});
   const double share = static_cast<double>(sum) / static_cast<double>(all);
-  return kTetsPerCube * share * size.x * size.y * size.z / (cell * cell * cell);
+  return kTetsPerCell * share * size.x * size.y * size.z / (cell * cell * cell);
 }
 
 struct Found {
@@ -93,7 +93,7 @@ Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, const La
   // Where a full box would not have too many there is nothing to estimate.
   const dvec3 size(region.box().size());
   const bool may_be_beyond =
-      kTetsPerCube * size.x * size.y * size.z / (cell * cell * cell) > static_cast<double>(most(limits::kTets));
+      kTetsPerCell * size.x * size.y * size.z / (cell * cell * cell) > static_cast<double>(most(limits::kTets));
   const double tets = may_be_beyond && !wish.focus ? estimated_tets(region, cell) : 0.0;
   if (tets > kSure * static_cast<double>(most(limits::kTets))) return count(limits::kTets, tets);
   const LatticeGrid grid(region.box(), cell, wish.focus);

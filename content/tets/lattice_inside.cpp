@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFarRadii = 2.3;   // [1] a cluster is a dipole from this many of its radii on
 constexpr int kHalvings = 24;       // bisection steps across a hole
-constexpr double kGridBoxes = 2e5;  // 3 ms to make
+constexpr double kGridBoxes = 2e5;  // joined in 2 ms
 constexpr double kMostAlong = 256;  // boxes along an axis
 
 struct Visit {

@@ -3,8 +3,8 @@
 // clusters are dipoles (Barill, Dickson, Schmidt, Levin, Jacobson, "Fast winding numbers for soups and clouds", 2018).
 //
 // The winding number of a closed surface is constant where no triangle lies in between. A grid of boxes over its bounds
-// joins neighbours that hold no triangle's box, and each joined part needs one number. Points there are looked up, in a
-// tenth of the time; the number is summed for points in boxes that hold triangles.
+// joins neighbours that hold no triangle's box, and each joined part needs one number. Points there are looked up;
+// the number is summed for points in boxes that hold triangles.
 #pragma once
 
 #include <vector>

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kTetsPerCube = 12.0;  // of the lattice
+constexpr double kTetsPerCell = 12.0;  // of the lattice
 constexpr double kLeastCells = 1.2;    // [cells] thickness of a wall that stays connected
 
 }  // namespace
@@ -28,7 +28,7 @@ double least_wall(const Mesh& surface, bool doubled) {
     area += 0.5 * length(cross(dvec3(surface.position(t.y)) - a, dvec3(surface.position(t.z)) - a));
   }
   if (doubled) area *= 0.5;
-  return kLeastCells * std::sqrt(kTetsPerCube * kLeastCells * area / static_cast<double>(kUsualTets));
+  return kLeastCells * std::sqrt(kTetsPerCell * kLeastCells * area / static_cast<double>(kUsualTets));
 }
 
 void report_wall(const SurfaceShape& shape, Fill fill, double thickness, TetReport& report) {
@@ -79,7 +79,7 @@ void report_thin_places(const SurfaceShape& shape, const FillRegion& region, con
   report.thinnest = vec3(at->place);
   const double width = width_at(at->place), cell = least / kHeldCells / width;
   const double tets = wish.focus ? static_cast<double>(mesh.tets.size()) * std::pow(report.cell / cell, 3)
-                                 : kTetsPerCube * total_volume(mesh) / (cell * cell * cell);
+                                 : kTetsPerCell * total_volume(mesh) / (cell * cell * cell);
   report.findings.push_back(fmt::format(
       "is thin over {:.0f} % of its surface, {} at ({:.3g}, {:.3g}, {:.3g}) m, for a cell of {}: it bends there as "
       "single elements do, or crumples; a `cell` of {:.2g} m holds it, with some {:.0f} tetrahedra",

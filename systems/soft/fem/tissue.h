@@ -62,7 +62,7 @@ class Tissue {
   // `begin`: positions at the beginning of the step, if position() already is a guess of its end (iterations of the
   // non-linear step). f_el is then linearised about the guess, and velocity() still is v0.
   void assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin = nullptr);
-  // elastic_force() alone at the current positions: a fifth of assemble()'s work.
+  // elastic_force() alone at the current positions, the same bits: of assemble() without its matrices.
   void find_forces();
   const BlockMatrix& inner() const { return inner_; }
   BlockMatrix& inner() { return inner_; }  // its owner adds the coupling to a handle; the next assemble() starts anew
