@@ -1,4 +1,4 @@
-#include "player/standard_streams.h"
+#include "lab/console/standard_streams.h"
 #include "player/verbs/command_line.h"
 
 int main(int argc, char** argv) {

@@ -15,7 +15,7 @@
 #include "editor/panels/panels.h"
 #include "editor/ui/widgets.h"
 #include "editor/viewport/solid_view.h"
-#include "engine/pin_advice.h"
+#include "engine/choice/pin_advice.h"
 #include "systems/soft/body/equilibrium.h"
 
 namespace pliant {

@@ -62,7 +62,7 @@ struct RecordingHeader {
   std::string level;
   double rate = 1000.0;  // [Hz]
   std::vector<std::string> probes;
-  std::uint64_t scene = 0;  // scene_hash() (engine/scene_hash.h); 0: unknown, in an older format
+  std::uint64_t scene = 0;  // scene_hash() (engine/run/scene_hash.h); 0: unknown, in an older format
   // Settings on top of the level: NODE.EXT.KEY=VALUE; --unit=METRES; --error=BUDGET; limits of drivers
   // (engine/run/driver_limits.h).
   std::vector<std::string> settings;

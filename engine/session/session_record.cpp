@@ -9,7 +9,7 @@
 
 #include "content/files/file_io.h"
 #include "engine/run/driver_limits.h"
-#include "engine/scene_hash.h"
+#include "engine/run/scene_hash.h"
 #include "engine/session/session_parts.h"
 #include "runtime/printable.h"
 #include "systems/device/softening.h"

@@ -7,7 +7,7 @@
 
 #include "content/files/limits.h"
 #include "engine/choice/model_choice.h"
-#include "engine/scene_hash.h"
+#include "engine/run/scene_hash.h"
 #include "engine/session/scene_check.h"
 #include "engine/session/session_parts.h"
 #include "systems/device/devices.h"

@@ -9,7 +9,7 @@
 #include "content/keys/extension_table.h"
 #include "content/level_file.h"
 #include "engine/run/sources.h"
-#include "engine/scene_hash.h"
+#include "engine/run/scene_hash.h"
 #include "pliant/content.h"
 #include "runtime/hash.h"
 

@@ -17,7 +17,7 @@
 #include "engine/choice/model_choice.h"
 #include "engine/run/driver_limits.h"
 #include "engine/run/sources.h"
-#include "engine/scene_hash.h"
+#include "engine/run/scene_hash.h"
 #include "lab/files/content_folder.h"
 #include "player/run/unfelt.h"
 #include "systems/device/hands.h"

@@ -15,7 +15,7 @@
 #include "lab/console/interrupt.h"
 #include "player/record/body_keeper.h"
 #include "player/record/trace.h"
-#include "player/run/approach.h"
+#include "player/record/approach.h"
 
 namespace pliant {
 

@@ -17,7 +17,7 @@
 #include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/tets/tet_parts.h"
-#include "engine/pin_advice.h"
+#include "engine/choice/pin_advice.h"
 #include "lab/console/exit.h"
 #include "lab/console/interrupt.h"
 #include "lab/console/print.h"

@@ -7,7 +7,7 @@
 #include "content/keys/extension_table.h"
 #include "lab/console/exit.h"
 #include "lab/console/progress.h"
-#include "player/standard_streams.h"
+#include "lab/console/standard_streams.h"
 #include "player/verbs/options.h"
 #include "pliant/content.h"
 #include "pliant/process.h"

@@ -1,5 +1,5 @@
 // The scene hash of recordings: it covers everything that affects forces, and nothing else.
-#include "engine/scene_hash.h"
+#include "engine/run/scene_hash.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

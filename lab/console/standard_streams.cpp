@@ -1,4 +1,4 @@
-#include "player/standard_streams.h"
+#include "lab/console/standard_streams.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "engine/scene_hash.h"
+#include "engine/run/scene_hash.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "engine/pin_advice.h"
+#include "engine/choice/pin_advice.h"
 
 #include <algorithm>
 

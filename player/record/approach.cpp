@@ -1,4 +1,4 @@
-#include "player/run/approach.h"
+#include "player/record/approach.h"
 
 #include <fmt/format.h>
 
