@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "systems/safety/safety.h"
+
 namespace pliant {
 
 namespace {
@@ -26,7 +28,7 @@ void read_mouse(World& world, Tick tick) {
     mouse.lasts = mouse.heard ? std::clamp(tick.time - mouse.heard_at, tick.dt, kMouseSlowestFrame) : tick.dt;
     mouse.heard = true;
     mouse.heard_at = tick.time;
-    mouse.began_at = tick.time - tick.skipped;
+    mouse.began_at = tick.skipped < kEasedFrom ? tick.time : tick.time - tick.skipped;
     take_over(world, mouse.samples.read().takes, mouse);
     const bool free_now = mouse.samples.read().free, arrived = mouse.position == mouse.to;
     mouse.to = mouse.samples.read().position;

@@ -23,8 +23,8 @@ struct MouseSample {
 };
 
 // One mouse. While it presses, its probe runs straight from pose to pose, each in the time since the pose before: at
-// most a frame late, where that is no faster than kMouseFastest. Ticks that are skipped are no reason to wait: the way
-// began before them.
+// most a frame late, where that is no faster than kMouseFastest. After a stall that safety eases in from, the way
+// began before it.
 struct MouseInput {
   explicit MouseInput(dvec3 start) : from(start), position(start), to(start) {}
 

@@ -187,8 +187,9 @@ void compare(const std::string& level, Led led, std::uint64_t ticks, double most
         in_time, run(level, led, ticks, [&](std::uint64_t i) { return i % (missed + between) >= between; }), missed);
     const std::string what = level + ", " + std::to_string(missed) + " ms, led by " + std::to_string(int(led));
     const bool mouse = led == Led::kMouse;
-    EXPECT_LT(worst.over, mouse ? 0.8 : 0.1) << what;
-    EXPECT_LT(worst.step, mouse ? 0.8 : missed < 50 ? most_step : 0.2) << what;
+    const double of_mouse = missed < 20 ? 1.5 : 0.8;  // a short stall is not eased
+    EXPECT_LT(worst.over, mouse ? of_mouse : 0.1) << what;
+    EXPECT_LT(worst.step, mouse ? of_mouse : missed < 50 ? most_step : 0.2) << what;
     EXPECT_LT(worst.air, mouse ? 0.3 : 0.01) << what;
     if (missed < 9 && !mouse) EXPECT_GT(worst.touching, 100) << what << ": nothing was pressed";
   }
