@@ -115,7 +115,6 @@ TEST_F(PlayWindowTest, WhatAProbeDoesNotFeelIsWrittenOverThePicture) {
   const struct {
     const char *rows, *said;
   } paths[] = {{"0,0,0.08,0\n0.5,0.01,0.08,0\n", "has touched nothing on its path"},
-               {"0,0,0.02,0\n0.5,0.005,0.02,0\n", "no force: withheld until it has been outside once"},
                {"0,0,0.08,0\n0.5,0,0.028,0\n", ""}};
   for (const auto& [rows, said] : paths) {
     write_text(folder / "tip.csv", std::string("time_s,x,y,z\n") + rows);
