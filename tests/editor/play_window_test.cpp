@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "content/files/image.h"
+#include "content/level_file.h"
+#include "tests/content/mesh_shapes.h"
 #include "tests/player/command.h"
 
 namespace pliant::testing {
@@ -31,10 +33,10 @@ class PlayWindowTest : public CommandTest {
       fs::copy_file(fs::path(PLIANT_SOURCE_DIR) / "content/levels" / name, folder / name);
     fs::create_directories(folder / "state");
   }
-  Said edited(const std::string& script) const {
+  Said edited(const std::string& script, const std::string& level = "minimal.gltf") const {
     write_text(folder / "script.txt", script);
     return pliant(
-        {"edit", "minimal.gltf", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
+        {"edit", level, "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
         "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
             " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
   }
@@ -96,18 +98,32 @@ std::size_t warned(const Image& image) {
 }
 
 TEST_F(PlayWindowTest, WhatAProbeDoesNotFeelIsWrittenOverThePicture) {
+  Level level;
+  level.meshes.push_back({"ball", {pliant::test::icosphere(3)}});
+  for (vec3& p : level.meshes[0].primitives[0].position) p *= 0.03f;
+  LevelNode ball, tip;
+  ball.name = "ball";
+  ball.mesh = 0;
+  ball.deformable.emplace();
+  tip.name = tip.probe_device = "tip";
+  tip.probe.emplace();
+  tip.device.emplace();
+  tip.device->driver = DriverKind::kScript;
+  tip.device->file = "tip.csv";
+  level.nodes = {ball, tip};
+  ASSERT_TRUE(save_level(level, folder / "ball.glb").ok());
   const struct {
     const char *rows, *said;
-  } paths[] = {{"0,0,0.05,0\n0.5,0.01,0.05,0\n", "has touched nothing on its path"},
-               {"0,0,-0.004,0\n0.5,0.005,-0.004,0\n", "no force: withheld until it has been outside once"},
-               {"0,0,0.02,0\n0.5,0,-0.002,0\n", ""}};
+  } paths[] = {{"0,0,0.08,0\n0.5,0.01,0.08,0\n", "has touched nothing on its path"},
+               {"0,0,0.08,0\n0.5,0,0.028,0\n", ""}};
   for (const auto& [rows, said] : paths) {
-    write_text(folder / "minimal.csv", std::string("time_s,x,y,z\n") + rows);
+    write_text(folder / "tip.csv", std::string("time_s,x,y,z\n") + rows);
     const std::string words = said;
     const Said done =
-        edited("await Inspector/Search\nscreenshot before.png\nclick Play/Play\nawait Play/Pause\nwait 1.5\n" +
-               (words.empty() ? std::string() : "expect Play/tip " + words + "\n") +
-               "screenshot after.png\nclick Play/Stop\nclose\n");
+        edited("await Inspector/Search\nscreenshot before.png\nclick Play/Play\nawait Play/Pause\nwait 2\n" +
+                   (words.empty() ? std::string() : "await Play/tip " + words + " 30\n") +
+                   "screenshot after.png\nclick Play/Stop\nclose\n",
+               "ball.glb");
     ASSERT_EQ(done.status, 0) << rows << done.err;
     EXPECT_EQ(warned(shot("before.png")), 0u) << rows;
     if (words.empty())

@@ -41,7 +41,8 @@ class SettledPath : public CommandTest {};
 
 // As the world is made of it, each vertex where the body begins.
 TEST_F(SettledPath, ABodyRestsInTheEditorWhereItBeginsInARun) {
-  constexpr double kConverged = 1e-5;  // [m] of two ways to the same equilibrium
+  // [m] Two ways to one equilibrium, each as near as it stops; what reaches out of the tissue is extrapolated.
+  constexpr double kConverged = 1e-4;
   // The first keeps its shape, the last is too soft to.
   for (const auto& [how, young] :
        {std::pair{UnderGravity::kModelled, 80e3}, {UnderGravity::kSettled, 12e3}, {UnderGravity::kModelled, 12e3}}) {
