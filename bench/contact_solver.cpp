@@ -1,8 +1,8 @@
-// What the contact solver takes, beside the residual that it ends with: sweeps alone, sweeps with Newton steps, and the
-// alternating direction method (contact_admm.h), on the same problems. Rigid blocks on a floor: apart, in a column, in
-// a wall, and under a block of a hundred times their mass; random problems, with as many ways to move as contacts have
-// rows, and with a third of them. And whole steps of 64 blocks on a floor and of a column of ten. Every problem starts
-// without impulses, as at an impact. Times of the processor for this thread, least of several.
+// Times of the contact solver with the residual it ends with: sweeps alone, sweeps with Newton steps, and the
+// alternating direction method (contact_admm.h), on the same problems. Rigid blocks on a floor: separate, in a column,
+// in a wall, and under a block of a hundred times their mass. Random problems, with as many degrees of freedom as
+// contact rows, and with a third as many. Whole steps of 64 blocks on a floor and of a column of ten. Every problem
+// starts from zero impulses, as at an impact. CPU times of this thread, the least of several.
 //   bench_contact_solver --out contact_solver.json
 #include <fmt/format.h>
 
@@ -48,7 +48,7 @@ struct Piles {
     loop.add<FixedBody>(ground, Pose{dvec3(0, -0.5, 0)});
   }
   void add(dvec3 at, double mass = 0.5) { loop.add<RigidState>(block, Pose{at}, test::block_mass(dvec3(0.1), mass)); }
-  // Contacts of the first step, without impulses.
+  // Contacts of the first step, with zero impulses.
   ContactProblem impact() {
     loop.set_friction(0.5, 0.4);
     loop.step(kStep);
@@ -102,7 +102,7 @@ void add(std::string& list, const std::string& entry) {
   list += (list.empty() ? "\n    " : ",\n    ") + entry;
 }
 
-// From nothing to the end by the alternating direction method alone. `sweeps`: its iterations.
+// A cold start, with the alternating direction method alone. `sweeps`: its iterations.
 SweepReport solve_by_admm(ContactProblem& problem, int most) {
   ContactSweeps sweeps(problem);
   sweeps.start();
@@ -135,7 +135,7 @@ void measure(const char* name, const ContactProblem& problem, int repeats, Repor
   }
 }
 
-// Steps of contacts alone, from the bodies' free motion to their new place.
+// Steps of contacts only, from the bodies' free motion to their new poses.
 void measure_steps(const char* name, Piles& piles, Report& report) {
   piles.loop.set_friction(0.5, 0.4);
   std::vector<double> times;

@@ -1,6 +1,6 @@
-// The field on the processor against the field on the GPU, from 1e4 vertices up: what a whole evaluation costs on
-// each, what the processor pays when only the reached zones move, how far the two are apart, and how much of the GPU's
-// measured copy bandwidth the compute shader uses.
+// The field on the CPU against the field on the GPU, from 1e4 vertices up: the time of a whole evaluation on each, the
+// CPU's time when only the reached zones move, the difference of the results, and the share of the GPU's measured copy
+// bandwidth that the compute shader uses.
 //   bench_field [--large] [--out FILE.json]
 #include <fmt/format.h>
 
@@ -99,7 +99,7 @@ Row measure(const FieldProgram& program, int n) {
     row.normal_error = std::max(row.normal_error, length(cross(a, b)) * 180 / M_PI);
   }
   row.height_error /= largest;
-  // The shader reads 24 bytes a vertex and writes 16. A copy of 20 reads 20 and writes 20: the same 40.
+  // The shader reads 24 bytes per vertex and writes 16. A copy of 20 bytes reads and writes 20: the same 40.
   const std::size_t copied = std::size_t{20} * mesh.vertex_count / 4 * 4;
   const gpu::Buffer from = gpu::Buffer::writable(nullptr, copied), to = gpu::Buffer::writable(nullptr, copied);
   row.copy_us = median_us(15, [&] {

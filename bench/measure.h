@@ -1,4 +1,4 @@
-// What every benchmark needs: its arguments, times and their statistics, and a file for the result.
+// Shared by all benchmarks: arguments, statistics of times, and the result file.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace pliant {
 
 // [--SWITCH] [--out FILE.json]
 struct BenchArguments {
-  bool on = false;  // the switch was given
-  std::string out;  // "": nothing is written
+  bool on = false;  // the switch is set
+  std::string out;  // "": no file
 
   BenchArguments(int argc, char** argv, std::string_view name_of_switch = "") {
     for (int i = 1; i < argc; ++i) {
@@ -27,12 +27,12 @@ struct BenchArguments {
   }
 };
 
-// [ms] of the processor, so that what else runs on the machine counts little.
+// [ms] CPU time, which other processes affect little.
 inline double processor_ms() {
   return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-// The value that a share q [1] of all does not exceed; `values` is not empty.
+// The quantile q [1] of `values`, which must not be empty.
 inline double percentile(std::vector<double> values, double q) {
   std::sort(values.begin(), values.end());
   return values[std::min(values.size() - 1, static_cast<std::size_t>(q * static_cast<double>(values.size())))];

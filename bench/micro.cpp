@@ -1,5 +1,5 @@
-// The pieces of a touch tick, and of loading, one by one. Where a piece is an approximation, its error stands beside
-// its time as a counter.
+// The parts of a touch tick, and of loading, one by one. For an approximation, a counter shows its error beside its
+// time.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ void step_zone(benchmark::State& state) {
   double error = 0;
   int n = 0;
   for (auto _ : state) {
-    if (n++ % 50 == 0) {  // begin again before it has died away
+    if (n++ % 50 == 0) {  // restart before the motion has decayed
       std::copy(start.begin(), start.end(), field.residual.begin());
       std::fill_n(field.rate.begin(), kZoneSize, vec4(0));
       if (!field.arm.empty()) std::fill_n(field.arm.begin(), kZoneSize, vec4(0));
@@ -103,7 +103,8 @@ void nearest_query(benchmark::State& state) {
   for (auto _ : state) {
     const dvec3 x = points[i++ % points.size()];
     const SurfaceFoot p = nearest(mesh, x, 1);
-    error = std::max(error, std::abs(p.height - (length(x) - 0.1)));  // the sphere itself: what the triangles leave out
+    error = std::max(error, std::abs(p.height - (length(x) - 0.1)));  // the sphere's error includes that of its
+                                                                      // triangulation
   }
   state.counters["error_m"] = error;
 }
@@ -129,7 +130,8 @@ void closest_query(benchmark::State& state) {
 }
 BENCHMARK(closest_query)->ArgsProduct({{41, 130, 409}, {0, 1}})->ArgNames({"n", "hint"});
 
-// Objects of 20 mm side by side on a table: which ones a probe's box meets; after every second query one moves.
+// Objects of 20 mm side by side on a table: which ones a probe's box overlaps; one object moves after every second
+// query.
 void boxes_met(benchmark::State& state) {
   const auto side = static_cast<int>(std::sqrt(static_cast<double>(state.range(0))) + 0.5);
   std::vector<Box> boxes;
@@ -188,7 +190,7 @@ void amplitudes(benchmark::State& state) {
 }
 BENCHMARK(amplitudes)->Arg(2)->Arg(4)->Arg(16)->ArgName("contacts");
 
-// A GLB of about a million triangles in the temporary folder, gone at the end of the case; empty: not written.
+// A GLB of about a million triangles in the temporary folder, removed at the end; empty: not written.
 struct MillionFile {
   std::filesystem::path path = std::filesystem::temp_directory_path() / "pliant_bench_million.glb";
   explicit MillionFile(benchmark::State& state) {

@@ -1,5 +1,5 @@
-// What painting costs: opening the level, making the surface, a ray, a footprint, a dab of every mode, the end of a
-// stroke, a fill and a refinement, from 2e4 triangles to 1e6. The error is the footprint's worst distance against arcs
+// Times of painting: opening the level, building the surface, a ray, a footprint, a dab of every mode, the end of a
+// stroke, a fill and a refinement, from 2e4 triangles to 1e6. The error is the footprint's largest difference from arcs
 // of the sphere.
 //   bench_paint [--large] [--out FILE.json]
 #include <fmt/format.h>
@@ -22,7 +22,7 @@
 namespace pliant {
 namespace {
 
-// p50, p99 and the largest, in microseconds of the processor; making the surface and refining use several cores.
+// p50, p99 and the largest, CPU time in microseconds; building the surface and refining use several cores.
 struct Times {
   std::vector<double> us;
   template <class Work>
@@ -40,13 +40,13 @@ struct Times {
   }
 };
 
-// Place i of 200, spread evenly over the sphere.
+// Point i of 200, spread evenly over the sphere.
 dvec3 place(int i) {
   const double z = 1 - (i + 0.5) / 100, angle = 2.399963 * i, ring = std::sqrt(1 - z * z);
   return {ring * std::cos(angle), ring * std::sin(angle), z};
 }
 
-// A level of the mesh that can be touched.
+// A level in which the mesh can be touched.
 Level playable(const LevelMesh& mesh) {
   Level level;
   level.meshes.push_back(mesh);
@@ -105,7 +105,7 @@ std::string measure(const LevelMesh& mesh, double edge) {
     Times dab;
     stroke.move({3.0 * place(0), -place(0)});
     for (int i = 0; i < 200; ++i) {
-      // A quarter of a radius farther: one dab more.
+      // A quarter of a radius farther: one more dab.
       const double angle = 0.2501 * radius * (i + 1);
       const dvec3 from(std::sin(angle), 0.1, std::cos(angle));
       const std::uint32_t dabs = stroke.dabs();

@@ -1,8 +1,8 @@
-// What an elastic step without contact costs, by number of tetrahedra and by solver, split into assembly, factorisation
-// and solution: a clamped beam that falls under its weight (E = 1e5 Pa, nu = 0.45, rho = 1000 kg/m3, 10 ms), the first
-// fifth of a second, in which it bends by more than its thickness. Beside each time its error against a direct solution
-// refined until its residual no longer falls. Times are the processor's, of the one thread there is, so that what else
-// runs on the machine counts little.
+// Time of an elastic step without contact, by number of tetrahedra and by solver, divided into assembly, factorisation
+// and solution. The case is a clamped beam that falls under its weight (E = 1e5 Pa, nu = 0.45, rho = 1000 kg/m3, 10
+// ms), in the first fifth of a second, where it bends by more than its thickness. The error is relative to a direct
+// solution refined until its residual no longer falls. CPU times of the only thread, which other processes affect
+// little.
 //   bench_soft_solver [--small] [--out FILE.json]
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ constexpr double kStep = 0.01;  // [s]
 constexpr int kSteps = 20, kChecked = 10;
 const dvec3 kGravity{0, -9.81, 0};  // [m/s2]
 
-// long x thick x thick cells, Kuhn's six tetrahedra in each; 0.1 m thick; held at x = 0.
+// long x thick x thick cells, Kuhn's six tetrahedra in each; 0.1 m thick; pinned at x = 0.
 TetMesh beam(std::uint32_t cells, std::uint32_t thick) {
   TetMesh mesh;
   const std::uint32_t n = thick + 1, layer = n * n;
@@ -58,11 +58,11 @@ struct Row {
   std::string solver;
   std::size_t tetrahedra = 0;
   double assemble = 0, factorise = 0, solve = 0;  // [ms] medians
-  double p50 = 0, p99 = 0, max = 0;               // [ms] the three together
+  double p50 = 0, p99 = 0, max = 0;               // [ms] sum of the three
   double error = 0;                               // [1] of the velocity, largest of the checked steps
 };
 
-// A x = b to the last digits: a factor, and its solution refined.
+// A x = b to the last digits: a direct solution with iterative refinement.
 Vector truth(const BlockMatrix& a, const Vector& b) {
   BlockCholesky direct;
   direct.analyse(a);

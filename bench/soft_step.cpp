@@ -1,10 +1,9 @@
-// What a whole soft step of a tool costs (systems/schedule.cpp), by tetrahedra and by contacts, stage by stage, and
-// what a touch tick of that tool costs, beside how far each is off. A paddle of tissue, its upper face a rigid handle
-// on a scripted device, is pressed on a bed of studs and circles there with friction: one contact a stud, however fine
-// the tissue. The clocks run as in real time where a step takes its whole T: models come one step late and are brought
-// up to date along the handle's path. Times on the wall, and of the processor for this one thread. Every run does the
-// same arithmetic, so each step and tick is measured in several and its least time counts: what else runs on the
-// machine disturbs seldom the same one twice.
+// Time of a whole soft step of a tool (systems/schedule.cpp), by tetrahedra, by contacts and by stage; time of a touch
+// tick of that tool; and the errors of both. A paddle of tissue with a rigid handle on its upper face, moved by a
+// scripted device, is pressed on a bed of studs and circles there with friction. There is one contact per stud, however
+// fine the tissue. The clocks run as in real time where a step takes its whole T: models arrive one step late and are
+// extrapolated along the handle's path. Wall time, and CPU time of this thread. Every run repeats the same arithmetic,
+// so the least time of several is used for each step and tick: disturbances seldom hit the same one twice.
 //   bench_soft_step --small --out soft_step.json
 #include <fmt/format.h>
 #include <malloc.h>
@@ -33,7 +32,7 @@ namespace pliant {
 namespace {
 
 constexpr double kStep = 1.0 / 60, kTick = 1e-3;  // [s]
-constexpr int kExactSweeps = 50000;               // of the contacts' own reference
+constexpr int kExactSweeps = 50000;               // of the reference contact solution
 constexpr double kExact = 1e-12;                  // [1] its tolerance
 
 using scenes::kUsualBed, scenes::kUsualPaddle;
@@ -42,7 +41,7 @@ using Studs = scenes::StudBed;
 constexpr auto& kSizes = scenes::kPaddles;
 constexpr auto& kBeds = scenes::kBeds;
 
-// From its making, on the wall and of the processor for this thread.
+// Time since construction, wall and CPU of this thread.
 class Stopwatch {
  public:
   double processor_ms() const { return thread_ms() - processor_; }
@@ -64,15 +63,14 @@ double heap() {
   return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
-// [ms] that asking the processor's clock takes by itself: a tick by the linear model is hardly longer.
+// [ms] overhead of reading the CPU clock: a tick of the linear model is hardly longer.
 double clock_ms() {
   std::vector<double> empty;
   for (int i = 0; i < 1000; ++i) empty.push_back(Stopwatch().processor_ms());
   return median(std::move(empty));
 }
 
-// Of every step [ms], of the processor but for kWall and kSweeps (a part of kContacts), and of tool_feedback in every
-// tick [us].
+// Of every step [ms] of CPU time except kWall; kSweeps is a part of kContacts. tool_feedback of every tick [us].
 enum Timed {
   kProcessor,
   kWall,
@@ -94,7 +92,7 @@ struct Costs {
   int studs = 0, steps = 0;
   double contacts = 0, pushing = 0, sweeps = 0;  // means of a step
   Times times;
-  // Errors, the largest of the steps that were checked; all [1].
+  // Errors, the largest of the checked steps; all [1].
   double tissue_error = 0;    // of A_tt^-1 J_t^T lambda, |x - x'| / |x'|, x' from a factor, refined
   double residual = 0;        // of the contact laws, of the largest |bias|
   double velocity_error = 0;  // of the contact velocities, of the largest |bias|, against 1e-12
@@ -121,7 +119,7 @@ class Bench {
     touch_tool().wanted = force;
   }
 
-  // `checks`: of how many steps the errors are looked at, evenly.
+  // `checks`: number of steps whose errors are computed, evenly spaced.
   Costs run(int steps, int checks) {
     while (time_ < scenes::kPaddlePressed) step(false);
     for (int i = 1; i <= steps; ++i) {
@@ -139,7 +137,7 @@ class Bench {
  private:
   ToolTouchState& touch_tool() { return *stage_.world.tools->tools.front(); }
 
-  // One soft step and the ticks during it. Its last two systems run when the ticks are over.
+  // One soft step and the ticks during it. Its last two systems run after the ticks.
   void step(bool measured) {
     const std::size_t late = soft_.size() - 2;
     const Tick tick{steps_, kStep, static_cast<double>(steps_) * kStep};
@@ -190,7 +188,7 @@ class Bench {
     for (const Timed timed : what) costs_.times[timed].push_back(*time++);
   }
 
-  // The step that is over, against the same equations solved to the last digits.
+  // The finished step against the same equations solved to the last digits.
   void check() {
     check_tissue();
     const SoftState& soft = stage_.soft();
@@ -211,7 +209,7 @@ class Bench {
     keep(costs_.force_error, length(force - exact_force) / length(exact_force));
   }
 
-  // The tool's black box, asked for what this step's impulses do to its tissue.
+  // The tool's black box: the response of its tissue to this step's impulses.
   void check_tissue() {
     const SoftState& soft = stage_.soft();
     const SoftBodyState& tool = stage_.tissue(tool_);
@@ -275,7 +273,7 @@ Costs measure(const Cells& cells, const Studs& bed, ToolForce force, int repeats
   return costs;
 }
 
-// Of solve_contacts all but the sweeps: W, and what the impulses do.
+// solve_contacts without the sweeps: W, and the effect of the impulses.
 double delassus_ms(const Costs& c) {
   std::vector<double> times = c.times[kContacts];
   for (std::size_t i = 0; i < times.size(); ++i) times[i] -= c.times[kSweeps][i];
@@ -363,8 +361,8 @@ void print_memory(const std::vector<Costs>& all) {
                per_tetrahedron(c, c.mesh_bytes), per_tetrahedron(c, c.step_bytes), 1e-6 * c.model_bytes);
 }
 
-// Which rows: every size on the usual bed and every bed under the usual size, those of them up to 2,016 tetrahedra, or
-// the goal's alone.
+// The rows to run: every size on the usual bed and every bed under the usual size, those of them up to 2,016
+// tetrahedra, or only the goal's.
 enum class Which { kAll, kSmall, kUsual };
 
 int run(Which which, int repeats, const std::string& out) {

@@ -1,6 +1,6 @@
-// Tissue by itself: what assembling and stepping blocks of 500 to 40,000 tetrahedra costs, and what scheme, step and
-// iterations buy, as the error of a falling beam's tip against a converged reference beside the time. Times are the
-// processor's, of the one thread there is, so that what else runs on the machine counts little.
+// Tissue alone: time of assembling and stepping blocks of 500 to 40,000 tetrahedra. Effect of scheme, step size and
+// iterations: time, and error of a falling beam's tip against a converged reference. CPU times of the only thread,
+// which other processes affect little.
 //   bench_tissue [--out FILE.json]
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ struct Cost {
   double residual = 0;  // [1] |A v - b| / |b|
 };
 
-// A clamped beam that sways, so that every element turns and stretches from step to step.
+// A clamped, swaying beam, so that every element rotates and stretches from step to step.
 Cost cost(int along, int across) {
   TetMesh mesh = tets::box(along, across, across, dvec3(0), {0.1, 0.1 * across / along, 0.1 * across / along});
   tets::hold(mesh, [](dvec3 p) { return p.x < 1e-9; });
@@ -58,7 +58,7 @@ Cost cost(int along, int across) {
   return out;
 }
 
-// A soft beam is let go and swings down once; its tip is watched every 60th of a second.
+// A soft beam is released and swings down once; its tip is recorded every 60th of a second.
 struct Way {
   Scheme scheme = Scheme::kEuler;
   int steps = 1;  // per 60th of a second
@@ -111,7 +111,7 @@ Swing swing(const Way& way) {
   return out;
 }
 
-// Root of the mean square distance of the tips over the largest way the tip goes.
+// RMS distance of the tips over the largest displacement of the tip.
 double difference(const Swing& a, const Swing& b) {
   double sum = 0, way = 0;
   for (std::size_t i = 0; i < a.tip.size(); ++i) {
@@ -142,7 +142,7 @@ std::string schemes(double& reference_error) {
   Way coarser = finest;
   coarser.steps = 32;
   const Swing reference = swing(finest);
-  reference_error = difference(swing(coarser), reference) / 3;  // of order two
+  reference_error = difference(swing(coarser), reference) / 3;  // second order
   fmt::print("\nA beam of 288 tetrahedra swings down; the reference's own error is about {:.1e}\n", reference_error);
   fmt::print("{:>9} {:>10} {:>9} {:>12} {:>9} {:>13} {:>11} {:>13}\n", "scheme", "step ms", "at most", "iterations",
              "ms/step", "ms/simul. s", "tip error", "energy error");

@@ -1,7 +1,6 @@
-// What one touch tick costs on meshes of different sizes with the same number of awake vertices, the step with
-// everything awake, and how far the single-precision field is from a double-precision reference: time and error, side
-// by side.
-// And what many objects, of which one is touched, and many contacts on one object cost.
+// Time of a touch tick on meshes of different sizes with the same number of awake vertices, and of the step with
+// everything awake; error of the single-precision field against a double-precision reference. Also the time of many
+// objects of which one is touched, and of many contacts on one object.
 //   bench_touch_tick [--large] [--out FILE.json]
 #include <fmt/format.h>
 
@@ -90,7 +89,7 @@ Row measure(int n, std::uint32_t wanted_awake) {
   Deformable d;
   const double radius = 0.1;
   const std::uint32_t vertices = 6u * static_cast<std::uint32_t>(n) * static_cast<std::uint32_t>(n) + 2;
-  // Zones overhang the disc, so the disc itself holds fewer than the awake vertices wanted.
+  // Zones extend beyond the disc, so the disc itself contains fewer than the wanted awake vertices.
   d.reach = 2 * radius * std::sqrt(0.36 * wanted_awake / vertices);
   const auto begin = std::chrono::steady_clock::now();
   const Entity surface = stage.add(scenes::sphere(n, radius), d);
@@ -103,7 +102,7 @@ Row measure(int n, std::uint32_t wanted_awake) {
   double awake = 0;
   constexpr int kTicks = 20000;
   for (int i = 0; i < kTicks; ++i) {
-    // About a third of an edge a tick, along a curve that visits fresh places.
+    // About a third of an edge per tick, along a curve that reaches new places.
     const double a = 0.33 * edge / radius * i, b = 0.3 * std::sin(0.37 * a);
     const dvec3 direction = normalize(dvec3(std::sin(a), std::cos(a), b));
     stage.place(probe, direction * (radius - depth));
@@ -140,8 +139,8 @@ AllAwake measure_all_awake(int n) {
   const Motion m = motion(d, 1e-3);
   const std::uint32_t zones = stage.mesh(surface).zone_count();
   for (vec4& r : field.residual) r = vec4(1e-3f);
-  // A step reads residual and rate and writes residual, rate and stream: 5 x 16 bytes a vertex. A plain copy of the
-  // same bytes reads 2.5 x 16 and writes 2.5 x 16.
+  // A step reads residual and rate and writes residual, rate and stream: 5 x 16 bytes per vertex. An equivalent copy
+  // reads 2.5 x 16 and writes 2.5 x 16.
   std::vector<char> from(field.residual.size() * 40, 1), to(from.size());
   AllAwake out;
   out.vertices = stage.mesh(surface).vertex_count;
@@ -163,7 +162,7 @@ AllAwake measure_all_awake(int n) {
   return out;
 }
 
-// Ticks in which `probes` press next to each other into one sheet, or into the first of many balls.
+// Ticks in which `probes` press side by side into one sheet, or into the first of many balls.
 struct Many {
   std::uint32_t objects = 1, contacts = 0, awake = 0;
   double p50 = 0, p99 = 0;                              // [us] the whole tick
@@ -180,7 +179,7 @@ Many measure_many(int objects, int probes) {
     stage.add(scenes::sphere(2, 0.02), d, Pose{{0.2 + 0.05 * (i % side), 0.0, 0.05 * (i / side)}});
   std::vector<Entity> hands;
   const int row = static_cast<int>(std::ceil(std::sqrt(probes)));
-  const auto place = [&](int i, double time) {  // 4 mm apart: every dent meets its neighbours'
+  const auto place = [&](int i, double time) {  // 4 mm apart: neighbouring dents overlap
     return dvec3(0.004 * (i % row - 0.5 * row) + 0.01 * std::sin(time), -0.001, 0.004 * (i / row - 0.5 * row));
   };
   for (int i = 0; i < probes; ++i) hands.push_back(stage.add_probe(place(i, 0.0) + dvec3(0, 0.002, 0)));

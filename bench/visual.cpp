@@ -1,6 +1,6 @@
-// What a picture costs: milliseconds from upload to the finished frame (median), and the bytes that travel, for bodies
-// of growing fineness at two sizes. A tenth of the zones changes before every frame. The error beside it: how far the
-// stream on the GPU is from the one that was sent (the largest component; it must be 0).
+// Time of a frame: milliseconds from upload to the finished frame (median), and the bytes uploaded, for bodies of
+// increasing resolution at two sizes. A tenth of the zones changes before every frame. The error is the largest
+// component of the difference between the stream on the GPU and the one sent; it must be 0.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -85,7 +85,7 @@ Result<std::vector<Row>> measure(int n) {
       (*renderer)->picture(default_viewpoint(world), row.width, row.height, &stats);
       row.bytes = stats.upload_bytes;
       row.allowed = std::uint64_t{16} * snapshot.objects[0].awake_vertices + 4096;
-      if (i >= 2) times.push_back(stats.draw_ms);  // the first pay for compiling
+      if (i >= 2) times.push_back(stats.draw_ms);  // the first include shader compilation
     }
     row.ms = median(times);
     rows.push_back(row);

@@ -1,32 +1,33 @@
-# Flags of everything in this project; who links to the libraries gets none of them, in the same build tree or installed.
+# Compiler flags of this project. Targets that link to the libraries inherit none of them, in the same build tree or
+# installed.
 include_directories(${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
 if(PROJECT_IS_TOP_LEVEL)
   add_compile_options(-Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Werror)
 endif()
-# No contraction into fused multiply-add: the same bits on every machine (lockstep). Nobody reads errno after sqrt or
-# traps on a comparison; knowing that lets loops become SIMD, without changing a bit.
+# No contraction into fused multiply-add, so that results have the same bits on every machine (lockstep). No code reads
+# errno after sqrt or traps on a comparison; declaring this allows vectorisation without changing a bit.
 add_compile_options(-ffp-contract=off -fno-math-errno -fno-trapping-math)
-# A library that is position-independent may still inline its own functions, as a program does.
+# Allows a position-independent library to inline its own functions, as in a program.
 add_compile_options(-fno-semantic-interposition)
-# What is built says nothing of where: assertions name files within the project. Only the debug build keeps whole paths
-# for its debugger.
+# Build paths are removed: assertions name files within the project. Only the debug build keeps full paths for its
+# debugger.
 add_compile_options("$<IF:$<CONFIG:Debug>,-fmacro-prefix-map,-ffile-prefix-map>=${PROJECT_BINARY_DIR}/="
                     "$<IF:$<CONFIG:Debug>,-fmacro-prefix-map,-ffile-prefix-map>=${PROJECT_SOURCE_DIR}/=")
-# GCC 12 sees overlaps in std::string that cannot be (its bug 105651).
+# GCC 12 warns about impossible overlaps in std::string (its bug 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-Wno-restrict)
 endif()
-# Twelve source files are compiled as one (CMAKE_UNITY_BUILD, set by the presets): most of the time of a small file goes
-# into the headers that it includes. A name in an unnamed namespace must then be unique within its library. What one file
-# names so is then outside the next, where a local of that name is no mistake: shadowing is looked for by the debug build,
-# file by file. GCC takes an unnamed namespace in an included file for one in a header.
+# Twelve source files are compiled as one (CMAKE_UNITY_BUILD, set by the presets), because a small file's compile time
+# is mostly that of its headers. A name in an unnamed namespace must therefore be unique within its library. In a unity
+# build a local may legally shadow such a name of another file, so the shadow warning is enabled only in the debug
+# build, file by file. GCC treats an unnamed namespace in an included file as one in a header.
 if(CMAKE_UNITY_BUILD)
   add_compile_options(-Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
-# A driver's thread may have a function of its own that is called as the maker's loop is (Driver::run).
+# A driver's thread may run a function that is called by the vendor's loop (Driver::run).
 add_compile_options($<$<CXX_COMPILER_ID:Clang>:-Wno-overloaded-virtual>)
 
-# What who links to a library of ours needs, too.
+# Also needed by targets that link to our libraries.
 add_library(pliant_options INTERFACE)
 target_compile_features(pliant_options INTERFACE cxx_std_20)
 target_include_directories(pliant_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
@@ -40,18 +41,17 @@ if(PLIANT_SANITIZE)
   add_link_options(-fsanitize=${PLIANT_SANITIZE})
   add_compile_definitions(PLIANT_SANITIZED)
   if(PLIANT_SANITIZE MATCHES "undefined")
-    # Checks of every pointer that is followed or computed: they double the time that Eigen takes to compile, and what
-    # they find the address sanitizer mostly stops at too.
+    # Pointer checks double the compile time of Eigen, and the address sanitizer finds most of the same errors.
     add_compile_options(-fno-sanitize=null,object-size,alignment,pointer-overflow)
-    # A maker's library is called through types of ours, which are not the ones that it was compiled with.
+    # Functions of a vendor's library are called through our own declarations of their types.
     add_compile_options($<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=function>)
-    # What is found ends the program: nobody reads what a test that passes has printed.
+    # A finding aborts the program, because output of a passing test is not read.
     add_compile_options(-fno-sanitize-recover=undefined)
   endif()
 endif()
 
-# Code that runs a few times, where the compiler's time weighs more than its own: tests, and under the sanitizers all that
-# stands around the engine.
+# For code that runs only a few times, where compile time matters more: tests, and under the sanitizers everything
+# except the engine.
 function(pliant_compile_fast target)
   if(PLIANT_SANITIZE)
     target_compile_options(${target} PRIVATE -O0)
@@ -76,14 +76,15 @@ function(pliant_library name)
     endif()
     list(APPEND sources ${more})
   endforeach()
-  add_library(pliant_${name} ${sources})  # BUILD_SHARED_LIBS says of which kind
+  add_library(pliant_${name} ${sources})  # BUILD_SHARED_LIBS selects static or shared
   set_target_properties(pliant_${name} PROPERTIES EXPORT_NAME internal_${name} POSITION_INDEPENDENT_CODE ON
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN"
     CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
   target_link_libraries(pliant_${name} PUBLIC pliant_options ${ARG_DEPENDS})
 endfunction()
 
-# What a program links to for a component of the package: pliant::COMPONENT, installed and in the same build tree.
+# The target that a program links to for a component of the package: pliant::COMPONENT, installed and in the same build
+# tree.
 function(pliant_component_target component target)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${component})
   add_library(pliant::${component} ALIAS ${target})

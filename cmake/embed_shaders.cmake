@@ -1,4 +1,5 @@
-# cmake -D FOLDER=shaders -D OUT=FILE.cpp -P embed_shaders.cmake: every file in FOLDER as text of a program.
+# cmake -D FOLDER=shaders -D OUT=FILE.cpp -P embed_shaders.cmake: writes every file in FOLDER as a string into a C++
+# file.
 file(GLOB_RECURSE names RELATIVE ${FOLDER} ${FOLDER}/*)
 list(SORT names)
 set(text "// Made from shaders/ by cmake/embed_shaders.cmake.\n#include \"systems/visual/gpu/embedded_shaders.h\"\n\n")

@@ -1,7 +1,7 @@
-# `cmake --install` puts libraries, public headers, the command and what ships. Nothing of it says where it was built or
-# installed: the folder may be moved. find_package(pliant COMPONENTS ...) finds pliant::COMPONENT: `engine` needs neither
-# OpenGL nor a reader of files, `content` reads and writes level files, `visual` draws, `devices` has the drivers.
-# Targets named internal_* are parts of these.
+# `cmake --install` installs libraries, public headers, the command and content. The installation is relocatable.
+# find_package(pliant COMPONENTS ...) provides pliant::COMPONENT: `engine` needs neither OpenGL nor file readers,
+# `content` reads and writes level files, `visual` renders, `devices` contains the drivers. Targets named internal_* are
+# parts of these.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -23,13 +23,13 @@ endif()
 
 install(DIRECTORY include/pliant DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 if(PLIANT_COMMAND)
-  # `./dev run` builds the command alone: what is installed beside it is built with it.
+  # `./dev run` builds only the command; files installed with it are built with it.
   list(REMOVE_ITEM installed pliant_options)
   add_dependencies(pliant ${installed})
   file(RELATIVE_PATH libraries /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
   set_target_properties(pliant PROPERTIES INSTALL_RPATH "$<$<BOOL:${BUILD_SHARED_LIBS}>:$ORIGIN/${libraries}>")
   install(TARGETS pliant RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(DIRECTORY content/levels content/environments DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant/content OPTIONAL)
+  install(DIRECTORY content/levels content/environments content/samples DESTINATION ${CMAKE_INSTALL_DATADIR}/pliant/content OPTIONAL)
   # Who sits at the machine may open its devices. udev looks in this folder whatever the prefix is: a package's is /usr.
   install(FILES devices/70-pliant.rules DESTINATION lib/udev/rules.d)
 endif()

@@ -1,5 +1,5 @@
-# Debian packages, found by CMake or pkg-config: those of what is built. `./dev` installs what is missing.
-set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a project around this one links to them through our libraries
+# Debian packages of the components that are built, found by CMake or pkg-config. `./dev` installs missing ones.
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # an enclosing project links to them through our libraries
 find_package(Threads REQUIRED)
 find_package(glm REQUIRED)
 find_package(fmt REQUIRED)
@@ -33,7 +33,7 @@ if(PLIANT_COMMAND)
 endif()
 if(PLIANT_TESTS)
   find_package(GTest REQUIRED)
-  pkg_check_modules(umockdev IMPORTED_TARGET umockdev-1.0)  # without it, tests of plugging devices in are skipped
+  pkg_check_modules(umockdev IMPORTED_TARGET umockdev-1.0)  # without it, the hotplug tests are skipped
   find_file(UMOCKDEV_PRELOAD libumockdev-preload.so.0 PATHS /usr/lib /usr/local/lib PATH_SUFFIXES ${CMAKE_LIBRARY_ARCHITECTURE})
 endif()
 if(PLIANT_BENCH)

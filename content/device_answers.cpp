@@ -18,7 +18,7 @@ fs::path user_folder() {
   return {};
 }
 
-// However the file is reached. JSON is UTF-8: what a path has beside it is escaped.
+// One key per file, however the path is written. JSON needs UTF-8: other bytes of a path are escaped.
 std::string key_of_level(const fs::path& level) {
   std::error_code failed;
   const fs::path whole = level.empty() ? level : fs::weakly_canonical(level, failed);

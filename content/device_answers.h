@@ -1,5 +1,6 @@
-// What a user has answered to levels that ask for more than a kind of device (content/level/device_request.h): for this
-// file and this very text only. $XDG_CONFIG_HOME/pliant/devices.json, else ~/.config/pliant/devices.json.
+// The user's answers to levels that request more than a kind of device (content/level/device_request.h). An answer
+// holds for this file and this exact text only. Stored in $XDG_CONFIG_HOME/pliant/devices.json, else
+// ~/.config/pliant/devices.json.
 #pragma once
 
 #include <filesystem>
@@ -13,10 +14,10 @@ namespace pliant {
 
 class DeviceAnswers {
  public:
-  // `folder` empty: the user's. A file that cannot be read allows nothing.
+  // Empty `folder`: the user's folder. An unreadable file allows nothing.
   static DeviceAnswers load(const std::filesystem::path& folder = {});
   bool allows(const std::filesystem::path& level, const std::string& id) const;
-  // Holds for this object even where it cannot be written, and for a level that has no file yet.
+  // Takes effect in this object even if the file cannot be written, and for a level without a file yet.
   Status allow(const std::filesystem::path& level, const std::string& id);
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kNamed = 3;
 
-// Whether anything was above it.
+// Returns whether the value was above the cap.
 bool lower(double& value, double cap) {
   if (!(value > cap)) return false;
   value = cap;

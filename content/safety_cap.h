@@ -1,5 +1,5 @@
-// What a file may ask of a haptic device. A level's limits on force are its maker's word; whoever holds the device has
-// the last one.
+// Caps the forces that a level may request from a haptic device. The user's cap takes precedence over the level's
+// limits.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace pliant {
 
-// Lowers max_force, max_slew and max_torque of every device and tool of the level to the cap; one sentence says of how
-// many, none where nothing was above it. Saving the level keeps what its file said.
+// Lowers max_force, max_slew and max_torque of all devices and tools of the level to the cap. Returns a sentence with
+// their number, empty if none was above it. Saving the level keeps the file's values.
 std::vector<std::string> cap_safety(Level& level, const SafetyCap& cap);
 
 }  // namespace pliant

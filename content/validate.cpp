@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kSharp = 0.05;  // [rad] dihedral angle below which an element is hard on solvers
+constexpr double kSharp = 0.05;  // [rad] dihedral angle below which an element slows solvers down
 
 void find_in_extensions(const Json& json, Findings& findings) {
   const Json& nodes = array_of(json, "nodes");
@@ -41,7 +41,7 @@ void find_in_extensions(const Json& json, Findings& findings) {
       find_in_scene_extensions(scenes[i]["extensions"], fmt::format("/scenes/{}/extensions", i), findings);
 }
 
-// JSON pointer of a node; its name where the level is no glTF.
+// JSON pointer of a node; its name if the level is not from glTF.
 std::string pointer_of(const Level& level, std::size_t node) {
   const LevelNode& it = level.nodes[node];
   return level.source && it.source >= 0 ? fmt::format("/nodes/{}", it.source) : it.name;
@@ -53,7 +53,7 @@ std::string scene_pointer(const Level& level) {
   return fmt::format("/scenes/{}", json ? value_of<int>(*json, "scene", 0) : 0);
 }
 
-// Of an entity that spawn made: it makes one of every node in the scene, in their order.
+// Of an entity from spawn, which creates one per node of the scene, in order.
 std::string pointer_of(const Level& level, const World& world, Entity entity) {
   std::size_t row = 0;
   for (std::size_t i = 0; i < level.nodes.size(); ++i)
@@ -66,7 +66,7 @@ Finding from_spawn(const Level& level, const Error& error) {
   return {Severity::kError, pointer_of(level, static_cast<std::size_t>(error.node)), error.what};
 }
 
-// An error of preparing names the node in its own words: `name`, or alone.
+// prepare's errors name the node as `name`, or the name alone.
 Finding from_prepare(const Level& level, const Error& error) {
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const std::string& name = level.nodes[i].name;
@@ -76,7 +76,7 @@ Finding from_prepare(const Level& level, const Error& error) {
   return {Severity::kError, scene_pointer(level), error.message()};
 }
 
-// What is written but never simulated, because no scene, or another one than is shown, has it.
+// Extensions without effect, because their node is not in the shown scene.
 void find_outside(const Level& level, Findings& findings) {
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const LevelNode& node = level.nodes[i];
@@ -97,7 +97,7 @@ void find_outside(const Level& level, Findings& findings) {
   }
 }
 
-// What building a mesh says of it: the mean edge [m], or -1 where it cannot be built.
+// Findings from building the mesh; returns its mean edge [m], or -1 if it cannot be built.
 double find_in_mesh(const LevelNode& node, const LevelMesh& mesh, double crease, const std::string& pointer,
                     Findings& findings) {
   const Result<BuiltMesh> built = build_mesh(node.name, mesh.primitives, mat4(1), {crease});
@@ -120,10 +120,10 @@ double find_in_mesh(const LevelNode& node, const LevelMesh& mesh, double crease,
   return static_cast<double>(built->mesh.mean_edge);
 }
 
-// How surfaces will feel where their meshes do not suit them. What instances have in common is said of the first: a
-// mesh can be shown ten thousand times, and it is built once.
+// Meshes that are unsuitable for touch. Common findings of instances are reported for the first one: a mesh can be
+// shown ten thousand times, and is built once.
 void find_in_meshes(const Level& level, Findings& findings, const std::atomic<bool>* stop) {
-  std::map<std::pair<std::int32_t, double>, double> mean_edge;  // of a mesh and its crease angle
+  std::map<std::pair<std::int32_t, double>, double> mean_edge;  // per mesh and crease angle
   std::set<std::tuple<std::int32_t, double, double>> seen;      // and the reach
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     if (stop && *stop) return;
@@ -144,7 +144,7 @@ void find_in_meshes(const Level& level, Findings& findings, const std::atomic<bo
   }
 }
 
-// What about soft and rigid bodies cannot go together, and what is read differently from their files.
+// Conflicts of soft and rigid bodies, and notes on their files.
 void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& findings) {
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const LevelNode& node = level.nodes[i];
@@ -153,25 +153,25 @@ void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& fi
     if (const std::string fault = soft_fault(node); !fault.empty())
       findings.push_back({Severity::kError, pointer, fault});
     if (!node.soft_body || node.soft_body->mesh.empty()) continue;
-    if (const Result<TetFile> file = load_named_tets(folder, node.soft_body->mesh); file)  // else spawn says so
+    if (const Result<TetFile> file = load_named_tets(folder, node.soft_body->mesh); file)  // otherwise spawn reports it
       for (const std::string& note : file->notes) findings.push_back({Severity::kNote, pointer, note});
   }
 }
 
-// What is written and read by nobody, and what nothing moves.
+// Settings without effect, and probes without a device.
 void find_idle(const Level& level, Findings& findings) {
   for (const UnusedKey& key : find_unused_keys(level)) {
     const std::string owner =
         key.node < 0 ? scene_pointer(level) : pointer_of(level, static_cast<std::size_t>(key.node));
     std::string pointer = owner + "/extensions/" + key.pointer;
-    std::replace(pointer.begin(), pointer.end(), '.', '/');  // a key's dots are nested objects
+    std::replace(pointer.begin(), pointer.end(), '.', '/');  // dots in keys are nested objects
     findings.push_back({Severity::kNote, std::move(pointer), key.what});
   }
   for (const DeviceFault& idle : find_unmoved_probes(level))
     findings.push_back({Severity::kNote, pointer_of(level, idle.node), idle.what});
 }
 
-// Devices that the level asks for by their id: what it may ask for is named, what it may not is what `run` refuses.
+// Devices requested by id: lists the allowed ones, and rejects the others as `run` does.
 void find_requests(const Level& level, Findings& findings) {
   for (const LevelRequest& asked : device_requests(level)) {
     if (!level.nodes[asked.node].in_scene) continue;
@@ -185,7 +185,7 @@ void find_requests(const Level& level, Findings& findings) {
   }
 }
 
-// Scripts that are not there, or hold no path.
+// Scripts that are missing or contain no path.
 void find_in_scripts(const Level& level, const fs::path& folder, Findings& findings) {
   ScriptLibrary scripts;
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
@@ -205,7 +205,7 @@ void find_in_scripts(const Level& level, const fs::path& folder, Findings& findi
   }
 }
 
-// Tissue that can be simulated, but not well.
+// Tissue that can be simulated, but poorly.
 void find_in_tissue(const Level& level, const World& world, Findings& findings) {
   for (auto [entity, soft_body] : world.registry.view<const SoftBody>()) {
     const std::string node = pointer_of(level, world, entity);  // clang 14 captures no structured bindings
@@ -243,7 +243,7 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
     findings.push_back({Severity::kError, level.error().pointer, level.error().what});
     return findings;
   }
-  for (std::size_t i = level->document_notes; i < level->notes.size(); ++i)  // those before are among the findings
+  for (std::size_t i = level->document_notes; i < level->notes.size(); ++i)  // those before are already in the findings
     findings.push_back({Severity::kNote, "", level->notes[i]});
   level->path = path;
   const Findings of_level = validate_level(*std::move(level), prepare);
@@ -290,7 +290,7 @@ Findings validate_level(Level level, const std::function<Status(World&)>& prepar
   }
   if (stopped()) return findings;
   Status prepared = Done{};
-  if (prepare) prepared = prepare(*world);  // may say more of tissue (TetReport::findings)
+  if (prepare) prepared = prepare(*world);  // may add findings on tissue (TetReport::findings)
   find_in_tissue(level, *world, findings);
   if (!prepared && !stopped()) findings.push_back(from_prepare(level, prepared.error()));
   return findings;

@@ -1,4 +1,4 @@
-// Everything that `pliant validate` says of a level.
+// All findings of `pliant validate`.
 #pragma once
 
 #include <atomic>
@@ -12,14 +12,13 @@
 
 namespace pliant {
 
-// The document against glTF 2.0, the PLIANT_* extensions against their table, then what only shows when meshes are
-// built: each step relies on the one before. All findings, not only the first; the level can be loaded if none is an
-// error. `prepare` is what a run does to a world before its first tick, and what it refuses then (content knows no
-// systems).
+// Checks the document against glTF 2.0 and the PLIANT_* extensions against their table, then builds the meshes; each
+// step relies on the previous one. Returns all findings; the level can be loaded if none is an error. `prepare` runs
+// the checks that a run performs on a world before its first tick (content does not depend on systems).
 Findings validate_level(const std::filesystem::path& path, const std::function<Status(World&)>& prepare = {});
 
-// The same of a level in memory, whose document has been heard; files that it names are sought beside `level.path`.
-// Once `stop` is set it soon returns what it has found so far.
+// The same for a level in memory whose document has been checked; referenced files are looked up beside `level.path`.
+// Once `stop` is set it soon returns the findings so far.
 Findings validate_level(Level level, const std::function<Status(World&)>& prepare = {},
                         const std::atomic<bool>* stop = nullptr);
 

@@ -5,7 +5,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kSlowest = 10.0, kFastest = 20000.0;  // [Hz] slower, a run would wait for it
+constexpr double kSlowest = 10.0, kFastest = 20000.0;  // [Hz] slower ones would block a run
 
 struct Figure {
   double DeviceCapabilities::*value;

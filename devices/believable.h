@@ -1,5 +1,4 @@
-// What a device may say of itself. Its limits are never raised, and they are only as good as who says them: one of
-// 1e9 N would bound nothing.
+// Plausibility check of a device's capabilities. Its limits are trusted, so a limit of 1e9 N would limit nothing.
 #pragma once
 
 #include <string>
@@ -8,7 +7,7 @@
 
 namespace pliant {
 
-// "" or what cannot be, and the cure.
+// Returns "" or the implausible value and the remedy.
 std::string beyond_belief(const DeviceCapabilities& can);
 
 }  // namespace pliant

@@ -42,7 +42,7 @@ std::vector<Alternative> alternatives_of(std::string_view wish) {
 // Of a kind; the strongest first.
 Result<const DeviceInfo*> of_kind(const std::string& kind, std::span<const DeviceInfo> there) {
   const auto fits = [&](const DeviceInfo& device) {
-    if (device.can.simulated) return false;  // nobody means one without its name
+    if (device.can.simulated) return false;  // simulated devices must be named explicitly
     return kind == "any-force" ? pushes(device) : kind == "any-pose" ? senses_a_pose(device) : true;
   };
   const DeviceInfo* best = nullptr;
@@ -66,7 +66,7 @@ Result<const DeviceInfo*> of_kind(const std::string& kind, std::span<const Devic
   return Error{kind, fmt::format("{} is there{}", what, missing.empty() ? "" : " (" + missing + ")")};
 }
 
-// Of a driver by name, which opens even what cannot be listed.
+// Of a driver by name, including devices that cannot be listed.
 Result<DeviceChoice> by_name(const Alternative& wish, std::span<const DeviceInfo> there) {
   const std::size_t colon = wish.what.find(':');
   const std::string driver = wish.what.substr(0, colon);
@@ -81,7 +81,7 @@ Result<DeviceChoice> by_name(const Alternative& wish, std::span<const DeviceInfo
     if (!missing) missing = &device;
   }
   if (missing) return Error{wish.what, fmt::format("{}: {}", missing->name, missing->missing)};
-  return DeviceChoice{wish.what + wish.wrappers, wish.what, {}};  // open() says why if it is not there
+  return DeviceChoice{wish.what + wish.wrappers, wish.what, {}};  // open() reports it if it is missing
 }
 
 }  // namespace

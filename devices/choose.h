@@ -1,13 +1,13 @@
-// Which device a wish means, of those that are there: what a level's `id` and `--probe NAME=device:WISH` say.
+// Resolves a wish (a level's `id`, or `--probe NAME=device:WISH`) to one of the available devices.
 //
-// A wish is one or more alternatives, separated by ";": the first that can be opened holds. Each is
-//   DRIVER or DRIVER:ID     a driver's first device, or the one of that id (as `pliant devices` prints it)
-//   any-force               whatever pushes in three axes, the strongest first
-//   any-pose                whatever senses position and rotation
-//   any                     whatever there is; none of these three is ever a simulated device, one that whoever sends
-//                           from a port says to be there (`network`), or one whose limits cannot be
+// A wish is one or more alternatives, separated by ";". The first one that can be opened is used. Each is
+//   DRIVER or DRIVER:ID     a driver's first device, or the one with that id (as `pliant devices` prints it)
+//   any-force               a device that renders force in three axes, the strongest first
+//   any-pose                a device that senses position and rotation
+//   any                     any device. These three never select a simulated device, one announced over a port
+//                           (`network`), or one with implausible limits
 //   mouse                   the mouse of the window
-// What follows "|" in an alternative is handed on with it (devices/wrappers).
+// Text after "|" in an alternative is passed on with it (devices/wrappers).
 #pragma once
 
 #include <span>
@@ -21,13 +21,13 @@ namespace pliant {
 
 struct DeviceChoice {
   std::string id;                  // "DRIVER:ID" to connect; empty: the mouse
-  std::string name;                // as people call it
-  std::vector<std::string> notes;  // why an earlier alternative does not hold
+  std::string name;                // display name
+  std::vector<std::string> notes;  // why an earlier alternative was not used
 };
 
-// "falcon:0"; of a driver that has one device, its name.
+// "falcon:0"; for a driver with a single device, its name.
 std::string full_id(const DeviceInfo& device);
-// The error says of every alternative why it cannot be.
+// The error tells for every alternative why it is not available.
 Result<DeviceChoice> choose_device(const std::string& wish, std::span<const DeviceInfo> there);
 
 }  // namespace pliant

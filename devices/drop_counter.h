@@ -1,4 +1,4 @@
-// What a driver has counted (CountsDropped), also behind wrappers. On the thread that reads.
+// Access to a driver's counts of dropped frames (CountsDropped), also behind wrappers. On the thread that reads.
 #pragma once
 
 #include "pliant/device_state.h"

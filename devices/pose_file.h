@@ -1,4 +1,4 @@
-// Poses in a CSV file: the level's scripts, and what the wrapper `record` writes.
+// Poses in CSV files: the level's scripts, and the output of the wrapper `record`.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-// A row: what was sensed, and the wrench that was written after it.
+// A row: a sample, and the wrench written after it.
 struct PoseFileRow {
   DeviceSample sample;  // its time [s]: since the first row
   DeviceWrench wrench;
@@ -26,7 +26,7 @@ Result<std::vector<PoseFileRow>> parse_poses(std::string_view text, const std::s
 Result<std::vector<PoseFileRow>> read_poses(const std::string& file);
 Path path_of(const std::vector<PoseFileRow>& rows);
 
-// A new file; one that is there is not replaced.
+// Creates a new file; does not replace an existing one.
 Status write_poses(const std::string& file, const std::vector<PoseFileRow>& rows, const std::string& comment);
 
 }  // namespace pliant

@@ -23,7 +23,7 @@ Registered& registered() {
   return all;
 }
 
-// Where either has no serial number, its kind decides.
+// If either has no serial number, vendor and product are compared.
 bool same_hardware(const std::string& a, const std::string& b) {
   constexpr std::size_t kKind = 10;  // of "054c:0ce6:"
   if (a.size() < kKind || b.size() < kKind || a.compare(0, kKind, b, 0, kKind) != 0) return false;
@@ -61,13 +61,16 @@ bool Driver::write_model(const DeviceModel&, const DeviceWrench&) {
 bool Driver::safe_line(SafeLine&) const {
   return false;
 }
+std::string Driver::node() const {
+  return {};
+}
 bool Driver::gone() const {
   return false;
 }
 void Driver::make_safe() noexcept {
   try {
     write({});
-  } catch (...) {  // its device's own watchdog ends the force
+  } catch (...) {  // the device's own watchdog removes the force
   }
 }
 

@@ -14,7 +14,7 @@ std::string_view trimmed(std::string_view text) {
 
 namespace {
 
-// Units from the longest, so that "ms" is not "s".
+// Longer units first, so that "ms" is not read as "s".
 std::optional<double> with_unit(std::string_view text,
                                 std::initializer_list<std::pair<std::string_view, double>> units) {
   for (const auto& [unit, factor] : units) {

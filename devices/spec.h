@@ -1,4 +1,4 @@
-// Words of a device's options: "5ms", "10%", "0.1mm", and lists KEY=VALUE.
+// Values in a device's options: "5ms", "10%", "0.1mm", and lists KEY=VALUE.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@
 
 namespace pliant {
 
-// Without the blanks around it.
+// Removes surrounding blanks.
 std::string_view trimmed(std::string_view text);
 
-// Parts between `mark`s, blanks around them removed. An empty text has no part.
+// Splits at `mark` and trims the parts. An empty text has no part.
 std::vector<std::string> split(std::string_view text, char mark);
 
 struct Option {
@@ -21,7 +21,7 @@ struct Option {
 };
 Option option_of(std::string_view text);
 
-// Finite numbers; no unit: what stands in brackets.
+// Finite numbers. Without a unit, the unit in brackets is meant.
 std::optional<double> plain_number(std::string_view text);
 std::optional<double> seconds_of(std::string_view text);  // s, ms, us [s]
 std::optional<double> metres_of(std::string_view text);   // m, mm, um [m]

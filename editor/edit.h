@@ -1,4 +1,4 @@
-// The editor as the command calls it.
+// The editor's interface for the command.
 #pragma once
 
 #include <filesystem>
@@ -11,15 +11,15 @@ namespace pliant {
 
 struct EditOptions {
   std::string file;                           // a level or a mesh; empty: the start page
-  double unit = 1.0;                          // [m] that one unit of a bare mesh is
-  std::string input;                          // a script of events (editor/ui/script.h); empty: only the hand
+  double unit = 1.0;                          // [m] length unit of a bare mesh
+  std::string input;                          // a script of events (editor/ui/script.h); empty: user input
   std::string out = ".";                      // folder of the script's screenshots
   int width = 1600, height = 900;             // [pixel]
   std::string config;                         // folder of settings; empty: the user's own
-  std::vector<std::filesystem::path> levels;  // that ship, for the start page
+  std::vector<std::filesystem::path> levels;  // shipped levels, for the start page
 };
 
-// Until the window is closed. An error is what kept the editor from opening, or a script's step that failed.
+// Runs until the window is closed. Error: the editor could not open, or a script's step failed.
 Status edit(const EditOptions& options);
 
 }  // namespace pliant

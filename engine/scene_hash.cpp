@@ -2,19 +2,11 @@
 
 #include <algorithm>
 
-#include "content/files/file_io.h"
 #include "content/keys/extension_table.h"
-#include "content/tets/tet_file.h"
 
 namespace pliant {
 namespace fs = std::filesystem;
 namespace {
-
-template <class T>
-void add_values(Hash& hash, const std::vector<T>& values) {
-  hash.add(values.size());
-  hash.add_bytes(values.data(), values.size() * sizeof(T));
-}
 
 void add_mesh(Hash& hash, const LevelMesh& mesh) {
   hash.add(mesh.primitives.size());
@@ -71,25 +63,6 @@ void add_keys(Hash& hash, const Extension& extension, const void* owner, const f
 }
 
 }  // namespace
-
-void add_text(Hash& hash, const std::string& text) {
-  hash.add(text.size());
-  hash.add_bytes(text.data(), text.size());
-}
-
-void add_named_file(Hash& hash, const fs::path& folder, const std::string& name) {
-  if (name.empty()) return;
-  const Result<fs::path> named = confined_path(folder, name);
-  if (!named) return;
-  for (const fs::path& file : {*named, tetgen_partner(*named)}) {
-    std::error_code no;
-    if (file.empty() || !fs::is_regular_file(file, no)) continue;
-    const Result<Bytes> bytes = read_file(file);
-    if (!bytes) continue;  // the reader of the file reports it
-    hash.add(bytes->size());
-    hash.add_bytes(bytes->data(), bytes->size());
-  }
-}
 
 std::uint64_t scene_hash(const Level& level) {
   Hash hash;

@@ -1,6 +1,5 @@
-// What people write for devices: pose files, profiles and keys of a simulated device, wrappers, wishes, the options of
-// a driver. The first byte chooses the parser. What is taken is finite and within its range, and can be run; what is
-// not is refused in a sentence.
+// Text about devices: pose files, profiles and keys of a simulated device, wrappers, wishes, driver options. The first
+// byte selects the parser. Accepted values must be finite, in range and usable; rejected ones must give a sentence.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -40,7 +39,7 @@ void poses(const std::string& text) {
     ASSERT(finite(row.sample.position) && finite(row.wrench.force) && finite(row.wrench.torque));
     ASSERT(std::abs(glm::length(row.sample.rotation) - 1.0) < 1e-9);
   }
-  // Whoever follows it is always at a place.
+  // A path gives a pose at any time.
   Path path = path_of(*rows);
   for (const bool repeats : {false, true}) {
     path.repeats = repeats;
@@ -54,14 +53,14 @@ void poses(const std::string& text) {
   }
 }
 
-// Files are another target's business: a word may not name one here.
+// Files are covered by another target: text that names one is skipped.
 bool names_a_file(const std::string& text) {
   for (const char* const key : {"path", "replay", "record"})
     if (text.find(key) != std::string::npos) return true;
   return false;
 }
 
-// As many samples as anybody looks at; what it says stays finite under any force.
+// Its samples must stay finite under any force.
 void move(Driver& device) {
   for (int i = 0; i < 12; ++i) {
     DeviceSample sample;
@@ -77,7 +76,7 @@ void simulated(const std::string& text) {
   const DeviceCapabilities can = capabilities_of(options->profile);
   for (const double limit : {can.max_force, can.max_stiffness, can.rate, can.latency, can.damping})
     ASSERT(limit >= 0.0 && std::isfinite(limit));
-  if (options->profile.rate < 500.0) return;  // long periods take long
+  if (options->profile.rate < 500.0) return;  // long periods make a run slow
   options->clock = DeviceClock::kTick;
   SimulatedDevice device(std::move(options).value());
   ASSERT(device.open("").ok());

@@ -1,4 +1,4 @@
-// Bare Draco files: a sound Level, or one sentence.
+// Bare Draco files: a sound Level, or an error of one sentence.
 #include <cstddef>
 #include <cstdint>
 

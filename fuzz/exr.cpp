@@ -1,4 +1,4 @@
-// OpenEXR panoramas: finite light for every pixel, or one sentence.
+// OpenEXR panoramas: finite light for every pixel, or an error of one sentence.
 #include "content/files/exr.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// glTF and GLB from memory: a sound Level, which can be written and read again, or one sentence.
+// glTF and GLB from memory: a sound Level that can be written and read again, or an error of one sentence.
 #include <cstddef>
 #include <cstdint>
 
@@ -6,7 +6,7 @@
 #include "content/gltf/gltf_save.h"
 #include "fuzz/sound_level.h"
 
-// What the checks pass tinygltf can read.
+// tinygltf must be able to read everything that passes the checks.
 static bool tinygltf_failed(const pliant::Error& error) {
   return error.what.rfind("is sound glTF that tinygltf cannot read", 0) == 0;
 }

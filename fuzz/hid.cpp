@@ -1,5 +1,5 @@
-// What HID devices and gamepads send: report descriptors, reports, feature reports, events. The first byte chooses the
-// parser; a driver's number is never allowed to be NaN or beyond its range.
+// Input from HID devices and gamepads: report descriptors, reports, feature reports, events. The first byte selects the
+// parser. A driver's output must never be NaN or out of range.
 #include <linux/input.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ void fuzz_sony(SonyModel model, bool bluetooth, Bytes rest) {
     const Bytes packet = next_packet(rest);
     SonyInput input;
     std::vector<std::uint8_t> sealed(packet.begin(), packet.end());
-    if (bluetooth && sealed.size() == 78) seal_sony(0xa1, sealed);  // what is past the sum is worth the fuzzer's time
+    if (bluetooth && sealed.size() == 78) seal_sony(0xa1, sealed);  // a valid checksum lets the fuzzer reach the parser
     if (parse_sony(model, bluetooth, sealed, input) == SonyParse::kSample) {
       for (const double stick : input.sticks) check(std::abs(stick) <= 1.0);
       check(input.left >= 0.0 && input.left <= 1.0 && input.battery >= 0.0 && input.battery <= 1.0);

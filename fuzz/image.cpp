@@ -1,4 +1,4 @@
-// PNG and JPEG pictures: four bytes for every pixel, or one sentence.
+// PNG and JPEG pictures: four bytes for every pixel, or an error of one sentence.
 #include "content/files/image.h"
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Writes the seeds that are committed: small files that exercise every branch of a reader, made by the project's own
-// writers. make_seeds FOLDER
+// Writes the committed seeds with the project's own writers: small files that exercise every branch of a reader.
+// make_seeds FOLDER
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>

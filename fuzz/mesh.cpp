@@ -1,5 +1,5 @@
-// Meshes of other formats: our checks, Assimp and what is made of its scene, in this process. The first byte chooses
-// the format, the rest is the file.
+// Other mesh formats: our checks, Assimp and the conversion of its scene, in this process. The first byte selects the
+// format; the rest is the file.
 #include <cstddef>
 #include <cstdint>
 
@@ -7,7 +7,7 @@
 #include "fuzz/obj_buffer.h"
 #include "fuzz/sound_level.h"
 
-// What Assimp leaks where it throws goes with the child that import_mesh runs it in.
+// Assimp leaks when it throws; in production this ends with import_mesh's child process.
 extern "C" const char* __asan_default_options() {
   return "detect_leaks=0";
 }
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       pliant::assert_sound(*level);
     else
       ASSERT(!level.error().message().empty());
-  } catch (const std::exception&) {  // import_mesh makes a sentence of it
+  } catch (const std::exception&) {  // import_mesh reports it as an error
   }
   return 0;
 }

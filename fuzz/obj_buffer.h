@@ -1,6 +1,6 @@
-// Assimp's reader of OBJ allocates and clears a buffer of 16 MiB a file, however small the file: 5 ms of page faults.
-// Here that one block is a range of addresses over the same few pages, so that clearing it stays in the cache. Only the
-// part as long as the file is read: with files up to kObjPages nothing else differs. Included by one target.
+// Assimp's OBJ reader allocates and clears a 16 MiB buffer per file, whatever its size: 5 ms of page faults. Here that
+// block is a range of addresses mapped to the same few pages, so that clearing it stays in the cache. Only the part as
+// long as the file is read, so files up to kObjPages behave the same. Included by one target.
 #pragma once
 
 #include <sys/mman.h>
@@ -13,10 +13,10 @@
 
 namespace pliant {
 
-constexpr std::size_t kObjBuffer = std::size_t{4096} * 4096;  // [B] what Assimp asks for
+constexpr std::size_t kObjBuffer = std::size_t{4096} * 4096;  // [B] size that Assimp allocates
 constexpr std::size_t kObjPages = std::size_t{1} << 18;       // [B]
 
-// The range, with a page behind it that nobody may touch.
+// The range, followed by an inaccessible page.
 inline void* make_obj_buffer() {
   const int file = memfd_create("obj", 0);
   ASSERT(file >= 0 && ftruncate(file, kObjPages) == 0);
@@ -30,7 +30,7 @@ inline void* make_obj_buffer() {
   return range;
 }
 
-// The next block of that size is the range, where a file is small enough for it.
+// The next block of that size is the range, if the file is small enough for it.
 inline void* obj_buffer = nullptr;
 inline bool obj_buffer_free = false;
 inline void offer_obj_buffer(std::size_t file_size) {
@@ -40,7 +40,7 @@ inline void offer_obj_buffer(std::size_t file_size) {
 
 }  // namespace pliant
 
-// Through the array forms, so that the address sanitizer still sees every block and what frees it.
+// Uses the array forms, so that the address sanitizer still tracks every block.
 void* operator new(std::size_t size) {
   if (size != pliant::kObjBuffer || !pliant::obj_buffer_free) return ::operator new[](size);
   pliant::obj_buffer_free = false;

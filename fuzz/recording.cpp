@@ -1,4 +1,4 @@
-// Recordings: whatever the bytes, whole ticks of sound poses, or one sentence.
+// Recordings: whole ticks of sound poses, or an error of one sentence.
 #include "engine/run/recording.h"
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include "runtime/assert.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // The hash is checked last, so that damage elsewhere is met by the checks before it.
+  // The hash is checked last, so that the earlier checks are exercised.
   const auto recording = pliant::parse_recording("recording", std::string(reinterpret_cast<const char*>(data), size));
   if (!recording) {
     ASSERT(!recording.error().message().empty());

@@ -1,4 +1,4 @@
-// Scripts: whatever the text, a path whose rows are finite and ascending, or one sentence.
+// Scripts: a path with finite, ascending rows, or an error of one sentence.
 #include "content/level/script.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What every Level that a reader lets through must be, however hostile the bytes it came from.
+// Invariants of every Level that a reader accepts, whatever its bytes.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Files of tetrahedra: whatever the bytes, elements of positive volume over finite nodes, or one sentence. What begins
-// with `$` is read as .msh, with `# vtk` as .vtk; else as TetGen's pair, a byte of 1 between .node and .ele.
+// Tetrahedra files: elements of positive volume with finite nodes, or an error of one sentence. Input that begins with
+// `$` is read as .msh, with `# vtk` as .vtk; else as TetGen's pair, separated by a byte of 1 between .node and .ele.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

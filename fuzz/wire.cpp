@@ -1,5 +1,5 @@
-// Everything that a device behind a network, a service or a cable may say. The first byte chooses the parser. Whatever
-// the bytes, what comes out is finite and within reach, or nothing does.
+// Everything that a device may send over a network, a service or a cable. The first byte selects the parser. Output
+// must be finite and in range, or absent.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +27,7 @@ void check(const DeviceSample& sample) {
 
 void frame(std::span<const std::uint8_t> bytes, bool mend) {
   FrameBytes copy{};
-  if (mend && bytes.size() <= copy.size() && bytes.size() >= kFrameHeader) {  // else a sum is never met
+  if (mend && bytes.size() <= copy.size() && bytes.size() >= kFrameHeader) {  // otherwise checksums would never match
     std::copy(bytes.begin(), bytes.end(), copy.begin());
     for (std::size_t i = 8; i < 12; ++i) copy[i] = 0;
     ByteWriter sum{std::span(copy).subspan(8, 4)};

@@ -6,10 +6,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kFollowTime = 0.08;  // [s] time constant of the way to what is asked for
+constexpr double kFollowTime = 0.08;  // [s] time constant of the camera's smoothing
 constexpr double kOrbitTurn = 3.6;    // [rad] over the height of the picture
 constexpr double kZoomStep = 0.87;    // [1] of the distance
-constexpr double kSteepest = 1.55;    // [rad] of elevation: straight down the horizon has no direction
+constexpr double kSteepest = 1.55;    // [rad] of elevation: looking straight down leaves the azimuth undefined
 constexpr double kNearest = 0.05, kFarthestAway = 20.0;  // [1] of the scene's size
 
 }  // namespace
@@ -38,7 +38,7 @@ void CameraControl::orbit(double dx, double dy, int height) {
   goal_.elevation = std::clamp(goal_.elevation + kOrbitTurn * dy / height, -kSteepest, kSteepest);
 }
 
-// What is at the target's distance stays under the hand.
+// A point at the target's distance stays under the cursor.
 void CameraControl::pan(double dx, double dy, int height) {
   const Viewpoint view = at(goal_, yfov_);
   const dvec3 forward = normalize(view.target - view.eye);
@@ -78,7 +78,7 @@ void CameraControl::home() {
 }
 
 void CameraControl::update(double dt) {
-  if (!moving()) {  // it arrives, lest every picture be another one for ever
+  if (!moving()) {  // snap to the goal, so that redrawing ends
     shown_ = goal_;
     return;
   }

@@ -1,4 +1,4 @@
-// A camera that a hand moves: it turns about a target, and what it shows follows what is asked for smoothly.
+// A camera controlled by the mouse: it orbits a target and moves smoothly to its goal.
 #pragma once
 
 #include "components/mesh.h"
@@ -16,7 +16,7 @@ ViewRay ray_through(const Viewpoint& view, double x, double y, int width, int he
 
 class CameraControl {
  public:
-  // Begins at `home`; `scene` [m] world is what frame() shows. The horizon stays level, so a rolled `home` is
+  // Starts at `home`; `scene` [m] world is what frame() shows. The horizon stays level, so a rolled `home` is
   // straightened.
   CameraControl(const Viewpoint& home, const Box& scene);
 
@@ -25,10 +25,10 @@ class CameraControl {
   void pan(double dx, double dy, int height);
   void zoom(double steps);                           // of a wheel, > 0: nearer
   void look_from(double azimuth, double elevation);  // [rad]
-  void frame();                                      // all of the scene, from where it is looked at now
-  void frame(const Box& box);                        // this from now on
+  void frame();                                      // shows the whole scene, from the current direction
+  void frame(const Box& box);                        // shows this box, and uses it from now on
   void home();
-  bool moving() const;     // what it shows is not yet what was asked for
+  bool moving() const;     // the view has not reached its goal
   void update(double dt);  // [s] since the last call
 
   Viewpoint viewpoint() const;

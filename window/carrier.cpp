@@ -8,8 +8,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kStepShare = 0.01;   // [1] of the scene's size: one click of the wheel
-constexpr double kLeastAlong = 0.05;  // [1] cosine: rays that graze the plane more are not followed
+constexpr double kStepShare = 0.01;   // [1] of the scene's size per click of the wheel
+constexpr double kLeastAlong = 0.05;  // [1] cosine: rays more parallel to the plane are ignored
 
 double step_in(const World& world) {
   return kStepShare * std::max(1e-3, static_cast<double>(drawn_box(world, true).diagonal()));
@@ -75,7 +75,8 @@ void Carrier::release() {
 }
 
 void Carrier::update(double dt) {
-  const double most = kFastestCarry * std::min(dt, kMouseSlowestFrame);  // the touch clock takes no longer for the way
+  const double most = kFastestCarry * std::min(dt, kMouseSlowestFrame);  // the touch clock travels this distance in the
+                                                                         // same time
   const dvec3 way = wanted_ - position_;
   const double left = length(way);
   position_ = left > most ? position_ + way * (most / left) : wanted_;

@@ -6,15 +6,15 @@
 #include <mutex>
 #include <string>
 
-// Last: its macros take the names of others.
+// Last, because its macros collide with other names.
 #include <X11/Xlib.h>
 
 namespace pliant {
 namespace {
 
-// Xlib's handlers are the process's, so this is too.
+// Xlib's handlers are global to the process.
 std::atomic<bool> g_lost{false};
-std::mutex g_mutex;  // of the sentence
+std::mutex g_mutex;  // protects the sentence
 std::string g_why;
 
 void lose(const std::string& why) {
@@ -24,7 +24,7 @@ void lose(const std::string& why) {
   g_lost = true;
 }
 
-// The request that was refused has not been done; more of it would be refused too.
+// A request failed; further ones would fail too.
 int on_error(Display* display, XErrorEvent* error) {
   char text[256] = "";
   XGetErrorText(display, error->error_code, text, sizeof text);
@@ -38,8 +38,8 @@ int on_lost_connection(Display*) {
   return 0;
 }
 
-// In the place of exit(). Xlib has locked the display for its own thread, so that others would wait forever. From here
-// on its functions do nothing.
+// Replaces exit(). Xlib has locked the display for its own thread, so other threads would wait forever. From here on
+// its functions do nothing.
 void go_on(Display* display, void*) {
   XUnlockDisplay(display);
 }
@@ -49,7 +49,7 @@ void go_on(Display* display, void*) {
 void watch_display() {
   XSetIOErrorHandler(on_lost_connection);
   XSetErrorHandler(on_error);
-  // Not there where GLFW is built for Wayland alone.
+  // Missing if GLFW is built for Wayland only.
   using GetDisplay = Display* (*)();
   const auto get = reinterpret_cast<GetDisplay>(::dlsym(RTLD_DEFAULT, "glfwGetX11Display"));
   if (Display* const display = get ? get() : nullptr) XSetIOErrorExitHandler(display, go_on, nullptr);

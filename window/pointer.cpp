@@ -9,18 +9,19 @@
 namespace pliant {
 namespace {
 
-constexpr double kPointerStep = 0.05;  // [1] of the reach: one click of the wheel
+constexpr double kPointerStep = 0.05;  // [1] of the reach per click of the wheel
 constexpr int kFirstSteps = 4, kMostSteps = 12;
-constexpr double kHover = 0.03;       // [1] of the scene's size: how high it hovers
-constexpr double kPressTime = 0.12;   // [s] time constant of the way in
-constexpr double kLiftTime = 0.05;    // [s] and out
-constexpr double kRejoinTime = 0.08;  // [s] of the cursor to the hand
-constexpr double kFromBehind = 0.5;   // [1] cosine between sight and normal beyond which a sheet's back is looked at
-// [1] Of a body's diagonal: what a surface's reach is to it. A body gives way as a whole, a surface's dent is local.
+constexpr double kHover = 0.03;       // [1] of the scene's size: height above the surface without contact
+constexpr double kPressTime = 0.12;   // [s] time constant of pressing in
+constexpr double kLiftTime = 0.05;    // [s] and of retracting
+constexpr double kRejoinTime = 0.08;  // [s] time constant of the drawn cursor's return to the pointer
+constexpr double kFromBehind = 0.5;   // [1] cosine between view direction and normal beyond which a sheet is seen from
+                                      // behind
+// [1] Of a body's diagonal: the equivalent of a surface's reach. A body deforms as a whole, a surface's dent is local.
 constexpr double kBodyReach = 0.12;
-constexpr double kLeastFacing = 0.05;  // [1] cosine: rays that graze the plane more are not followed
-constexpr double kPushShare = 0.01;    // [1] of the scene's size: one click of the wheel, to or from the eye
-constexpr double kFirstAway = 0.55;    // [1] of the scene's size, from its middle: outside of everything
+constexpr double kLeastFacing = 0.05;  // [1] cosine: rays more parallel to the plane are ignored
+constexpr double kPushShare = 0.01;    // [1] of the scene's size per click of the wheel, along the view
+constexpr double kFirstAway = 0.55;    // [1] of the scene's size, from its centre: outside of everything
 
 }  // namespace
 
@@ -72,7 +73,7 @@ void Pointer::add_bodies(const World& world) {
   };
   for (auto [entity, body] : world.registry.view<SoftBody>()) add(entity, body.collision_mesh, true);
   for (auto [entity, body] : world.registry.view<RigidBody>()) add(entity, body.collision_mesh, !body.fixed);
-  // A vessel that reaches out of an organ is no surface to press, but it can be taken hold of.
+  // A vessel that protrudes from an organ cannot be pressed as a surface, but it can be dragged.
   for (auto [entity, carried] : world.registry.view<Carried>())
     if (world.registry.has<SoftBody>(carried.by)) targets_.push_back({entity, 0.0, true, carried.by});
 }
@@ -132,7 +133,7 @@ double Pointer::depth_goal() const {
 void Pointer::see(const std::optional<Picked>& seen, const ViewRay& ray) {
   if (!seen) {
     hit_.reset();
-    aside_ = ray.from + away_ * ray.along;  // this ray passes everything, so all of it is outside
+    aside_ = ray.from + away_ * ray.along;  // this ray hits nothing, so its points are outside
     return;
   }
   const bool behind = dot(seen->normal, ray.along) > kFromBehind;

@@ -59,14 +59,14 @@ Result<std::unique_ptr<Window>> Window::create(int width, int height, const std:
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
-  glfwWindowHint(GLFW_SAMPLES, 0);  // the renderer draws into samples of its own
+  glfwWindowHint(GLFW_SAMPLES, 0);  // the renderer has its own multisampled buffers
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "pliant");
   window->handle_ = glfwCreateWindow(width, height, "Pliant", nullptr, nullptr);
   if (!window->handle_)
     return Error{"--window", "the display gives no OpenGL 4.5 core context" + reason() +
                                  "; install libgl1-mesa-dri or the GPU's driver" + otherwise};
-  watch_display();  // with its connection; GLFW has put back what it found
+  watch_display();  // again, because GLFW has restored the previous handlers
   glfwMakeContextCurrent(window->handle_);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window->handle_, window.get());
@@ -192,7 +192,7 @@ void Window::hide_cursor(bool hidden) {
 int Window::width() const {
   int width = 0, height = 0;
   glfwGetFramebufferSize(handle_, &width, &height);
-  return lost() ? 1 : std::max(width, 1);  // a lost display leaves anything in it
+  return lost() ? 1 : std::max(width, 1);  // undefined after the loss of the display
 }
 
 int Window::height() const {

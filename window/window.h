@@ -1,4 +1,4 @@
-// A window with an OpenGL 4.5 core context, and what a hand does to it.
+// A window with an OpenGL 4.5 core context, and its input.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@ struct GLFWwindow;
 
 namespace pliant {
 
-// A context without a window that has the textures and buffers of a window's, for pictures on another thread.
+// A context without a window that shares textures and buffers with a window's, for pictures on another thread.
 class SharedContext {
  public:
   ~SharedContext();  // on the window's thread, before the window
@@ -32,34 +32,35 @@ class Window {
  public:
   // DISPLAY or WAYLAND_DISPLAY is set.
   static bool display_is_there();
-  // Hidden at first; its context is current on the calling thread, which must be the first one of the process and make
-  // every call but those that say otherwise. Sizes in pixels. One window at a time.
-  // `otherwise`: what else a user may do where there is none, after "set one"; say ", or use --headless".
+  // Initially hidden. Its context is current on the calling thread, which must be the first one of the process and make
+  // all calls except those marked otherwise. Sizes in pixels. One window at a time. `otherwise`: an alternative for the
+  // user without a display, appended to "set one", for instance ", or use --headless".
   static Result<std::unique_ptr<Window>> create(int width, int height, const std::string& otherwise = {});
   ~Window();
-  // The display is gone, or has refused something, whichever thread asked it: no more may be asked, and `loss` says
-  // why. What the process has of it is left to the end of the process.
+  // The display is gone, or a request has failed, on any thread. No further calls are allowed, and `loss` gives the
+  // cause. Its resources are not released.
   static bool lost();
   static Error loss();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
   void show(const std::string& title);
-  // Appends what happened since. Returns at the first event, when another thread calls wake(), or after `longest` [s].
+  // Appends events since the last call. Returns at the first event, when another thread calls wake(), or after
+  // `longest` [s].
   void poll(std::vector<InputEvent>& events, double longest);
   void wake();
 
-  // The context belongs to one thread at a time: given away by the one that has it, then taken by the other.
+  // The context belongs to one thread at a time: released by its owner, then acquired by the other.
   void give_context();
   void take_context();
-  void present();  // shows what was drawn; waits for the display's next picture. From the context's thread
+  void present();  // shows the drawn frame; waits for vertical sync. On the context's thread
   Result<std::unique_ptr<SharedContext>> share();
   void hide_cursor(bool hidden);
   std::string clipboard() const;
   void set_clipboard(const std::string& text);
-  int width() const;    // [pixel] of what is drawn into
+  int width() const;    // [pixel] of the framebuffer
   int height() const;   // [pixel]
-  float scale() const;  // [1] of text, 1 on an ordinary display
+  float scale() const;  // [1] of text, 1 on a standard display
 
  private:
   Window() = default;

@@ -37,7 +37,7 @@ std::optional<int> key_of(const std::string& name) {
   return GLFW_KEY_F1 + static_cast<int>(*n) - 1;
 }
 
-// The rest of the words are a button and modifiers.
+// The remaining words are a button and modifiers.
 bool take_words(std::istringstream& words, InputEvent& event) {
   for (std::string word; words >> word;) {
     if (word == "left")
@@ -101,7 +101,8 @@ std::optional<InputEvent> parse_event(const std::string& name, const std::string
 }  // namespace
 
 Result<InputScript> InputScript::load(const std::string& file) {
-  const Result<Bytes> bytes = read_file(file, limits::kInputFile);  // never what has no end, a pipe or /dev/zero
+  const Result<Bytes> bytes = read_file(file, limits::kInputFile);  // rejects files without end, such as a pipe or
+                                                                    // /dev/zero
   if (!bytes) return bytes.error();
   std::istringstream in(std::string(bytes->begin(), bytes->end()));
   InputScript script;

@@ -16,7 +16,7 @@ void erase(std::vector<std::int32_t>& from, std::int32_t value) {
   from.erase(std::remove(from.begin(), from.end(), value), from.end());
 }
 
-// Parents before children, the shown scene's roots before all others; nodes without a way from a root go.
+// Parents before children, roots of the shown scene first. Nodes that no root reaches are removed.
 NodesMoved put_in_order(Level& level, const std::set<std::int32_t>& gone = {}) {
   std::vector<std::int32_t> stack, order;
   for (const bool in_scene : {false, true})
@@ -77,7 +77,7 @@ void drop_meshes(Level& level, const std::set<std::int32_t>& shown_before) {
     if (node.mesh >= 0) node.mesh = now[static_cast<std::size_t>(node.mesh)];
 }
 
-// The nearest that translation, rotation and scale can say; shear is lost.
+// The nearest translation, rotation and scale; shear is lost.
 LocalTransform decomposed(const dmat4& m) {
   dmat3 axes(m);
   dvec3 scale(length(axes[0]), length(axes[1]), length(axes[2]));
@@ -158,7 +158,7 @@ NodesMoved remove_node(Level& level, std::int32_t node) {
   }
   NodesMoved moved = put_in_order(level, {all.begin(), all.end()});
   drop_meshes(level, meshes);
-  // Who went by a device that is gone goes by none.
+  // A node that refers to a removed device refers to none afterwards.
   for (const LevelNode& left : level.nodes)
     if (left.device) devices.erase(left.name);
   for (LevelNode& left : level.nodes) {
@@ -188,14 +188,14 @@ Result<NodesMoved> move_node(Level& level, std::int32_t node, std::int32_t paren
     children.insert(children.begin() + static_cast<std::ptrdiff_t>(std::min(place, children.size())), node);
     return put_in_order(level);
   }
-  // Roots stand in the order of their numbers: the node goes before the root that now has its place.
+  // Roots are ordered by number: the node goes before the root that now has its place.
   at(level, node).in_scene = true;
   std::vector<std::int32_t> roots;
   for (std::size_t i = 0; i < level.nodes.size(); ++i)
     if (level.nodes[i].parent < 0 && level.nodes[i].in_scene && static_cast<std::int32_t>(i) != node)
       roots.push_back(static_cast<std::int32_t>(i));
   roots.insert(roots.begin() + static_cast<std::ptrdiff_t>(std::min(place, roots.size())), node);
-  // A parent for as long as it takes to order them.
+  // A temporary common parent, used only to order the roots.
   const std::size_t count = level.nodes.size();
   LevelNode all_roots;
   all_roots.children = roots;

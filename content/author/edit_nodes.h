@@ -1,6 +1,6 @@
-// Nodes of a Level added, copied, removed, renamed and moved in the tree. Whatever refers to a node follows: parents
-// and children, animations, and the names by which probes and handles call their device. Nodes stay in the order in
-// which load_level has them: parents before children, the scene that is shown first.
+// Adds, copies, removes, renames and moves nodes of a Level. All references to a node are updated: parents, children,
+// animations, and the device names of probes and handles. Nodes keep the order of load_level: parents before children,
+// the shown scene first.
 #pragma once
 
 #include <string>
@@ -12,23 +12,26 @@ namespace pliant {
 
 inline constexpr std::int32_t kNoLevelNode = -1;
 
-// `wanted`, or wanted_2, wanted_3...: a name that no node has.
+// `wanted`, or wanted_2, wanted_3, ...: the first name not in use.
 std::string free_name(const Level& level, const std::string& wanted);
 
-// Each of these says where nodes went: by their number before, their number now, kNoLevelNode for those that are gone.
+// Index: a node's old number. Value: its new number, or kNoLevelNode if it was removed.
 using NodesMoved = std::vector<std::int32_t>;
 
-// The last child of `parent`, or the last root of the scene (kNoLevelNode). The name is made free. Its number.
+// Adds the last child of `parent`, or the last root of the scene (kNoLevelNode). Makes the name unique. Returns its
+// number.
 std::int32_t add_node(Level& level, LevelNode node, std::int32_t parent = kNoLevelNode, NodesMoved* moved = nullptr);
-// A copy of a node and of all below it, beside it. Meshes are shared; names are made free; a probe or a handle whose
-// device is copied too goes by the copy. The number of the copy.
+// Copies a node with its subtree; the copy is its sibling. Meshes are shared; names are made unique. If the device of a
+// copied probe or handle is copied too, the copy refers to the copied device. Returns the number of the copy.
 std::int32_t copy_node(Level& level, std::int32_t node, NodesMoved* moved = nullptr);
-// With all below it. Meshes that nobody else shows go too, and so do channels of animations.
+// Removes the subtree, meshes that no other node uses, and animation channels of removed nodes.
 NodesMoved remove_node(Level& level, std::int32_t node);
-// Under another parent (kNoLevelNode: a root of the scene), as its `place`-th child; where it is in the world stays as
-// far as translation, rotation and scale can say it. Error: the parent is the node itself or below it.
+// Moves the node to another parent (kNoLevelNode: a root of the scene), as its `place`-th child. Its world transform is
+// preserved as far as translation, rotation and scale can represent it. Error: the parent is the node itself or below
+// it.
 Result<NodesMoved> move_node(Level& level, std::int32_t node, std::int32_t parent, std::size_t place);
-// Probes and handles that go by this node's device follow, unless another node has the name. Error: it is empty.
+// Probes and handles that refer to this node's device follow, unless another node has the name. Error: the name is
+// empty.
 Status rename_node(Level& level, std::int32_t node, const std::string& name);
 
 }  // namespace pliant

@@ -7,8 +7,8 @@
 namespace pliant::solids {
 namespace {
 
-constexpr double kBlend = 0.005;   // [m] over which a finger flows into the palm
-constexpr double kWaist = 0.0012;  // [m] by which a finger is thinner between two joints
+constexpr double kBlend = 0.005;   // [m] radius of the blend between a finger and the palm
+constexpr double kWaist = 0.0012;  // [m] by which a finger is thinner halfway between two joints
 
 // A digit: three joints in a row, thinner between them and towards the tip.
 struct Digit {
@@ -29,7 +29,7 @@ Digit make_digit(dvec3 root, double heading, std::array<double, 3> lengths, std:
   return digit;
 }
 
-// About the distance to a capsule whose radius goes from ra to rb and is less by `waist` halfway.
+// Approximate distance to a capsule with radius ra at one end and rb at the other, thinner by `waist` halfway.
 double bone(dvec3 p, dvec3 a, dvec3 b, double ra, double rb, double waist) {
   const dvec3 ab = b - a;
   const double t = std::clamp(dot(p - a, ab) / dot(ab, ab), 0.0, 1.0);
@@ -51,7 +51,7 @@ double knuckle(dvec3 p, const Digit& finger) {
   return length(p - finger.joint[0] - dvec3(0, 0.0045, -0.004)) - finger.radius[0] - 0.0008;
 }
 
-// A box with edges as round as it is thick, slightly cupped towards the fingers.
+// A box with edges rounded over its whole thickness, slightly cupped towards the fingers.
 double palm(dvec3 p) {
   const dvec3 half(0.046, 0.013, 0.042);
   const double taper = 1.0 - 0.22 * std::clamp((p.z + 0.01) / 0.06, 0.0, 1.0);  // narrower at the wrist
@@ -59,7 +59,7 @@ double palm(dvec3 p) {
   return length(glm::max(q, dvec3(0))) + std::min(std::max({q.x, q.y, q.z}), 0.0) - half.y;
 }
 
-// The smaller of both, rounded where they meet; never larger.
+// Smooth minimum: rounded where the two are close; never larger than either.
 double join(double a, double b) {
   const double h = std::max(kBlend - std::abs(a - b), 0.0) / kBlend;
   return std::min(a, b) - 0.25 * kBlend * h * h;

@@ -1,15 +1,15 @@
-// A hand as a solid: palm, four fingers and a thumb that flow into the palm but never into one another.
+// A hand as a solid. The palm blends with the four fingers and the thumb; the digits do not blend with one another.
 #pragma once
 
 #include "content/author/solid.h"
 
 namespace pliant::solids {
 
-// A right hand about 0.19 m long, lying flat: the back up (+Y), fingers along -Z, the thumb towards -X. [m]
+// A right hand about 0.19 m long, lying flat: its back up (+Y), fingers along -Z, the thumb towards -X. [m]
 Solid hand_solid();
-// Holds the hand with room to spare.
+// Contains the hand, with a margin.
 Box hand_box();
-// The part that a person holds: the heel of the palm and the wrist.
+// The part that is pinned to the handle: the heel of the palm and the wrist.
 Box hand_bone();
 
 }  // namespace pliant::solids

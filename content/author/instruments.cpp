@@ -23,12 +23,13 @@ constexpr std::array<Instrument, 4> kInstruments{
      {InstrumentKind::kHand, "hand", "a soft right hand on a rigid wrist, fingers flat", 0.0, 0.0}}};
 
 constexpr double kMass = 0.025;                                // [kg] of a rigid instrument
-constexpr double kUsualLength = 0.15;                          // [m] for which the coupling of rotations is
+constexpr double kUsualLength = 0.15;                          // [m] the length that the coupling's rotational
+                                                               // stiffness is tuned for
 constexpr double kHandLength = 0.19;                           // [m]
 constexpr double kSmallestHandOf = 0.1, kLargestHandOf = 1.0;  // [m] diagonals of objects that a life-size hand suits
 constexpr vec3 kSteel{0.55f, 0.56f, 0.58f}, kSkinColor{0.80f, 0.52f, 0.40f};  // linear RGB
 
-// Where the line through p along `up` enters and leaves the object, measured from p along `up`; the outermost two.
+// Outermost entry and exit of the line through p along `up`, as distances from p.
 struct Chord {
   double bottom = 0.0, top = 0.0;  // [m]
   bool valid = false;
@@ -57,7 +58,7 @@ Chord chord(const Level& level, std::int32_t object, dvec3 p, dvec3 up) {
   return out;
 }
 
-// The place to touch: straight above the middle of the object's box, or its highest vertex where it has a hole there.
+// The point to touch: above the middle of the object's box; if there is a hole, the object's highest vertex.
 dvec3 touch_point(const Level& level, std::int32_t object) {
   const dvec3 up = up_of(level), middle(world_box(level, object).center());
   if (const Chord through = chord(level, object, middle, up); through.valid) return middle + through.top * up;
@@ -154,7 +155,7 @@ void make_rigid(Level& level, LevelNode& node, const Instrument& kind, double di
   node.device = device_of(8.0);
 }
 
-// As the hand of the levels that ship, scaled.
+// The hand of the shipped levels, scaled.
 void make_hand(Level& level, LevelNode& node, double diagonal, const InstrumentSize& asked) {
   const bool life_size = diagonal >= kSmallestHandOf && diagonal <= kLargestHandOf;
   const double scale = asked.length > 0.0 ? asked.length / kHandLength : life_size ? 1.0 : diagonal / 0.25;
@@ -213,7 +214,7 @@ Result<std::int32_t> add_instrument(Level& level, InstrumentKind kind, std::int3
     make_hand(level, node, diagonal, size);
   else
     make_rigid(level, node, instrument, diagonal, size);
-  // Its lowest point stands over the target; -Y is down.
+  // Places its lowest point above the target; -Y is down.
   const double cosine = up.y;
   const dquat turn =
       cosine < -0.999999 ? dquat(0, 1, 0, 0) : glm::normalize(dquat(1.0 + cosine, cross(dvec3(0, 1, 0), up)));
@@ -243,7 +244,7 @@ Path press_path(const Level& level, std::int32_t tool, std::int32_t object, doub
   const dvec3 up = up_of(level);
   const LevelNode& node = level.nodes[static_cast<std::size_t>(tool)];
   const ObjectFrame frame = object_frame(level, tool);
-  // The lowest point of what goes down, and what it meets straight below.
+  // The lowest point of the moving object, and the surface straight below it.
   dvec3 lowest = frame.pose.position;
   if (node.probe) lowest -= node.probe->radius * up;
   if (node.mesh >= 0)

@@ -1,5 +1,5 @@
-// Where a node's object is: in the frame that PLIANT extensions speak of (its node's, with scale and shear baked into
-// the mesh), and in the world.
+// The pose of a node's object. PLIANT extensions use the object frame: the node's frame, with scale and shear baked
+// into the mesh.
 #pragma once
 
 #include "components/transform.h"
@@ -14,19 +14,19 @@ struct ObjectFrame {
 };
 ObjectFrame object_frame(const Level& level, std::int32_t node);
 
-// [m] Of the meshes of a node and of all below it, world.
+// [m] Bounding box of all meshes of a node's subtree, world.
 Box world_box(const Level& level, std::int32_t node);
-// [m] Of all meshes of the scene that is shown, world.
+// [m] Bounding box of all meshes of the shown scene, world.
 Box world_box(const Level& level);
 
 // Unit, against gravity; +Y where there is none.
 dvec3 up_of(const Level& level);
 
-// A frame at `eye` whose -Z looks at `target`, as cameras and lights want it; `up` is as far up as that allows. [m]
+// A frame at `eye` whose -Z points at `target`, as glTF cameras and lights need. `up` is projected. [m]
 LocalTransform looking(dvec3 eye, dvec3 target, dvec3 up = {0, 1, 0});
 
 enum class Side : std::uint8_t { kBottom, kTop, kLeft, kRight, kFront, kBack };
-// "bottom", "top", ...; nothing for another word.
+// "bottom", "top", ...; empty for an unknown word.
 std::optional<Side> side_of(const std::string& word);
 const char* word_of(Side side);
 // Unit, world: down and up along gravity, left and right as the camera of add_camera sees them (-X, +X), front towards

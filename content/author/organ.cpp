@@ -46,7 +46,7 @@ Result<Organ> organ_of(const Level& level, std::int32_t node) {
   Organ organ;
   if (shows(level, node, world)) {
     organ.body = node;
-    // What it lies in, the largest first.
+    // The objects that contain it, largest first.
     const Box own = own_box(level, node, world);
     std::vector<std::pair<float, std::int32_t>> around;
     for (std::int32_t i = 0; i < std::ssize(level.nodes); ++i) {

@@ -1,4 +1,4 @@
-// An organ that is several meshes, one in the other: a capsule, vessels, lumps.
+// An organ of several nested meshes, such as a capsule, vessels and lumps.
 #pragma once
 
 #include <string>
@@ -9,17 +9,17 @@
 namespace pliant {
 
 struct Organ {
-  std::int32_t body = -1;           // the outermost: it becomes tissue
-  std::vector<std::int32_t> parts;  // only drawn, inside of it or below its node: they go along
+  std::int32_t body = -1;           // the outermost mesh: becomes tissue
+  std::vector<std::int32_t> parts;  // only drawn; inside the body or below its node, and carried by it
 };
-// Of a node with a mesh: that node, or what it lies inside of. Of a node without: the largest mesh below it. Error:
+// Node with a mesh: that node, or the object that contains it. Node without a mesh: the largest mesh below it. Error:
 // there is no mesh with an area.
 Result<Organ> organ_of(const Level& level, std::int32_t node);
 
-// The organ's body becomes soft and takes its parts along. Names of them, "" for none.
+// Makes the organ's body soft and lets it carry the parts. Returns the parts' names, "" if there are none.
 Result<std::string> make_soft_organ(Level& level, std::int32_t node, SoftBodyParameters parameters = {});
 
-// As an organ is modelled: it keeps its shape under gravity, and takes along what lies inside of it.
+// Preset: the tissue keeps its modelled shape under gravity and carries enclosed objects.
 SoftBodyParameters as_modelled(SoftBodyParameters parameters);
 
 }  // namespace pliant

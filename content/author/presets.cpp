@@ -8,8 +8,8 @@ namespace pliant {
 
 namespace {
 
-// Poisson's ratios: all of these hardly change their volume (0.49 and more). 0.45 is what linear tetrahedra take
-// without locking (content/level/spawn_soft.h).
+// Tissue is nearly incompressible (Poisson's ratio 0.49 and more). 0.45 is the largest value that linear tetrahedra
+// take without locking (content/level/spawn_soft.h).
 constexpr double kPoisson = 0.45;
 
 constexpr std::array<TissuePreset, 7> kPresets{{

@@ -1,6 +1,6 @@
-// Tissue and technical materials by name. Young's modulus and Poisson's ratio are of small, slow strains; every source
-// says where they are from. Density where no source is named: ICRU Report 44 (1989) for tissue, water's for gelatin.
-// Friction and damping are typical of wet tissue and of gels under a smooth instrument, and measured for none of them.
+// Tissue and technical materials by name. Young's modulus and Poisson's ratio hold for small, slow strains; each entry
+// cites its source. Density without a cited source: ICRU Report 44 (1989) for tissue, that of water for gelatin.
+// Friction and damping are typical of wet tissue and gels under a smooth instrument; they were not measured.
 #pragma once
 
 #include <span>
@@ -11,23 +11,23 @@
 namespace pliant {
 
 struct TissuePreset {
-  const char* word;    // as it is called in a command
-  const char* name;    // as it is shown
+  const char* word;    // name in commands
+  const char* name;    // name in the editor
   double young;        // [Pa]
-  double low, high;    // [Pa] the range that the source gives for it
+  double low, high;    // [Pa] range given by the source
   double poisson;      // [1]
   double density;      // [kg/m3]
   double alpha, beta;  // [1/s], [s] Rayleigh damping of a soft body
-  double settling;     // [s] of a deformable surface
-  double friction;     // [1] of rest; that of sliding is kSliding of it
-  const char* source;  // of the modulus: author, year, journal, and what was measured
+  double settling;     // [s] settling time of a deformable surface
+  double friction;     // static friction; dynamic friction is kSliding times this
+  const char* source;  // of the modulus: author, year, journal, and the measurement
 };
 inline constexpr double kSliding = 0.75;  // [1]
 
 std::span<const TissuePreset> tissue_presets();
 const TissuePreset* find_preset(const std::string& word);
 
-// [N/m] Of a point contact of 4 mm radius on a deep half-space (docs/methods.md).
+// [N/m] Stiffness of a point contact of 4 mm radius on a half-space (docs/methods.md).
 double surface_stiffness(const TissuePreset& preset);
 
 SoftBodyParameters soft_body_of(const TissuePreset& preset);

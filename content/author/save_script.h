@@ -1,4 +1,4 @@
-// Paths written as scripts (content/level/script.h reads them), and the step of which smooth ones are made.
+// Writes paths as scripts (content/level/script.h reads them). Also the smooth step from which smooth paths are made.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace pliant {
 // 0 before `from`, 1 after `to`, twice continuously differentiable. Times [s].
 double smooth_step(double from, double to, double t);
 
-// With rotations if any row turns. `comment` is the first line.
+// Rotations are written if any row rotates. `comment` becomes the first line.
 Status save_script(const Path& path, const std::string& comment, const std::filesystem::path& file,
                    Existing existing = Existing::kReplace);
 

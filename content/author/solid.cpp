@@ -3,7 +3,8 @@
 namespace pliant::solids {
 namespace {
 
-constexpr double kDifference = 1e-6;  // [m] for gradients; the shapes vary over millimetres
+constexpr double kDifference = 1e-6;  // [m] step of the finite difference for gradients; the shapes vary over
+                                      // millimetres
 
 dvec3 gradient(const Solid& solid, dvec3 p) {
   dvec3 g;
@@ -26,7 +27,7 @@ dvec3 project(const Solid& solid, dvec3 p) {
     const dvec3 g = gradient(solid, p);
     dvec3 step = g * (-solid(p) / dot(g, g));
     const double l = length(step);
-    if (l > 0.01) step *= 0.01 / l;  // far from the surface the slope is only a hint
+    if (l > 0.01) step *= 0.01 / l;  // far from the surface the gradient is unreliable
     p += step;
     if (l < 1e-10) break;
   }

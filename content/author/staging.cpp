@@ -19,7 +19,7 @@ Target target_of(const Level& level, std::int32_t object) {
   return {dvec3(box.center()), 0.5 * static_cast<double>(box.diagonal())};
 }
 
-// Right, up and front of the level, whose up is against gravity.
+// A point given by right, up and front coordinates of the level; up is against gravity.
 dvec3 from(const Level& level, double right, double up, double front) {
   const dvec3 y = up_of(level), z = std::abs(y.z) > 0.9 ? dvec3(0, -1, 0) : dvec3(0, 0, 1);
   const dvec3 x = normalize(cross(y, z));
@@ -41,7 +41,7 @@ std::int32_t add_light(Level& level, std::int32_t object) {
 }
 
 std::int32_t add_camera(Level& level, std::int32_t object) {
-  constexpr double kRoom = 1.35;  // [1] so that an instrument over the object is in the picture too
+  constexpr double kRoom = 1.35;  // [1] margin, so that an instrument over the object is in the picture too
   const Target target = target_of(level, object);
   LevelNode node;
   node.name = "camera";

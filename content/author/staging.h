@@ -5,10 +5,10 @@
 
 namespace pliant {
 
-// A directional light that shines on the object (kNoLevelNode: on everything) from the upper right, before it. The
-// number of the new node.
+// Adds a directional light before the node. It lights the object (kNoLevelNode: everything) from the upper right.
+// Returns the number of the new node.
 std::int32_t add_light(Level& level, std::int32_t object);
-// A camera that sees all of the object, a little from above and from the front (+Z). The number of the new node.
+// Adds a camera that sees the whole object, from slightly above and in front (+Z). Returns the number of the new node.
 std::int32_t add_camera(Level& level, std::int32_t object);
 
 }  // namespace pliant

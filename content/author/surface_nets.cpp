@@ -6,7 +6,7 @@
 namespace pliant::solids {
 namespace {
 
-constexpr int kRelaxations = 8;   // rounds: evens triangles out; more changes nothing that is seen
+constexpr int kRelaxations = 8;   // rounds that even out the triangles; more make no visible difference
 constexpr double kRelaxBy = 0.5;  // [1] of the way to the neighbours' middle
 
 struct Grid {
@@ -34,7 +34,7 @@ Grid sample(const Solid& solid, const Box& box, double cell) {
   return grid;
 }
 
-// The middle of the points where the surface cuts the cell's edges; false: it cuts none.
+// The mean of the points where the surface crosses the cell's edges. Returns false if it crosses none.
 bool cut_middle(const Grid& grid, glm::ivec3 low, dvec3& middle) {
   dvec3 sum(0);
   int cuts = 0;
@@ -83,7 +83,7 @@ class NetMaker {
 
   std::uint32_t at(glm::ivec3 c) const { return vertex_[grid_.index(c.x, c.y, c.z)]; }
 
-  // Across the edge from corner c along `axis`: the four cells around it.
+  // Adds the quadrilateral of the four cells around the edge from corner c along `axis`.
   void face(glm::ivec3 c, int axis) {
     glm::ivec3 end = c;
     end[axis] += 1;

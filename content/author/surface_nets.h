@@ -1,6 +1,6 @@
-// A closed surface over any solid, whatever its shape: one vertex in every cell of a grid that the surface crosses,
-// one quadrilateral across every edge that it cuts (Gibson, "Constrained elastic surface nets", 1998), then pulled
-// onto the solid and relaxed along it.
+// A closed surface mesh of any solid: one vertex per grid cell that the surface crosses, one quadrilateral per grid
+// edge that it crosses (Gibson, "Constrained elastic surface nets", 1998). The vertices are then projected onto the
+// solid and relaxed along it.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ struct Net {
   std::vector<uvec3> triangles;  // counter-clockwise from outside
 };
 
-// `box` [m] holds the whole solid with a cell to spare; parts of the solid closer to each other than a cell may join.
+// `box` [m] contains the solid with a margin of one cell. Parts of the solid closer than one cell may merge.
 Net cover_by_net(const Solid& solid, const Box& box, double cell);
-// With normals from the solid; no texture coordinates.
+// Takes normals from the solid. Has no texture coordinates.
 Primitive to_primitive(const Net& net, const Solid& solid);
 
 }  // namespace pliant::solids

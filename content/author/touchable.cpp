@@ -11,8 +11,8 @@ namespace pliant {
 
 namespace {
 
-constexpr double kBeyond = 0.02;  // [1] of the extent by which a pinned box is larger than the object, so that rounding
-                                  // leaves out no node of its surface
+constexpr double kBeyond = 0.02;  // [1] of the extent: margin of a pinned box, so that rounding excludes no surface
+                                  // node
 
 Status check_area(const Level& level, std::int32_t node) {
   const LevelNode& it = level.nodes[static_cast<std::size_t>(node)];
@@ -65,7 +65,27 @@ Status pin(Level& level, std::int32_t node, Side side, double share) {
     box.min[axis] = frame.box.max[axis] - depth;
   else
     box.max[axis] = frame.box.min[axis] + depth;
-  it.soft_body->pinned.add(box);
+  Box both = it.soft_body->pinned;
+  both.add(box.min);
+  both.add(box.max);
+  const auto same = [&](const Box& other) { return both.min == other.min && both.max == other.max; };
+  if (it.soft_body->pinned.empty() || same(box) || same(it.soft_body->pinned)) {
+    it.soft_body->pinned = both;
+    return Done{};
+  }
+  // One box around two sides would hold what is between them, too: the other side is painted.
+  if (it.mesh < 0) return Error{it.name, "has no mesh on which a second side could be painted as pinned"};
+  LevelMesh& mesh = own_mesh(level, node);
+  for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+    std::vector<std::uint32_t> inside;
+    for (std::size_t v = 0; v < mesh.primitives[p].position.size(); ++v) {
+      const vec3 at(frame.to_object * glm::dvec4(dvec3(mesh.primitives[p].position[v]), 1.0));
+      if (glm::all(glm::greaterThanEqual(at, box.min)) && glm::all(glm::lessThanEqual(at, box.max)))
+        inside.push_back(static_cast<std::uint32_t>(v));
+    }
+    if (inside.empty()) continue;
+    if (const Status painted = pin_vertices(level, node, p, inside); !painted) return painted;
+  }
   return Done{};
 }
 

@@ -5,7 +5,7 @@
 namespace pliant::solids {
 namespace {
 
-constexpr int kAround = 12;  // corners of a ring
+constexpr int kAround = 12;  // vertices per ring
 
 }  // namespace
 

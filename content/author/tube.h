@@ -1,4 +1,4 @@
-// Instruments as closed tubes of few triangles.
+// Instruments as closed tubes with few triangles.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ struct TubeRing {
   double radius;        // [m]
 };
 
-// A row of rings becomes a closed tube with a vertex at either end. All axes lie in the plane x = 0.
+// Joins rings into a closed tube with a vertex at either end. All axes lie in the plane x = 0.
 Net tube(dvec3 start, const std::vector<TubeRing>& rings, dvec3 end);
 
 }  // namespace pliant::solids

@@ -27,12 +27,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Names in files are bytes; ours are UTF-8.
+// Names in files are arbitrary bytes; names in a Level are UTF-8.
 std::string utf8(const std::string& bytes) {
   return Json::parse(Json(bytes).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
-// What Assimp says of indices that it clamps or drops, in the formats that mesh_check.h does not know.
+// Records Assimp's warnings about indices that it clamps or drops, for formats that mesh_check.h does not read.
 class IndexComplaints : public Assimp::LogStream {
  public:
   void write(const char* message) override {
@@ -49,8 +49,8 @@ class IndexComplaints : public Assimp::LogStream {
   std::string any_;
 };
 
-// Gives Assimp the bytes that were checked for the file that it opens. Formats name other files (an .obj its
-// materials): those are read from the disk, where a level may reach, too.
+// Gives Assimp the checked bytes instead of the file that it opens. Some formats name other files (an .obj its
+// materials). These are read from the disk, within the folders that a level may reach.
 class CheckedFile : public Assimp::DefaultIOSystem {
  public:
   CheckedFile(const fs::path& file, const Bytes& bytes)
@@ -63,7 +63,7 @@ class CheckedFile : public Assimp::DefaultIOSystem {
 
  private:
   bool allows(const std::string& name) const {
-    if (name == file_) return true;  // what the user named
+    if (name == file_) return true;  // the file that the user named
     std::error_code error;
     const fs::path folder = fs::weakly_canonical(folder_.empty() ? fs::path(".") : folder_, error);
     const Result<fs::path> path = confined_file(folder_, fs::weakly_canonical(name, error).lexically_relative(folder));
@@ -74,11 +74,11 @@ class CheckedFile : public Assimp::DefaultIOSystem {
   const Bytes& bytes_;
 };
 
-// One for the process: Assimp's logger is one, too.
+// One per process, because Assimp's logger is global.
 IndexComplaints& listen_to_assimp() {
   static IndexComplaints* complaints = nullptr;
   if (!complaints) {
-    complaints = new IndexComplaints;  // the logger's from here on
+    complaints = new IndexComplaints;  // owned by the logger from here on
     Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
     Assimp::DefaultLogger::get()->attachStream(complaints, Assimp::Logger::Err | Assimp::Logger::Warn);
   }
@@ -122,11 +122,11 @@ Result<Primitive> read_primitive(const aiMesh& mesh) {
     }
     if (has_uv) {
       const aiVector3D& t = mesh.mTextureCoords[0][v];
-      // glTF counts v downwards.
+      // In glTF, v points down.
       out.uv.emplace_back(std::isfinite(t.x) ? t.x : 0.0f, std::isfinite(t.y) ? 1.0f - t.y : 0.0f);
     }
   }
-  if (!sound_normals) out.normal.clear();  // made anew at spawn
+  if (!sound_normals) out.normal.clear();  // recomputed at spawn
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     if (face.mNumIndices != 3) continue;
@@ -157,8 +157,8 @@ Material read_material(const aiMaterial& in, std::string& texture_name) {
   return out;
 }
 
-// One Level node a scene node; its meshes become the primitives of one Level mesh.
-// `name`: of what an OBJ does not name.
+// Makes one Level node per scene node; its meshes become the primitives of one Level mesh. `name` is used where an OBJ
+// gives none.
 Status read_nodes(const aiScene& scene, const std::string& name, Level& level) {
   struct Visit {
     const aiNode* node;
@@ -175,7 +175,7 @@ Status read_nodes(const aiScene& scene, const std::string& name, Level& level) {
     LevelNode node;
     node.parent = visit.parent;
     node.name = visit.node->mName.length > 0 ? utf8(visit.node->mName.C_Str()) : fmt::format("node_{}", here);
-    if (node.name == "defaultobject" && !name.empty()) node.name = name;  // Assimp's word
+    if (node.name == "defaultobject" && !name.empty()) node.name = name;  // Assimp's default name
     node.local = decompose(visit.node->mTransformation);
     if (!finite(node.local)) return Error{"", "has a transformation that is not finite; repair the file"};
     if (visit.node->mNumMeshes > 0) {
@@ -203,13 +203,13 @@ Status read_nodes(const aiScene& scene, const std::string& name, Level& level) {
   return Done{};
 }
 
-// In the child: the scene as GLB, after a header that names each material's texture.
+// Runs in the child process. Returns the scene as GLB, after a header with each material's texture.
 Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::string& extension) {
   const Result<MeshFile> file = check_mesh_file(bytes, extension.empty() ? "" : extension.substr(1));
   if (!file) return file.error();
   IndexComplaints& complaints = listen_to_assimp();
   Assimp::Importer importer;
-  // Only what is read below; skeletons, animations, lights and cameras are dropped.
+  // Keeps only what is read below; drops skeletons, animations, lights and cameras.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS |
                                                           aiComponent_CAMERAS | aiComponent_LIGHTS |
                                                           aiComponent_COLORS | aiComponent_TEXTURES);
@@ -217,7 +217,7 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
   const unsigned steps =
       aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_RemoveComponent;
   const bool in_memory = file->in_memory || path.empty();
-  if (!in_memory) importer.SetIOHandler(new CheckedFile(path, file->bytes));  // the importer's from here on
+  if (!in_memory) importer.SetIOHandler(new CheckedFile(path, file->bytes));  // owned by the importer from here on
   const aiScene* scene =
       in_memory ? importer.ReadFileFromMemory(file->bytes.data(), file->bytes.size(), steps, file->format.c_str())
                 : importer.ReadFile(path.string(), steps);
@@ -252,7 +252,7 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
   return out;
 }
 
-// In the parent: what the child made is read like any other file.
+// Runs in the parent process. The child's answer is checked like any other file.
 Result<Level> receive(const Bytes& answer, const fs::path& folder) {
   Taker in(answer);
   std::uint64_t size = 0;
@@ -263,7 +263,7 @@ Result<Level> receive(const Bytes& answer, const fs::path& folder) {
   in.take(header.data(), size);
   Result<Level> level = load_gltf(in.rest(), true, {});
   if (!level) return level;
-  level->source.reset();  // that document was only a messenger
+  level->source.reset();  // the GLB was only the transfer format
   const Json textures = Json::parse(header);
   for (std::size_t m = 0; m < textures.size() && m < level->materials.size(); ++m) {
     const std::string name = textures[m].get<std::string>();
@@ -307,7 +307,7 @@ Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::strin
     return Error{"Draco data", "has no triangles to touch; export a mesh with faces"};
   for (const vec3 normal : primitive.normal)
     if (std::abs(length(normal) - 1.0f) > 0.006f) {
-      primitive.normal.clear();  // made anew at spawn
+      primitive.normal.clear();  // recomputed at spawn
       break;
     }
   Level level;

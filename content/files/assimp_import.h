@@ -1,5 +1,5 @@
-// Meshes of other formats (.obj, .ply, .off, .stl, .fbx, ...) through Assimp, and bare .drc files through Draco, as
-// Levels without a source document: one node a mesh instance, core materials. The libraries run in a child process.
+// Loads other mesh formats (.obj, .ply, .off, .stl, .fbx, ...) with Assimp, and bare .drc files with Draco. The Levels
+// have no source document, one node per mesh instance, and core materials. The libraries run in a child process.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,10 @@
 
 namespace pliant {
 
-// Untrusted like everything else: bounded in size, checked for finite positions and indices, refused in one sentence.
+// Input is untrusted: bounded in size, checked for finite positions and valid indices. Errors are one sentence.
 Result<Level> import_mesh(const std::filesystem::path& path);
-// The same of bytes in memory, with `extension` ".ply", ".obj", ...: in this process, for fuzzing, where a crash is to
-// be seen. Files that it names are not sought.
+// The same from memory, with `extension` ".ply", ".obj", ... It runs in this process, so that a fuzzer sees a crash.
+// Other files named by the input are not opened.
 Result<Level> import_mesh_here(const Bytes& bytes, const std::string& extension);
 Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::string& name);
 

@@ -20,9 +20,9 @@ namespace pliant {
 
 namespace {
 
-// What the compressions of OpenEXR reach on a flat colour is below this; a file that claims more pixels is damaged.
+// OpenEXR compresses a flat colour less than this. A file that claims more pixels is damaged.
 constexpr std::int64_t kExrPixelsPerByte = 256, kFreePixels = 1 << 16;
-// The library keeps up to 256 rows of all channels at once.
+// The library keeps up to 256 rows of all channels in memory at once.
 constexpr std::int64_t kMaxRowBlock = std::int64_t{256} << 20;  // [byte]
 
 class MemoryStream final : public Imf::IStream {
@@ -62,7 +62,7 @@ Status check_header(const ExrHeader& header, std::size_t size, const std::string
   return Done{};
 }
 
-// Luminance and subsampled chroma: the library has the filter that rebuilds colour.
+// Luminance and subsampled chroma: the library's filter reconstructs the colour.
 void read_chroma(Imf::IStream& stream, const ExrHeader& header, Panorama& out) {
   Imf::RgbaInputFile file(stream, 0);
   const Imath::Box2i window = file.dataWindow();
@@ -77,7 +77,7 @@ void read_chroma(Imf::IStream& stream, const ExrHeader& header, Panorama& out) {
   }
 }
 
-// Channels by name, as floats; those that the file lacks are 0.
+// Reads channels by name as floats; missing channels are 0.
 void read_channels(Imf::IStream& stream, const ExrHeader& header, bool luminance, Panorama& out) {
   Imf::InputFile file(stream, 0);
   const Imath::Box2i window = file.header().dataWindow();

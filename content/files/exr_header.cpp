@@ -22,7 +22,7 @@ class ByteReader {
     at_ += 4;
     return value;
   }
-  // Ends with a zero; at most 255 characters.
+  // Null-terminated; at most 255 characters.
   std::optional<std::string> text() {
     std::string out;
     while (fits(1) && out.size() < 256) {
@@ -56,8 +56,8 @@ bool read_channels(std::span<const std::uint8_t> value, ExrHeader& header) {
   }
 }
 
-// Bytes of a value of this type, where the type says it. The library reads that many whatever the attribute claims, and
-// would take what follows for attributes of its own, of any size.
+// Size of a value of this type, where the type fixes it. The library reads this many bytes whatever size the attribute
+// claims. It would then parse the remaining bytes as attributes of any size.
 std::optional<std::size_t> size_of(const std::string& type) {
   static const std::map<std::string, std::size_t> sizes = {{"box2f", 16},
                                                            {"box2i", 16},
@@ -87,7 +87,7 @@ std::optional<std::size_t> size_of(const std::string& type) {
   return found == sizes.end() ? std::nullopt : std::optional(found->second);
 }
 
-// stringvector: length and characters, again and again.
+// stringvector: length and characters, repeated.
 bool read_strings(std::span<const std::uint8_t> value) {
   ByteReader in(value);
   while (!in.at_end()) {
@@ -111,7 +111,7 @@ Result<ExrHeader> read_exr_header(std::span<const std::uint8_t> bytes, const std
   header.deep = (*version & 0x800) != 0;
   const bool multi_part = (*version & 0x1000) != 0;
   bool has_window = false, has_channels = false;
-  // Parts follow one another, each ended by an empty name; after the last stands another one.
+  // Part headers, each terminated by an empty name; another empty name follows the last.
   for (int part = 0; part < 64; ++part) {
     std::optional<std::string> attribute = in.text();
     if (!attribute) return damaged("ends within its header");

@@ -1,4 +1,5 @@
-// A look at an OpenEXR file's header before the library is let at it: the library allocates by what attributes claim.
+// Reads an OpenEXR file's header before the library does, because the library allocates the sizes that attributes
+// claim.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +13,11 @@ namespace pliant {
 
 struct ExrHeader {
   std::int64_t width = 0, height = 0;            // [px] of the data window
-  std::map<std::string, std::int32_t> channels;  // name -> bytes a sample
+  std::map<std::string, std::int32_t> channels;  // name -> bytes per sample
   bool deep = false;
 };
 
-// The first part's header. Errors: attributes that run past the end of the file, an empty or immense window.
+// The first part's header. Errors: attributes beyond the end of the file, an empty or too large window.
 Result<ExrHeader> read_exr_header(std::span<const std::uint8_t> bytes, const std::string& name);
 
 }  // namespace pliant

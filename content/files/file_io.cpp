@@ -79,7 +79,7 @@ int move_file(const fs::path& from, const fs::path& to, bool replace) {
   if (!replace) {
     if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
     if (errno != EINVAL && errno != ENOSYS) return errno;
-    std::error_code error;  // a file system that cannot do both at once
+    std::error_code error;  // a file system without atomic rename-without-replace
     if (fs::symlink_status(to, error).type() != fs::file_type::not_found) return EEXIST;
   }
   return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
@@ -91,7 +91,7 @@ fs::path aside_of(const fs::path& path) {
 
 namespace {
 
-// A new file under the first name that is free: never through a link, never over what is there. Null: errno says why.
+// Creates a file under the first free name. Never follows a link, never overwrites a file. Null: see errno.
 File open_aside(const fs::path& path, fs::path& aside) {
   aside = aside_of(path);
   for (int n = 2;; ++n) {
@@ -102,7 +102,7 @@ File open_aside(const fs::path& path, fs::path& aside) {
   }
 }
 
-// A file that is about to be replaced, and its second name; "" where none can be made.
+// A file about to be replaced, and its backup name; "" if no backup could be made.
 struct Replaced {
   bool was_there = false;
   fs::path kept;
@@ -149,12 +149,12 @@ Status write_files(const std::vector<FileToWrite>& files, Existing existing) {
     File file = open_aside(each.path, name);
     if (!file) return fail(each.path, "cannot be written");
     aside.push_back(name);
-    // Flushed before it is closed: a full disk may only show here, and closing may hide why.
+    // Flush before closing: a full disk may only be reported here, and closing may hide the reason.
     if (std::fwrite(each.bytes.data(), 1, each.bytes.size(), file.get()) != each.bytes.size() ||
         std::fflush(file.get()) != 0 || std::fclose(file.release()) != 0)
       return fail(each.path, "could not be written to its end");
   }
-  // Until the last is in place, what those before replaced is kept beside them.
+  // Replaced files are kept under backup names until the last file is in place.
   std::vector<Replaced> replaced;
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (i + 1 < files.size()) replaced.push_back(keep_beside(files[i].path));
@@ -199,7 +199,7 @@ Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {
       return Error{uri, "names another place than the level's folder; put the file beside the level"};
     return confined_file(folder, name);
   };
-  // A file's own name may hold a %, and scripts and panoramas are named as they are.
+  // A file name may contain a literal %; scripts and panoramas are named without encoding.
   std::error_code ignored;
   if (const Result<fs::path> as_it_is = confined(uri); uri.find('%') == std::string::npos || !as_it_is)
     return as_it_is;

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 constexpr std::size_t kFlushAt = 32768;  // [byte]
 
-// Writes as much as goes; `error` is errno where that is not all.
+// Writes as much as possible; `error` is the errno if not everything was written.
 std::size_t write_all(int file, std::string_view bytes, int& error) {
   std::size_t written = 0;
   while (written < bytes.size()) {
@@ -35,9 +35,9 @@ std::size_t write_all(int file, std::string_view bytes, int& error) {
 Result<GrowingFile> GrowingFile::create(const fs::path& path) {
   GrowingFile file;
   file.path_ = path;
-  file.file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);  // nobody else's
+  file.file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);  // always a new file
   if (file.file_ < 0) return Error{path.string(), "cannot be written: " + why_not_written(errno)};
-  ::flock(file.file_, LOCK_EX | LOCK_NB);  // where that is impossible, what is left behind stays
+  ::flock(file.file_, LOCK_EX | LOCK_NB);  // without lock support, files of killed processes are never removed
   return file;
 }
 

@@ -1,5 +1,5 @@
-// A file that grows by whole records while something runs: rows, or ticks of a recording. A write that fails is noticed
-// then and not at the end; the file is cut behind its last whole record, and nothing more is written.
+// A file that grows by whole records during a run: table rows, or ticks of a recording. A failed write is detected at
+// once. The file is then truncated after its last whole record, and no more is written.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ namespace pliant {
 
 class GrowingFile {
  public:
-  // A new, empty file: one that is there is refused. It is locked (flock) while it is open, so that others can tell it
-  // from one that a killed process left.
+  // Creates a new, empty file; rejects an existing one. The file is locked (flock) while open, which distinguishes it
+  // from one left by a killed process.
   static Result<GrowingFile> create(const std::filesystem::path& path);
   GrowingFile(GrowingFile&& other) noexcept;
   GrowingFile& operator=(GrowingFile&&) = delete;
@@ -24,13 +24,13 @@ class GrowingFile {
 
   void add(std::string_view record);
   void flush();
-  // What kept a record from being written; nothing so far, else no more is written.
+  // The first write error. After it, no more records are written.
   const std::optional<Error>& failure() const { return failure_; }
-  // Of the records since the last flush that came through, those that are whole in the file when one failed.
+  // After a failure: how many records since the last successful flush are complete in the file.
   std::size_t kept_since_flush() const { return kept_; }
-  std::size_t waiting() const { return ends_.size(); }  // records for the next flush
+  std::size_t waiting() const { return ends_.size(); }  // records buffered for the next flush
 
-  // After a failure, with the room that records give back: cuts the last `records` of those kept and ends with `bytes`.
+  // After a failure: removes the last `records` of the kept ones and uses their space to append `bytes`.
   bool end_instead(std::size_t records, std::string_view bytes);
   bool is_open() const { return file_ >= 0; }
   Status close();
@@ -41,18 +41,18 @@ class GrowingFile {
   std::filesystem::path path_;
   int file_ = -1;
   std::string buffer_;
-  std::vector<std::size_t> ends_;  // of the records in the buffer
+  std::vector<std::size_t> ends_;  // ends of the records in the buffer
   std::size_t flushed_ = 0;        // [byte] of whole records in the file
   std::size_t kept_ = 0;
   std::optional<Error> failure_;
 };
 
-// Removes what a killed process left aside of `file`: `file`.partial-PID and `file`.partial-PID-N, if it begins with
-// `magic` and nobody has it open. True: somebody has one open, and writes into `file` now.
+// Removes temporary files of `file` left by killed processes: `file`.partial-PID and `file`.partial-PID-N, if they
+// begin with `magic` and are not open. Returns true if a process has one open, that is, writes `file` now.
 bool remove_abandoned(const std::filesystem::path& file, std::string_view magic);
 
-// Locks a folder while it lives, as far as its file system can: between a look and the file that is made after it,
-// nobody else looks.
+// Locks a folder for its lifetime, if the file system supports it. No other process checks the folder between this
+// process's check and its creation of a file.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder);

@@ -9,8 +9,8 @@
 
 namespace {
 
-// stb_image inflates all that a PNG holds, whatever size its header says: 2 MB can become 2 GB. Its blocks are bounded
-// while a picture is decoded; it takes its memory from functions without an argument of ours.
+// stb_image inflates a PNG's data regardless of the header's size: 2 MB can become 2 GB. The size of its memory blocks
+// is limited during decoding. The limit is thread-local because stb's allocation functions have no user argument.
 thread_local std::size_t t_largest_block = SIZE_MAX;  // [byte]
 thread_local bool t_block_refused = false;
 
@@ -22,7 +22,7 @@ void* bounded_realloc(void* block, std::size_t size) {
 
 }  // namespace
 
-// Compiled in rather than linked from Debian's library, for these functions.
+// Compiled in, not linked from Debian's library, to set these allocation functions.
 #define STBI_MALLOC(size) bounded_realloc(nullptr, size)
 #define STBI_REALLOC(block, size) bounded_realloc(block, size)
 #define STBI_FREE(block) std::free(block)
@@ -37,12 +37,11 @@ namespace pliant {
 
 namespace {
 
-// How many pixels a byte of a file can stand for at most: deflate reaches 1030 bytes a byte, and a pixel is at least
-// one bit; a JPEG block of 64 samples takes a few bits. A file that claims more is broken, and is refused before
-// allocation.
+// The most pixels per byte of a file. Deflate expands up to 1030 times and a pixel has at least one bit; a JPEG block
+// of 64 samples takes a few bits. A file that claims more is damaged and is rejected before allocation.
 constexpr std::uint64_t kPixelsPerByte = 8300;
 
-// Every chunk of a PNG lies within the file: the decoder allocates by what a chunk says of itself.
+// Checks that every PNG chunk lies within the file: the decoder allocates the sizes that chunks claim.
 bool png_chunks_fit(std::span<const std::uint8_t> bytes) {
   for (std::size_t at = 8; at + 12 <= bytes.size();) {
     const std::uint64_t length = std::uint64_t{bytes[at]} << 24 | std::uint64_t{bytes[at + 1]} << 16 |
@@ -56,8 +55,8 @@ bool png_chunks_fit(std::span<const std::uint8_t> bytes) {
   return false;
 }
 
-// Every Huffman table of a JPEG names at most 256 codes: stb_image writes beyond its own table otherwise. Segments are
-// walked as it walks them; what stands between two is a scan, in which 0xff means itself before 0 alone.
+// Checks that every Huffman table of a JPEG has at most 256 codes; otherwise stb_image writes out of bounds. Segments
+// are traversed as stb_image does. Between segments is scan data, where 0xff is a literal only if 0 follows.
 bool jpeg_tables_fit(std::span<const std::uint8_t> bytes) {
   constexpr std::uint8_t kTables = 0xc4;
   const auto byte = [&](std::size_t at) { return at < bytes.size() ? std::size_t{bytes[at]} : 0; };
@@ -65,7 +64,7 @@ bool jpeg_tables_fit(std::span<const std::uint8_t> bytes) {
     while (at < bytes.size() && bytes[at] != 0xff) ++at;
     while (at < bytes.size() && bytes[at] == 0xff) ++at;
     const std::size_t marker = byte(at++);
-    if (marker == 0 || (marker >= 0xd0 && marker <= 0xd9)) continue;  // of a scan, or with nothing behind it
+    if (marker == 0 || (marker >= 0xd0 && marker <= 0xd9)) continue;  // scan data, or a marker without a payload
     const std::size_t end = at + std::max<std::size_t>(2, byte(at) << 8 | byte(at + 1));
     if (marker == kTables)
       for (std::size_t table = at + 2; table < end;) {
@@ -79,7 +78,7 @@ bool jpeg_tables_fit(std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-// Whether the decoder may see it.
+// Whether the file is safe to decode.
 bool is_sound(std::span<const std::uint8_t> bytes) {
   switch (image_format(bytes)) {
     case ImageFormat::kPng:
@@ -108,8 +107,8 @@ class BoundedBlocks {
   static bool refused() { return t_block_refused; }
 };
 
-// The largest block that decoding takes: blocks grow by doubling, to what the file holds or to four channels of two
-// bytes; a JPEG's planes go up to whole blocks of 64 samples.
+// The largest block that decoding needs. Blocks grow by doubling up to the file's content or four channels of two
+// bytes. A JPEG's planes are padded to blocks of 64 samples.
 std::uint64_t largest_block(std::uint64_t file, std::uint64_t width, std::uint64_t height, bool two_bytes) {
   return 2 * file + (two_bytes ? 16 : 8) * (width + 64) * (height + 64);
 }

@@ -1,4 +1,4 @@
-// PNG and JPEG pictures, 8 bits a channel, to and from memory.
+// Decodes and encodes PNG and JPEG pictures, 8 bits per channel, in memory.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,10 @@ namespace pliant {
 
 enum class ImageFormat { kUnknown, kPng, kJpeg };
 ImageFormat image_format(std::span<const std::uint8_t> bytes);  // by signature
-// [byte] That the picture takes when it is decoded, by its header; 0: no picture, which decode_image will say.
+// [byte] Size of the decoded picture, from its header. 0: not a picture; decode_image reports it.
 std::uint64_t decoded_size(std::span<const std::uint8_t> bytes);
 
-// At most limits::kPicturePixels, at most 16384 on a side; sizes are checked against the header before anything is
-// allocated.
+// At most limits::kPicturePixels, at most 16384 per side. Sizes are checked against the header before allocation.
 Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
 Result<Image> load_image(const std::filesystem::path& path);
 

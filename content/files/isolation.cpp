@@ -23,15 +23,15 @@ namespace pliant {
 
 namespace {
 
-constexpr double kPatience = 30.0;       // [1] of its processor time that a child may take by the clock on the wall
-constexpr double kLeastPatience = 60.0;  // [s]
+constexpr double kPatience = 30.0;       // [1] wall-clock limit of a child, as a multiple of its CPU time limit
+constexpr double kLeastPatience = 60.0;  // [s] lower bound of that limit
 constexpr auto kStandsStill = std::chrono::seconds(4);
-constexpr std::int64_t kLook = 100;  // [ms] between two looks at a child that says nothing
-constexpr int kAttempts = 3;         // the last one is waited for to the end
+constexpr std::int64_t kLook = 100;  // [ms] between two checks of a child that writes nothing
+constexpr int kAttempts = 3;         // the last one has no stall detection
 
 constexpr char kDone = 'D', kRefused = 'R';
 
-// What this process, and so the child at birth, has in private memory.
+// [byte] private memory of this process, and so of the child at its start.
 std::uint64_t private_bytes() {
   std::uint64_t pages[6] = {};
   std::ifstream in("/proc/self/statm");
@@ -51,8 +51,8 @@ bool write_all(int end, const void* data, std::size_t size) {
   return true;
 }
 
-// The kernel sends SIGPROF once this process has used so much processor time: to the microsecond, where RLIMIT_CPU
-// counts whole seconds. That stands behind it, against a library that takes SIGPROF for itself.
+// The kernel sends SIGPROF after this CPU time, with microsecond resolution; RLIMIT_CPU counts whole seconds.
+// RLIMIT_CPU is the fallback if a library takes over SIGPROF.
 void end_after(double seconds) {
   const double whole = std::floor(seconds);
   const itimerval timer{{0, 0}, {static_cast<time_t>(whole), static_cast<suseconds_t>((seconds - whole) * 1e6)}};
@@ -63,7 +63,7 @@ void end_after(double seconds) {
 }
 
 [[noreturn]] void child(int end, std::uint64_t memory, double seconds, const std::function<Result<Bytes>()>& work) {
-#ifndef PLIANT_SANITIZED  // sanitizers reserve more than any limit
+#ifndef PLIANT_SANITIZED  // sanitizers reserve more address space than any limit
   const rlimit limit{memory, memory};
   setrlimit(RLIMIT_DATA, &limit);
 #else
@@ -78,7 +78,7 @@ void end_after(double seconds) {
   sigaddset(&profile, SIGPROF);
   sigprocmask(SIG_UNBLOCK, &profile, nullptr);
   end_after(seconds);
-  // A library's last words are not for the user.
+  // Hide what the library prints when it crashes.
   (void)!std::freopen("/dev/null", "w", stderr);
   bool sent = false;
   try {
@@ -99,7 +99,7 @@ void end_after(double seconds) {
 
 using Clock = std::chrono::steady_clock;
 
-// [s] of processor time that a process has used; negative: not known.
+// [s] CPU time of a process; negative: unknown.
 double processor_time(pid_t pid) {
   clockid_t clock;
   timespec used{};
@@ -111,13 +111,13 @@ double processor_time(pid_t pid) {
 struct Ended {
   Bytes answer;
   int status = 0;
-  double seconds = 0.0;  // of processor time
+  double seconds = 0.0;  // CPU time
   bool late = false;     // killed at the deadline
-  bool stuck = false;    // killed because it stood still
+  bool stuck = false;    // killed because it made no progress
 };
 
-// Reads what a child writes until it ends. `watch`: one that neither writes nor uses the processor for kStandsStill was
-// born while another thread held a lock that it waits for now.
+// Reads the child's output until it ends. `watch`: detect a deadlocked child. If it neither writes nor uses the CPU for
+// kStandsStill, it was forked while another thread held a lock that it waits for.
 Ended wait_for(pid_t pid, int end, Clock::time_point deadline, bool watch) {
   Ended out;
   LongWork work;
@@ -172,8 +172,7 @@ double reading_time(std::size_t input_bytes) {
 
 Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work, double seconds,
                            double wall, double* used) {
-  const double allowed =
-      (seconds + reading_time(input_bytes)) * std::max(limit_factor(), 1.0);  // [s] of processor time
+  const double allowed = (seconds + reading_time(input_bytes)) * std::max(limit_factor(), 1.0);  // [s] of CPU time
   const double wait = wall > 0.0 ? wall : std::max(kPatience * allowed, kLeastPatience);
   const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(wait * 1e3));
   const std::uint64_t memory = private_bytes() + most(limits::kReaderMemory) + 64 * std::uint64_t{input_bytes};

@@ -1,5 +1,5 @@
-// Libraries that were not written for hostile input (Assimp, Draco) run in a child process of bounded time and memory:
-// whatever a damaged file makes them do, the level is refused in a sentence and this process goes on.
+// Runs libraries that were not written for hostile input (Assimp, Draco) in a child process with limited time and
+// memory. If a damaged file crashes them, the level is rejected with one sentence and this process continues.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace pliant {
 
-// Runs `work` in a child and returns what it returned. `input_bytes`, the size of what it reads, sets the bounds:
-// `seconds` of its own processor time and one more for every 4 MB, times the factor of the limits where it is above 1;
-// kReaderMemory and 64 bytes for each of them. A busy machine takes nothing of that; a child that waits instead of
-// working is ended after `wall` seconds (0: thirty times as many, a minute at least). It must not touch threads or
-// devices. `used`: where the seconds of processor time are added that it took.
+// Runs `work` in a child process and returns its result. `work` must not use threads or devices. CPU time limit:
+// `seconds` plus one second for every 4 MB of `input_bytes`, times the limit factor if that is above 1. Memory limit:
+// kReaderMemory plus 64 bytes for every input byte. CPU load from other processes does not count. A child that waits
+// instead of working is killed after `wall` seconds (0: thirty times its CPU time, at least a minute). `used`: the
+// child's CPU time is added here.
 Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work,
                            double seconds = limits::kReaderTime.most, double wall = 0.0, double* used = nullptr);
 
-// [s] of processor time that reading so many bytes may take, beside the seconds that every child has.
+// [s] CPU time allowed for reading so many bytes, in addition to the fixed seconds per child.
 double reading_time(std::size_t input_bytes);
 
-// For handing arrays over: what was appended is taken in the same order. take() fails at the end of the bytes.
+// Serialisation of arrays: read back in the order of appending. take() fails at the end of the bytes.
 void append_bytes(Bytes& out, const void* data, std::size_t size);
 class Taker {
  public:

@@ -9,7 +9,7 @@
 
 namespace pliant {
 namespace {
-std::atomic<double> g_factor{1.0};  // set once, before anything is read
+std::atomic<double> g_factor{1.0};  // set once, before any file is read
 }
 
 void set_limit_factor(double factor) {

@@ -1,6 +1,6 @@
-// What a file may ask for, in one table: a small file can name a large world, and whoever opens it has a machine of
-// ordinary size. Each limit has its unit and its reason; `pliant --limits N` (set_limit_factor) raises or lowers all
-// that scale. A program sets it before it opens anything (pliant/content.h).
+// Limits for the content of files, in one table: a small file can describe a scene that exceeds the memory of a usual
+// computer. Each limit has its unit and its reason. `pliant --limits N` (set_limit_factor) scales all those with
+// `scales`. A program sets it before it opens a file (pliant/content.h).
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@
 namespace pliant {
 
 struct Limit {
-  double most = 0.0;        // at a factor of 1
+  double most = 0.0;        // at factor 1
   const char* unit = "";    // "nodes", "bytes"
-  const char* reason = "";  // why there is a limit, and why this one
-  bool scales = true;       // false: what lies behind it cannot do more, whatever memory there is
+  const char* reason = "";  // why there is a limit, and why this value
+  bool scales = true;       // false: a fixed limit of the format or implementation, whatever memory there is
 };
 
 namespace limits {
 inline constexpr double kMiB = 1048576.0;
 
-// Files. Each is held in memory as a whole.
+// Files. Each is kept in memory as a whole.
 inline constexpr Limit kFile{2048 * kMiB, "bytes", "a file is held in memory, and lengths in a GLB have 32 bits"};
 inline constexpr Limit kImport{512 * kMiB, "bytes", "an importer takes up to 64 times as much"};
 inline constexpr Limit kTetFile{512 * kMiB, "bytes", "text is held in memory beside what is read of it"};
@@ -30,8 +30,8 @@ inline constexpr Limit kInputFile{16 * kMiB, "bytes", "an event takes some 20"};
 inline constexpr Limit kRecordingFile{1024 * kMiB, "bytes", "a replay holds it in memory"};
 inline constexpr Limit kPictureFile{512 * kMiB, "bytes", "it is held in memory beside its pixels"};
 
-// What libraries may use that read a file in a process of their own, beside 64 bytes and a quarter of a microsecond for
-// each byte of it.
+// Limits of the child process that runs a library, in addition to 64 bytes and a quarter of a microsecond per input
+// byte.
 inline constexpr Limit kReaderMemory{768 * kMiB, "bytes", "Assimp's and Draco's own structures"};
 inline constexpr Limit kReaderTime{4.0, "s of processor time", "a thousand times what small files take"};
 
@@ -42,7 +42,8 @@ inline constexpr Limit kElements{1e5, "elements", "each takes up to 5 kB in all 
 inline constexpr Limit kAccessors{2e5, "elements", "each takes up to 1.5 kB"};
 inline constexpr Limit kName{1000, "bytes", "names stand in every row of forces.csv"};
 
-// What a level may make of its files: a mesh can be shown often, and a small picture can unpack to a large one.
+// Limits for a level built from its files: a mesh can be instanced often, and a small picture can unpack to a large
+// one.
 inline constexpr Limit kTriangles{67108864, "triangles", "indices of corners have 32 bits", false};
 inline constexpr Limit kAddedTriangles{4194304, "triangles beyond those of its meshes", "each takes some 150 bytes"};
 inline constexpr Limit kSurfaces{4096, "surfaces and rigid bodies", "each is looked after in every tick or step"};
@@ -67,16 +68,16 @@ inline constexpr Limit kLatticeNodes{16777216, "nodes of a lattice", "each takes
 inline constexpr Limit kTetFileNodes{4e6, "nodes", "each takes 24 bytes, its tetrahedra 400"};
 inline constexpr Limit kTetFileEntries{5e7, "entries of a section", "each takes up to 32 bytes"};
 
-// What waits to be written while a picture is drawn. Rows beyond are counted as lost.
+// Rows that wait to be written while a frame is drawn. Further rows are counted as lost.
 inline constexpr Limit kJournal{64 * kMiB, "bytes of rows", "8 s of thirty probes at 1 kHz"};
 }  // namespace limits
 
-// [1] What set_limit_factor takes.
+// [1] Range of set_limit_factor.
 inline constexpr Range kLimitFactor{1e-6, 1e3};
 
 double limit_factor();
 
-// Of a limit, at the factor that is set.
+// The limit times the current factor.
 std::uint64_t most(const Limit& limit);
 
 // "1900000 elements, more than the 100000 that are read (REASON); CURE, or allow it with --limits 19".

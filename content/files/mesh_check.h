@@ -1,5 +1,5 @@
-// What Assimp would read differently than it stands in the file: faces that name vertices which are not there, counts
-// that do not agree, files that are cut off. It clamps, drops or invents; here such a file is refused before it.
+// Rejects files that Assimp would silently repair: faces with missing vertices, inconsistent counts, truncated files.
+// Assimp clamps, drops or invents data in these cases.
 #pragma once
 
 #include <string>
@@ -8,21 +8,22 @@
 
 namespace pliant {
 
-// What the importer is handed of a file.
+// The input of the importer.
 struct MeshFile {
   Bytes bytes;
   std::string format;      // "ply", as in a file's extension
-  bool in_memory = false;  // false: it may name other files, and is read from where it lies
+  bool in_memory = false;  // false: may refer to other files, and is read from its own folder
 };
 
-// A .obj, .off, .ply or .stl as a sound file of a format that Assimp reads whole; other formats as they are.
+// Checks a .obj, .off, .ply or .stl file and normalises it to a form that Assimp reads completely. Other formats are
+// unchanged.
 Result<MeshFile> check_mesh_file(Bytes bytes, const std::string& format);
 
-// Of one format each.
-Status check_obj(Bytes& bytes);  // comments behind numbers become blanks
+// One check per format.
+Status check_obj(Bytes& bytes);  // replaces comments after numbers by blanks
 Result<Bytes> off_as_ply(
-    const Bytes& bytes);  // Assimp's own reader of OFF knows no comments and no face of ten corners
+    const Bytes& bytes);  // Assimp's OFF reader supports neither comments nor faces with ten corners
 Status check_ply(const Bytes& bytes);
-Status check_stl(Bytes& bytes);  // what stands behind the last triangle is cut off
+Status check_stl(Bytes& bytes);  // removes bytes after the last triangle
 
 }  // namespace pliant

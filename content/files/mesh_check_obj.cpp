@@ -1,5 +1,5 @@
-// OBJ: lines of a key and its values; a backslash at the end goes on in the next. Vertices are counted from 1, or from
-// the last one backwards.
+// OBJ: lines of a key and its values; a backslash at the end continues the line. Vertices are counted from 1, or
+// backwards from the last one.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class ObjCheck {
   explicit ObjCheck(Bytes& bytes) : bytes_(bytes), text_(bytes, "") {}
 
   Status all() {
-    bool curve = false;  // free-form geometry, from `cstype` to `end`: left out
+    bool curve = false;  // free-form geometry, from `cstype` to `end`: ignored
     while (row()) {
       if (words_.empty()) continue;
       const std::string_view key = words_[0];
@@ -35,7 +35,7 @@ class ObjCheck {
       if (key == "f") status = face();
       if (!status) return status;
     }
-    // What a face names may come after it.
+    // A face may refer to vertices defined later, so the check comes at the end of the file.
     for (std::size_t i = 0; i < 3; ++i)
       if (largest_[i] > count_[i]) {
         line_ = largest_at_[i];
@@ -47,7 +47,7 @@ class ObjCheck {
  private:
   Error at(const std::string& what) const { return {fmt::format("line {}", line_), what + "; export it again"}; }
 
-  // The words of the next line, with those that it goes on in.
+  // Reads the words of the next line and its continuation lines.
   bool row() {
     words_.clear();
     joined_.clear();
@@ -71,15 +71,15 @@ class ObjCheck {
     return any;
   }
 
-  // The file's own bytes of a part of a line.
+  // The position of a part of a line in the file's bytes.
   Bytes::iterator place_of(std::string_view part) {
     return bytes_.begin() + (reinterpret_cast<const std::uint8_t*>(part.data()) - bytes_.data());
   }
 
-  // Assimp takes a comment behind a face for one of its corners.
+  // Assimp reads a comment after a face as one of its corners.
   void blank(std::string_view comment) { std::fill_n(place_of(comment), comment.size(), std::uint8_t{' '}); }
 
-  // Assimp drops a line that begins with a blank: its blanks go to its end.
+  // Assimp drops a line that begins with blanks: they are moved to its end.
   void move_indent(std::string_view line) {
     const std::size_t indent = std::min(line.find_first_not_of(" \t\v\f"), line.size());
     const auto begin = place_of(line);

@@ -1,4 +1,4 @@
-// OFF: [ST][C][N][4][n]OFF, counts, then a vertex and a face a line; '#' begins a comment.
+// OFF: [ST][C][N][4][n]OFF, counts, then one vertex or face per line; '#' begins a comment.
 #include <fmt/format.h>
 
 #include <array>
@@ -17,7 +17,7 @@ struct OffHeader {
   std::int64_t vertices = 0, faces = 0;
 };
 
-// The words of the next line that has any; false at the end of the file.
+// Reads the words of the next non-empty line; false at the end of the file.
 bool row(TetText& text, Words& words) {
   words.clear();
   std::string_view line;
@@ -76,7 +76,7 @@ Status copy_vertex(const OffHeader& header, const Words& words, std::int64_t v, 
   if (words.size() < needed + (header.texture ? 2 : 0))
     return Error{"", fmt::format("has too few numbers for vertex {}; the file is cut off or damaged", v)};
   Words kept(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(needed));
-  if (header.texture) kept.insert(kept.end(), words.end() - 2, words.end());  // behind colours
+  if (header.texture) kept.insert(kept.end(), words.end() - 2, words.end());  // texture coordinates follow the colours
   std::array<double, 9> value{};
   for (std::size_t i = 0; i < kept.size(); ++i)
     if (!to_number(kept[i], value[i]))
@@ -103,7 +103,7 @@ Status copy_face(const OffHeader& header, const Words& words, std::int64_t f, By
       return Error{"", fmt::format("has a face {} that names vertex {} of {}; export it again", f, word.substr(0, 20),
                                    header.vertices)};
   }
-  if (corners < 3) return Done{};  // points and lines
+  if (corners < 3) return Done{};  // skips points and lines
   ++written;
   for (std::int64_t c = 0; c <= corners; ++c) {
     append(out, words[static_cast<std::size_t>(c)]);

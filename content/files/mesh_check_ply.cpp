@@ -1,4 +1,4 @@
-// PLY: a header of elements and their properties, then the elements, a line each or in binary.
+// PLY: a header of elements and their properties, then the elements, one per line or in binary.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ struct Property {
   Kind kind = Kind::kFloat, count_kind = Kind::kUint8;
   bool list = false;
   bool axis = false;      // x, y or z
-  bool vertices = false;  // names vertices
+  bool vertices = false;  // the list holds vertex indices
 };
 struct Element {
   std::string name;
@@ -50,7 +50,7 @@ Error damaged(const std::string& what) {
   return {"", what + "; the file is cut off or damaged"};
 }
 
-// The header, and whether the body is binary, and turned.
+// Reads the header, and the encoding of the body: text or binary, and its byte order.
 Result<PlyHeader> read_ply_header(TetText& text) {
   PlyHeader header;
   std::string_view line;
@@ -96,11 +96,11 @@ Result<PlyHeader> read_ply_header(TetText& text) {
   return damaged("ends within its header");
 }
 
-// Takes values of one element: from its line, or from the binary body.
+// Reads values of one element, from its line or from the binary body.
 class PlyRow {
  public:
   PlyRow(TetText& text, std::string_view line) : binary_(text.binary()), body_(text), line_(as_bytes(line), "") {}
-  // False: there is no more. What is no finite number in text becomes NaN.
+  // False: no more values. In text, a word that is not a finite number becomes NaN.
   bool value(Kind kind, double& out) {
     if (binary_) return raw(kind, out);
     std::string_view word;
@@ -148,7 +148,7 @@ class PlyRow {
 
 Status check_row(PlyRow& row, const Element& element, std::int64_t number, const PlyHeader& header) {
   const auto cut = [&] { return damaged(fmt::format("has too few numbers for {} {}", element.name, number)); };
-  const bool strip = element.name == "tristrips";  // there -1 begins another
+  const bool strip = element.name == "tristrips";  // in a strip, -1 begins another one
   for (const Property& property : element.properties) {
     double count = 1.0, value = 0.0;
     if (property.list && !row.value(property.count_kind, count)) return cut();
@@ -170,7 +170,7 @@ Status check_row(PlyRow& row, const Element& element, std::int64_t number, const
 }
 
 Status check_element(TetText& text, const Element& element, const PlyHeader& header) {
-  std::uint64_t size = 0;  // [byte] of one, where none has a list
+  std::uint64_t size = 0;  // [byte] of one element, if no property is a list
   bool lists = false;
   for (const Property& property : element.properties) {
     size += size_of(property.kind);

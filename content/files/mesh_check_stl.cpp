@@ -1,4 +1,4 @@
-// STL: 80 bytes, a count and 50 bytes a triangle; or text, facet by facet.
+// STL: 80 bytes, a count and 50 bytes per triangle; or text, facet by facet.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kHead = 84, kTriangle = 50;  // [byte]
 
-// Binary files may begin with `solid` as text does, but have other bytes than text soon.
+// A binary file may also begin with `solid`, but soon has bytes that are not text.
 bool is_text(const Bytes& bytes) {
   const auto begin = std::find_if_not(bytes.begin(), bytes.end(), [](std::uint8_t c) { return std::isspace(c); });
   if (bytes.end() - begin < 5 || std::memcmp(&*begin, "solid", 5) != 0) return false;
@@ -25,7 +25,7 @@ Status check_binary(Bytes& bytes) {
   std::uint32_t count = 0;
   std::memcpy(&count, &bytes[80], 4);
   const std::uint64_t size = kHead + kTriangle * std::uint64_t{count};
-  // A few bytes more are padding; whole triangles more mean that one of the two is wrong.
+  // A few extra bytes are padding; extra whole triangles mean that the count or the data is wrong.
   if (bytes.size() < size || bytes.size() >= size + kTriangle)
     return Error{"", fmt::format("says {} triangles but has {}; the file is cut off or damaged", count,
                                  (bytes.size() - kHead) / kTriangle)};
@@ -54,7 +54,7 @@ Status check_text(const Bytes& bytes) {
       open = false;
       text.line(line);
     } else if (word == "facet" && open) {
-      // Normals are made anew where they are no numbers.
+      // Normals that are not numbers are recomputed.
       if (!expect("normal") || !text.word(word) || !text.word(word) || !text.word(word))
         return broken("lacks a normal");
       if (!expect("outer") || !expect("loop")) return broken("lacks `outer loop`");

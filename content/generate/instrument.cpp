@@ -10,7 +10,8 @@ namespace pliant::generate {
 namespace {
 
 constexpr double kShaft = 0.0026, kGrip = 0.0048, kEnd = 0.0036;  // [m] radii
-constexpr double kBendAt = -0.068, kTipReach = 0.028;             // [m] along the shaft; from there to the ball
+constexpr double kBendAt = -0.068, kTipReach = 0.028;             // [m] position of the bend along the shaft; distance
+                                                                  // from the bend to the ball
 constexpr double kBend = 20.0;                                    // [degree]
 
 dvec3 bent(double degree) {

@@ -9,12 +9,12 @@ namespace {
 
 constexpr vec3 kWood{0.50f, 0.30f, 0.14f};  // linear RGB
 
-// Where the stylus's device stands so that its tip is at `tip`.
+// The pose of the stylus's device for which the tip is at `tip`.
 Waypoint tip_at(double time, dvec3 tip, dvec3 turn) {
   return {time, tip - glm::normalize(dquat(glm::radians(turn))) * stylus_tip(), turn};
 }
 
-// Of titanium, 25 g, held like a pen.
+// Titanium, 25 g, held like a pen.
 void add_stylus(Level& level, const Waypoint& start) {
   LevelNode& node = add_mesh(level, "stylus", stylus(), add_material(level, "steel", kSteel, 0.3f));
   place(node, start);
@@ -40,7 +40,7 @@ LevelNode& add_box(Level& level, const std::string& name, dvec3 half, dvec3 at, 
 constexpr double kTowerX = -0.04, kTowerTop = 0.130, kTopHalf = 0.027;  // [m]
 constexpr dvec3 kUpright{-20, 0, 0};  // [degree] the stylus's ball straight below its bend
 
-// Onto the tower, up, round to its left, and to the right against the topmost box until it falls.
+// Touches the tower's top, goes up and around to its left, and pushes the topmost box to the right until it falls.
 std::vector<Waypoint> stack_path() {
   const double side = kTowerX - kTopHalf - kStylusTip;
   return {tip_at(0.0, {kTowerX, kTowerTop + 0.035, 0.0}, kUpright),
@@ -55,13 +55,13 @@ std::vector<Waypoint> stack_path() {
           tip_at(9.0, {side - 0.012, kTowerTop + 0.010, 0.0}, kUpright)};
 }
 
-// The organ of `three_probes` on its back: its groove looks up.
+// The organ of `three_probes` lying on its back: its groove points up.
 double lying_organ(dvec3 p) {
   static const Solid upright = organ();
   return upright({p.x, -p.z, p.y});
 }
 
-// The organ's highest point there, by bisection. [m]
+// The organ's highest point at x, z, by bisection. [m]
 dvec3 on_organ(double x, double z) {
   double inside = 0.0, outside = 0.1;
   for (int i = 0; i < 40; ++i) {
@@ -71,7 +71,7 @@ dvec3 on_organ(double x, double z) {
   return {x, inside, z};
 }
 
-// Presses on the large lobe, strokes over it towards the groove, leaves.
+// Presses on the large lobe, strokes over it towards the groove, and retracts.
 std::vector<Waypoint> stylus_path() {
   const dvec3 from = on_organ(-0.070, -0.020), to = on_organ(-0.026, -0.026), up(0, 1, 0), lean(-5, 0, 25);
   const double clear = kStylusTip + 0.020, deep = kStylusTip - 0.009;

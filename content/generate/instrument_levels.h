@@ -1,4 +1,4 @@
-// Levels with rigid things: a tower of boxes, and instruments on an organ.
+// Levels with rigid bodies: a tower of boxes, and instruments on an organ.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace pliant::generate {
 
-// A stylus presses on a tower of four wooden boxes and pushes the topmost off, onto two soft cubes.
+// A stylus presses on a tower of four wooden boxes and pushes the topmost onto two soft cubes.
 Level stack();
 // A stylus and a probe press and stroke a soft organ that lies on the ground.
 Level instrument();

@@ -7,9 +7,10 @@
 namespace pliant::generate {
 namespace {
 
-constexpr double kMargin = 6.0 / 512.0;  // [1] of the square, free around the unfolded lattice
+constexpr double kMargin = 6.0 / 512.0;  // [1] of the square: empty border around the unfolded lattice
 
-// Sweeps of a level: many where they are cheap and reach far; at the finest only what splitting left uneven remains.
+// Relaxation sweeps per level: many on coarse levels, where they are cheap and reach far. The finest level only removes
+// the unevenness left by splitting.
 int sweeps(int n) {
   return n < 30 ? 60 : 16;
 }
@@ -18,8 +19,7 @@ int sign(int x) {
   return x < 0 ? -1 : 1;
 }
 
-// Where a lattice point lies in the square, as seen from the octant (sx, sy, .): only on the seams does the octant
-// matter.
+// The lattice point's place in the square, seen from the octant (sx, sy, .). The octant matters only on the seams.
 vec2 unfold(LatticePoint p, int sx, int sy, int n) {
   dvec2 q(p[0], p[1]);
   if (p[2] < 0) q = dvec2(sx * (n - std::abs(p[1])), sy * (n - std::abs(p[0])));
@@ -59,8 +59,8 @@ LatticeSphere lattice(int n) {
   return sphere;
 }
 
-// Tangential smoothing that evens out areas: each vertex moves towards the area-weighted middle of its triangles and
-// back onto the surface.
+// Tangential smoothing that evens out areas: each vertex moves towards the area-weighted mean of its triangles' centres
+// and is projected back onto the surface.
 void relax(LatticeSphere& sphere, const Solid& solid) {
   std::vector<dvec3> sum(sphere.position.size());
   std::vector<double> area(sphere.position.size());
@@ -82,7 +82,7 @@ void relax(LatticeSphere& sphere, const Solid& solid) {
   }
 }
 
-// Positions of the lattice twice as fine: old points, and the middles of old edges.
+// The lattice refined by two: old points, and midpoints of old edges.
 LatticeSphere refined(const LatticeSphere& coarse, const Solid& solid) {
   LatticeSphere fine = lattice(2 * coarse.n);
   for (const auto& [p, v] : fine.vertex) {
@@ -102,7 +102,7 @@ LatticeSphere refined(const LatticeSphere& coarse, const Solid& solid) {
 }  // namespace
 
 LatticeSphere cover(const Solid& solid, int coarse, int doublings) {
-  // Start far outside on an octahedral sphere and come in along rays until the surface is met.
+  // Start on a large octahedral sphere and move inwards along rays until the surface is reached.
   LatticeSphere sphere = lattice(coarse);
   for (const auto& [p, v] : sphere.vertex) {
     const dvec3 direction = normalize(dvec3(p[0], p[1], p[2]));
@@ -119,7 +119,7 @@ LatticeSphere cover(const Solid& solid, int coarse, int doublings) {
 }
 
 LatticePlace place_at(int n, dvec2 uv) {
-  // Out of the margin; beyond the square's border it goes on around the fold.
+  // Remove the margin; beyond the square's border, reflect at the fold.
   dvec2 q = (uv - 0.5) / (0.5 - kMargin);
   if (std::abs(q.x) > 1.0) q = {std::copysign(2.0 - std::abs(q.x), q.x), -q.y};
   if (std::abs(q.y) > 1.0) q = {-q.x, std::copysign(2.0 - std::abs(q.y), q.y)};

@@ -1,6 +1,6 @@
 // A closed surface over the octahedron's lattice: every vertex is an integer point with |x| + |y| + |z| = n. The
-// lattice unfolds into a square without distortion (Praun & Hoppe, "Spherical parametrization and remeshing", 2003),
-// which gives texture coordinates whose only seams are four lines on the far side (-Z).
+// lattice unfolds into a square without distortion (Praun & Hoppe, "Spherical parametrization and remeshing", 2003).
+// The resulting texture coordinates have only four seams, all on the far side (-Z).
 #pragma once
 
 #include <array>
@@ -20,25 +20,24 @@ struct LatticeSphere {
   std::vector<dvec3> position;  // [m]
   struct Corner {
     std::uint32_t vertex;
-    vec2 uv;  // the border of the square, with a margin, so that texture filters stay inside
+    vec2 uv;  // within the square less a margin, so that texture filters stay inside
   };
   std::vector<std::array<Corner, 3>> triangles;  // counter-clockwise from outside
 };
 
-// Covers `solid` (one that a sphere can be shrunk onto) with 8 n^2 near-equilateral, evenly sized triangles, n = coarse
-// * 2^doublings: each level is relaxed along the surface before it is split, so that size evens out over long
-// distances.
+// Covers `solid` (star-shaped, so that a sphere can be shrunk onto it) with 8 n^2 near-equilateral, evenly sized
+// triangles, n = coarse * 2^doublings. Each level is relaxed along the surface before it is split, which evens out
+// sizes over long distances.
 LatticeSphere cover(const Solid& solid, int coarse, int doublings);
 
-// A place in the unfolded square (texture coordinates) as a triangle of lattice points and barycentric weights.
+// A point of the unfolded square (texture coordinates) as a lattice triangle and barycentric weights.
 struct LatticePlace {
   std::array<LatticePoint, 3> corner;
   dvec3 weight{0};
 };
 LatticePlace place_at(int n, dvec2 uv);
 
-// As a primitive with normals from the solid and texture coordinates; vertices on the seams are there once for each
-// side.
+// A primitive with normals from the solid and texture coordinates. Vertices on seams are duplicated, one for each side.
 Primitive to_primitive(const LatticeSphere& sphere, const Solid& solid);
 
 }  // namespace pliant::generate

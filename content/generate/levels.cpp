@@ -33,7 +33,7 @@ struct NamedStroke {
 };
 
 // The right lobe from the left, the lobe below it, and the far lobe across the groove's side. From 3.8 s to 5 s all
-// three are down; a and b then slide side by side, within each other's reach.
+// three probes are in contact. Then a and b slide side by side, close enough to interact.
 std::vector<NamedStroke> organ_strokes() {
   //             radius clearance depth  press     lift
   const Stroke a{8.0,       0.004, 0.030, 0.008, 0.4, 2.0, 5.2, 6.8, {{-0.075, 0.020, 0.04}, {-0.026, 0.026, 0.06}},
@@ -47,7 +47,7 @@ std::vector<NamedStroke> organ_strokes() {
           {"c", "presses 6 mm deep on the far lobe and slides inward", c}};
 }
 
-// Two fingers: one sweeps three lines over the half with the hard spot, one a line over the other half.
+// Two fingers: one strokes three lines over the half with the hard spot, one a line over the other half.
 std::vector<NamedStroke> pad_strokes() {
   Stroke a{10.0, 0.005, 0.025, 0.004, 0.3, 1.3, 8.3, 9.3, {}, {}};
   a.through = {{0.005, 0.02, -0.016}, {0.065, 0.02, -0.016}, {0.065, 0.02, 0.002},
@@ -72,7 +72,7 @@ std::vector<NamedStroke> heart_strokes() {
           {"c", "presses 8 mm deep above the point and slides up between them", c}};
 }
 
-// Two balls that meet in the middle and part again.
+// Two balls that meet in the middle and separate again.
 std::vector<NamedStroke> cushion_strokes() {
   const Stroke a{8.0,
                  0.008,
@@ -98,13 +98,13 @@ std::vector<NamedStroke> cushion_strokes() {
           {"b", "presses 10 mm deep on the right, slides to the middle and forward", b}};
 }
 
-// A finger that stays where it is while the ball goes by under it.
+// A finger that keeps its position while the ball turns under it.
 std::vector<NamedStroke> ball_strokes() {
   const Stroke a{8.0, 0.005, 0.030, 0.005, 0.4, 1.6, 6.4, 7.6, {{0, 0.004, 0.05}, {0, 0.006, 0.05}}, {1.6, 6.4}};
   return {{"a", "presses 5 mm deep at the front of the turning ball and stays there", a}};
 }
 
-// Once around +Y, one key a quarter turn.
+// One turn about +Y, one key per quarter turn.
 LevelAnimation turn_of(std::int32_t node, double seconds) {
   LevelChannel channel{node, NodeProperty::kRotation, {}};
   for (int quarter = 0; quarter <= 4; ++quarter) {
@@ -125,7 +125,7 @@ Status save_strokes(const Level& level, const Solid& solid, const std::vector<Na
   return Done{};
 }
 
-// A body without texture coordinates, of one material.
+// A body without texture coordinates, with one material.
 LevelNode& add_body(Level& level, const Solid& solid, const Material& material, const Detail& detail) {
   level.materials.push_back(material);
   Primitive primitive = to_primitive(cover(solid, detail.smooth_coarse, detail.smooth_doublings), solid);
@@ -167,7 +167,7 @@ Level three_probes(const Detail& detail) {
   add_probe(level, "probe_a", 0.004, kCoral);
   add_probe(level, "probe_b", 0.003, kTeal);
   add_probe(level, "probe_c", 0.0, kGold);
-  // Lower than the sun, along the front: dents shadow themselves.
+  // Lower than the sun and from the front, so that dents cast shadows.
   add_view(level, {0.02, 0.09, 0.36}, {0.002, -0.006, 0.0}, "sky.exr", {0.74, 0.60, 0.30});
   level.nodes.back().light->intensity = 3.5f;
   return level;
@@ -185,7 +185,7 @@ Level inclusion(const Detail& detail) {
   level.materials.push_back(skin);
   Primitive primitive = to_primitive(cover(solid, detail.pad_coarse, detail.pad_doublings), solid);
   primitive.material = 0;
-  primitive.uv.clear();  // nothing is painted on it: the hard spot can only be felt
+  primitive.uv.clear();  // no painting: the hard spot can only be felt
   for (const vec3& p : primitive.position) {
     const double r2 = (std::pow(p.x - 0.038, 2.0) + std::pow(p.z - 0.004, 2.0)) / (0.013 * 0.013);
     primitive.stiffness.push_back(static_cast<float>(1.0 + (p.y > 0.0f ? 5.0 * std::exp(-r2) : 0.0)));
@@ -261,7 +261,7 @@ Level turning_ball(const Detail& detail) {
   node.deformable->stiffness = 250.0;
   node.deformable->reach = 0.016;
   node.deformable->shape = Shape::kVolume;
-  // The ball hangs from a table that turns: the node above carries it.
+  // The ball is a child of the turning table.
   add_node(level, "turntable").children = {1};
   std::swap(level.nodes[0], level.nodes[1]);
   level.nodes[1].parent = 0;

@@ -1,4 +1,4 @@
-// The levels that ship, made from nothing but this folder.
+// The shipped levels, generated from the code in this folder alone.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace pliant::generate {
 
-// How finely; the shipped files use the defaults, tests may ask for less.
+// Mesh and picture resolution. The shipped files use the defaults; tests may use less.
 struct Detail {
   int organ_coarse = 10, organ_doublings = 3;                          // 8 (10 * 2^3)^2 = 51,200 triangles
   int pad_coarse = 25, pad_doublings = 1;                              // 20,000 triangles
@@ -21,7 +21,7 @@ Level glass_heart(const Detail& detail);
 Level chrome_cushion(const Detail& detail);
 Level turning_ball(const Detail& detail);
 
-// Writes levels/ and environments/ below `folder`: every file that ships. Each appears whole or not at all.
+// Writes all shipped files, levels/ and environments/, below `folder`. Each is written atomically.
 Status generate(const std::filesystem::path& folder, const Detail& detail = {});
 
 }  // namespace pliant::generate

@@ -1,4 +1,4 @@
-// pliant_generate FOLDER: makes everything that ships under content/. Run by hand; the output is committed.
+// pliant_generate FOLDER: generates everything that ships under content/. Run by hand; the output is committed.
 #include <cstdio>
 #include <string_view>
 

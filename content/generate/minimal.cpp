@@ -12,7 +12,7 @@
 namespace pliant::generate {
 namespace {
 
-constexpr std::uint16_t kSquares = 32;  // along a side
+constexpr std::uint16_t kSquares = 32;  // per side
 constexpr std::uint32_t kVertices = (kSquares + 1) * (kSquares + 1), kIndices = 6 * kSquares * kSquares;
 constexpr float kSide = 0.1f;  // [m]
 

@@ -1,4 +1,4 @@
-// The smallest level, for reading: JSON as a person would write it.
+// The smallest level, as example: JSON as written by hand.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace pliant::generate {
 
-// minimal.gltf, minimal.bin and minimal.csv.
+// Writes minimal.gltf, minimal.bin and minimal.csv.
 Status write_minimal(const std::filesystem::path& folder);
 
 }  // namespace pliant::generate

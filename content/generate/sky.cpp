@@ -20,12 +20,12 @@ dvec3 radiance(dvec3 d) {
   const dvec3 below = glm::mix(ground, horizon * 0.7, std::exp(-7.0 * down));
   const dvec3 backdrop = glm::mix(below, above, glm::smoothstep(-0.03, 0.03, d.y));
   const double c = dot(d, to_sun), away = std::acos(glm::clamp(c, -1.0, 1.0));
-  const double disc = 60.0 * (1.0 - glm::smoothstep(0.05, 0.09, away));  // [rad] soft rim: few texels wide
+  const double disc = 60.0 * (1.0 - glm::smoothstep(0.05, 0.09, away));  // [rad] soft rim, a few texels wide
   const double glow = 1.6 * std::exp(-away / 0.22) + 0.35 * std::exp(-away / 0.8);
   return backdrop + dvec3(1.0, 0.93, 0.80) * (disc + glow * glm::smoothstep(-0.2, 0.1, d.y));
 }
 
-// [0, 1] How much cloud stands in this direction: waves across waves on a layer above, thinning towards the horizon.
+// [0, 1] Cloud density in this direction: layered waves on a plane above, fading towards the horizon.
 double cloud(dvec3 d) {
   if (d.y <= 0.0) return 0.0;
   const glm::dvec2 q = glm::dvec2(d.x, d.z) / (d.y + 0.12);
@@ -39,7 +39,7 @@ double cloud(dvec3 d) {
   return glm::smoothstep(0.05, 0.75, sum) * glm::smoothstep(0.02, 0.25, d.y);
 }
 
-// Tiles of pale and dark stone, as far as they can be told apart.
+// Pale and dark stone tiles, faded where they are too small to resolve.
 dvec3 floor_tiles(dvec3 d) {
   const glm::dvec2 q = glm::dvec2(d.x, d.z) / -d.y * 1.1;  // in tiles, from a point above the floor
   const double far = length(q), edge = std::min(0.9, 0.03 * (1.0 + 0.15 * far * far));
@@ -88,7 +88,7 @@ Status save_panorama(const Panorama& panorama, const std::filesystem::path& path
                              Imf::WRITE_RGB, 1.0f, Imath::V2f(0), 1.0f, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
     file.setFrameBuffer(pixels.data(), 1, panorama.width);
     file.writePixels(static_cast<int>(panorama.height));
-  } catch (const std::exception& e) {  // the library's only way to fail
+  } catch (const std::exception& e) {  // the library reports errors only by exceptions
     return Error{path.string(),
                  std::string("cannot be written (") + e.what() + "); check the folder and its permissions"};
   }

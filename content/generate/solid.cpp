@@ -6,7 +6,7 @@
 namespace pliant::generate {
 namespace {
 
-// About the distance to an ellipsoid: exact to first order at its surface.
+// Approximate distance to an ellipsoid: exact to first order at its surface.
 double ellipsoid(dvec3 p, dvec3 center, dvec3 radii) {
   const dvec3 q = (p - center) / radii;
   const double k = length(q);
@@ -16,7 +16,7 @@ double ellipsoid(dvec3 p, dvec3 center, dvec3 radii) {
 }  // namespace
 
 double groove(dvec3 p) {
-  const double middle = 0.024 + 0.12 * p.y + 1.5 * p.y * p.y;  // [m] the line it follows down the front
+  const double middle = 0.024 + 0.12 * p.y + 1.5 * p.y * p.y;  // [m] the centre line of the groove down the front
   const double across = (p.x - middle) / 0.0085;
   const double front = 1.0 / (1.0 + std::exp(-(p.z - 0.004) / 0.006));
   return std::exp(-across * across) * front;
@@ -24,7 +24,7 @@ double groove(dvec3 p) {
 
 Solid organ() {
   return [](dvec3 p) {
-    constexpr double kBlend = 0.011;    // [m] over which lobes flow into one another
+    constexpr double kBlend = 0.011;    // [m] blend radius between lobes
     constexpr double kGroove = 0.0085;  // [m] depth
     const double lobes[] = {ellipsoid(p, {-0.036, 0.004, 0.0}, {0.070, 0.050, 0.046}),
                             ellipsoid(p, {0.056, 0.012, 0.004}, {0.054, 0.033, 0.032}),
@@ -50,7 +50,7 @@ Solid pad() {
 
 Solid heart() {
   return [](dvec3 p) {
-    constexpr double kBlend = 0.014;  // [m] over which the parts flow into one another
+    constexpr double kBlend = 0.014;  // [m] blend radius between the parts
     const double parts[] = {ellipsoid(p, {-0.036, 0.024, 0.0}, {0.042, 0.042, 0.036}),
                             ellipsoid(p, {0.036, 0.024, 0.0}, {0.042, 0.042, 0.036}),
                             ellipsoid(p, {0.0, -0.012, 0.0}, {0.046, 0.040, 0.036}),

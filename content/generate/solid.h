@@ -1,4 +1,4 @@
-// The solids of levels that ship. All in metres.
+// The solids of the shipped levels. All in metres.
 #pragma once
 
 #include "content/author/solid.h"
@@ -7,9 +7,9 @@ namespace pliant::generate {
 
 using namespace solids;  // solids, nets and instruments are made with both
 
-// A smooth organ about 0.2 m wide: four lobes that flow into one another, and a groove down its front (+Z).
+// A smooth organ about 0.2 m wide: four blended lobes, and a groove down its front (+Z).
 Solid organ();
-// How deep in the groove p is, 1 at its bottom line, 0 well beside it.
+// Relative depth in the groove at p: 1 on its bottom line, 0 well beside it.
 double groove(dvec3 p);
 // A pad 0.16 m x 0.04 m x 0.10 m with rounded sides and a gently curved top (+Y).
 Solid pad();

@@ -33,12 +33,12 @@ double octaves(dvec3 p, int count) {
   return sum;
 }
 
-// [m] The bumps, as a height over the surface.
+// [m] Height of the bumps over the surface.
 double bumps(dvec3 p) {
   return 0.00007 * noise(p / 0.0022) + 0.00016 * noise(p / 0.0050 + 5.0);
 }
 
-// The point of the surface at these texture coordinates.
+// The surface point at these texture coordinates.
 dvec3 point_at(const LatticeSphere& sphere, dvec2 uv) {
   const LatticePlace place = place_at(sphere.n, uv);
   dvec3 p(0);
@@ -47,7 +47,7 @@ dvec3 point_at(const LatticeSphere& sphere, dvec2 uv) {
   return p;
 }
 
-template <class Shade>  // vec3 color in [0, 1] of a texel's middle
+template <class Shade>  // vec3 color in [0, 1] at a texel's centre
 Image painted(const char* name, std::uint32_t size, Shade shade) {
   Image image{name, size, size, {}};
   image.rgba.reserve(std::size_t{4} * size * size);
@@ -78,7 +78,7 @@ Image organ_normals(const LatticeSphere& sphere, const Solid& solid, std::uint32
   return painted("organ_normals", size, [&](dvec2 uv) {
     const dvec3 p = point_at(sphere, uv);
     const dvec3 n = normal_at(solid, p);
-    // Along growing u and v, by differences within the texel.
+    // Tangents along u and v, by finite differences within the texel.
     const dvec2 du(0.25 / size, 0), dv(0, 0.25 / size);
     const dvec3 along_u = point_at(sphere, uv + du) - point_at(sphere, uv - du);
     const dvec3 along_v = point_at(sphere, uv + dv) - point_at(sphere, uv - dv);

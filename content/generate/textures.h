@@ -1,5 +1,5 @@
-// Pictures of the organ's surface: what it looks like is a function of the point in space, so that the texture has no
-// visible seam wherever the unfolded square is cut.
+// Textures of the organ. Colour is a function of the point in space, so that the seams of the unfolded square are
+// invisible.
 #pragma once
 
 #include "components/appearance.h"
@@ -7,9 +7,9 @@
 
 namespace pliant::generate {
 
-// Mottled flesh with paler tissue along the groove; size x size, sRGB.
+// Mottled tissue colour, paler along the groove; size x size, sRGB.
 Image organ_color(const LatticeSphere& sphere, std::uint32_t size);
-// Fine bumps as a tangent-space normal map (+X along growing u, +Z out).
+// Fine bumps as a tangent-space normal map (+X along increasing u, +Z outwards).
 Image organ_normals(const LatticeSphere& sphere, const Solid& solid, std::uint32_t size);
 
 }  // namespace pliant::generate

@@ -7,7 +7,7 @@
 namespace pliant::generate {
 namespace {
 
-// Flesh stiff enough to carry its fingers, on a bone held by a strong coupling.
+// A hand of soft tissue, stiff enough to keep its fingers straight, on a bone with a strong virtual coupling.
 void add_hand(Level& level, const Waypoint& start) {
   const std::int32_t skin = add_material(level, "skin", kSkin, 0.45f);
   LevelNode& node = add_soft(level, "hand", hand_solid(), hand_box(), 0.0042, 0.0115, 2e5, skin);
@@ -25,7 +25,7 @@ void add_hand(Level& level, const Waypoint& start) {
   node.device = script_device(level.name + ".csv", 10.0);
 }
 
-// On the organ: down with the fingers first, a stroke across, a roll about the fingers' axis, up.
+// On the organ: down, fingers first, a stroke across, a roll about the fingers' axis, up.
 std::vector<Waypoint> organ_path() {
   return {{0.0, {0.0, 0.115, 0.075}, {0, 0, 0}},     {1.5, {0.0, 0.072, 0.060}, {0, 0, 0}},
           {2.3, {0.0, 0.054, 0.060}, {4, 0, 0}},     {4.3, {0.035, 0.056, 0.050}, {4, 0, 0}},
@@ -33,8 +33,8 @@ std::vector<Waypoint> organ_path() {
           {7.2, {0.0, 0.100, 0.075}, {0, 0, 0}},     {8.0, {0.0, 0.115, 0.075}, {0, 0, 0}}};
 }
 
-// Down on the cube and the ring before it, up, and down on two balls in their cups; a roll from one to the other, up.
-// Slow: the bodies give way and roll, nothing is struck.
+// Down onto the cube and the ring in front of it, and up. Then down onto two balls in their cups, a roll from one to
+// the other, and up. Slow, so that the bodies yield and roll without impacts.
 std::vector<Waypoint> crowd_path() {
   return {{0.0, {0.055, 0.105, 0.130}, {0, 0, 0}},   {0.6, {0.055, 0.105, 0.130}, {0, 0, 0}},
           {2.4, {0.055, 0.066, 0.130}, {0, 0, 0}},   {3.4, {0.055, 0.066, 0.130}, {0, 0, 6}},
@@ -65,7 +65,7 @@ Level hand() {
   level.about = "A soft hand presses and strokes a soft organ, sticks, slips and rolls on it.";
   const std::int32_t stone = add_material(level, "stone", kStone, 0.7f);
   const std::int32_t liver = add_material(level, "liver", kLiver, 0.3f);
-  // The organ lies on its back: its groove looks up.
+  // The organ lies on its back: its groove points up.
   const Solid upright = organ();
   const Solid lying = [upright](dvec3 p) { return upright({p.x, -p.z, p.y}); };
   LevelNode& body =
@@ -90,7 +90,7 @@ Level hand_crowd() {
     node.rigid_body = RigidBody{};
     node.rigid_body->fixed = true;
   };
-  // Friction of rest is that of sliding: a slip begins without a jump of the force.
+  // Static friction equals dynamic friction: slip begins without a jump of the force.
   const auto add = [&](const char* name, const Solid& solid, dvec3 half, dvec3 at, vec3 color) {
     LevelNode& node = add_soft(level, name, solid, around(half + dvec3(0.012)), 0.006, 0.016, 2.5e4,
                                add_material(level, name, color, 0.4f));

@@ -1,4 +1,4 @@
-// The levels of the second system: a hand of flesh on a rigid bone, led along a path in all six degrees of freedom.
+// The levels of the second system: a soft hand on a rigid bone, driven along a 6-DoF path.
 #pragma once
 
 #include <filesystem>
@@ -7,11 +7,11 @@
 
 namespace pliant::generate {
 
-// Presses and strokes a soft organ that lies on the ground, with friction, and rolls on it.
+// The hand presses, strokes and rolls on a soft organ that lies on the ground, with friction.
 Level hand();
-// Presses on a soft cube that stands on a tray, and on two soft balls in their cups.
+// The hand presses on a soft cube on a tray, and on two soft balls in their cups.
 Level hand_crowd();
-// Pushes its fingers between two walls, until they touch one another.
+// The hand pushes its fingers between two walls until they touch one another.
 Level hand_squeeze();
 
 // The three levels and their scripts.

@@ -15,14 +15,14 @@ namespace {
 
 constexpr double kScriptRate = 100.0;  // [Hz] of rows
 
-// The net with the normals that the engine draws it with, so that every viewer shows the same edges: a vertex at a
-// crease is there once for each smooth part.
+// The mesh with the normals that the engine uses for rendering, so that every viewer shows the same edges. A vertex at
+// a crease is duplicated for each smooth part.
 Primitive with_normals(const std::string& name, const Net& net) {
   Primitive plain;
   for (const dvec3& p : net.position) plain.position.push_back(vec3(p));
   for (const uvec3& t : net.triangles) plain.index.insert(plain.index.end(), {t.x, t.y, t.z});
   const auto built = build_mesh(name, {&plain, 1}, mat4(1.0f));
-  if (!built) return plain;  // it is refused where it is loaded, with the reason
+  if (!built) return plain;  // loading rejects it and reports the reason
   const Mesh& mesh = built->mesh;
   Primitive primitive;
   std::vector<std::vector<std::uint32_t>> copies(mesh.vertex_count);

@@ -7,7 +7,7 @@ namespace pliant {
 
 namespace {
 
-// 0: a type that glTF 2.0 does not have; tinygltf knows two more.
+// 0: a type that is not in glTF 2.0; tinygltf accepts two more.
 std::size_t size_of_component(int type) {
   if (type == TINYGLTF_COMPONENT_TYPE_INT || type == TINYGLTF_COMPONENT_TYPE_DOUBLE) return 0;
   return static_cast<std::size_t>(std::max(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)), 0));
@@ -20,7 +20,7 @@ T load(const std::uint8_t* at) {
   return value;
 }
 
-// A component as the number that glTF 2.0, 3.6.2.2 and 2.11 give it.
+// Converts a component to a number by glTF 2.0, 3.6.2.2 and 2.11.
 template <class Out>
 Out component(const std::uint8_t* at, int type, bool normalized) {
   const auto scaled = [&](auto value, float scale) {
@@ -50,7 +50,7 @@ void read_element(const std::uint8_t* at, const AccessorLayout& layout, Out* out
                               layout.normalized);
 }
 
-// Where a bufferView's bytes begin, shifted by an offset; null if there is none or its buffer is a placeholder.
+// The address of a bufferView's bytes plus an offset; null if there is none or its buffer is a placeholder.
 const std::uint8_t* view_data(const SourceDocument& document, int number, std::size_t offset) {
   if (number < 0) return nullptr;
   const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(number)];

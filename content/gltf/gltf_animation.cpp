@@ -51,7 +51,7 @@ class AnimationReader {
       level_.notes.emplace_back("animations move nodes; morph weights and what else they animate stay as they are");
       return Done{};
     }
-    if (from.target_node < 0) return Done{};  // glTF 2.0: to be ignored
+    if (from.target_node < 0) return Done{};  // glTF 2.0: ignore the channel
     const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(from.sampler)];
     const std::size_t input = static_cast<std::size_t>(sampler.input),
                       output = static_cast<std::size_t>(sampler.output);
@@ -73,7 +73,7 @@ class AnimationReader {
     return Done{};
   }
 
-  // "" or what is wrong. Sizes have been checked against each other, times against their order.
+  // Returns "" or an error. Array sizes and the order of times have been checked.
   static std::string fill(LevelChannel& channel, const std::vector<float>& times, const std::vector<float>& values) {
     Track& track = channel.track;
     const bool turns = channel.property == NodeProperty::kRotation;
@@ -84,7 +84,8 @@ class AnimationReader {
     for (std::size_t i = 0; i + width <= values.size(); i += width)
       track.values.emplace_back(values[i], values[i + 1], values[i + 2], turns ? values[i + 3] : 0.0f);
     for (std::size_t i = 0; i < track.values.size(); ++i) {
-      // A tangent is a rate: what counts is what it adds up to until the next key, and that is at most its size here.
+      // A tangent is a rate. Its effect until the next key is at most its product with the interval, which is checked
+      // here.
       const bool tangent = spline && i % 3 != 1;
       double seconds = 1.0;
       if (tangent && i % 3 == 2 && i / 3 + 1 < track.times.size())

@@ -14,7 +14,7 @@ std::int32_t picture_of(const SourceDocument& document, std::size_t texture) {
   return document.model.textures[texture].source;
 }
 
-// The picture of the texture slot `holder[key]`, -1: none.
+// The picture of the texture slot `holder[key]`; -1: none.
 std::int32_t texture_of(const SourceDocument& document, const Json& holder, const char* key, Level& level) {
   if (!holder.contains(key)) return -1;
   const Json& info = holder[key];
@@ -25,8 +25,8 @@ std::int32_t texture_of(const SourceDocument& document, const Json& holder, cons
   return picture_of(document, info["index"].get<std::size_t>());
 }
 
-// Relief that glTF has no place for, in the material's extras: {"height_texture": {"index": n}, "height_scale":
-// metres}. Extras are anybody's: what does not have this form is not ours, and is left alone.
+// Height maps, which glTF lacks, in the material's extras: {"height_texture": {"index": n}, "height_scale": metres}.
+// Other programs may use extras too; anything of another form is ignored.
 void read_relief(const SourceDocument& document, const Json& json, Material& out) {
   if (!json.contains("extras") || !json["extras"].is_object()) return;
   const Json& extras = json["extras"];
@@ -48,7 +48,7 @@ Material material_of(const SourceDocument& document, std::size_t material, Level
   const auto part = [&](const Json* found) -> const Json& { return found ? *found : kEmpty; };
   const tinygltf::Material& from = document.model.materials[material];
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
-  // Texture slots and extensions: SourceDocument says why they are not the Model's.
+  // Texture slots and extensions are read from the JSON; SourceDocument explains why.
   const Json& json = document.json["materials"][material];
   const Json& slots = json.contains("pbrMetallicRoughness") ? json["pbrMetallicRoughness"] : kEmpty;
   Material out;
@@ -120,7 +120,7 @@ std::optional<Camera> camera_of(const SourceDocument& document, std::size_t node
 }
 
 Status read_images(const SourceDocument& document, Level& level) {
-  // All of them are looked at before the first is decoded: that takes a second for each hundred megabytes.
+  // Check the total size before decoding the first picture: decoding takes about a second per hundred megabytes.
   std::uint64_t decoded = 0;
   for (const Bytes& image : document.images) decoded += decoded_size(image);
   if (decoded > most(limits::kPictures))

@@ -1,11 +1,11 @@
-// How glTF says that things look: materials, pictures, lights and cameras, as components.
+// Reads the appearance from glTF: materials, pictures, lights and cameras, as components.
 #pragma once
 
 #include "content/gltf/gltf_document.h"
 
 namespace pliant {
 
-// A vector as tinygltf has it, or `otherwise` if it is empty.
+// Converts tinygltf's vector; an empty one gives `otherwise`.
 template <class Vector>
 Vector vector_of(const std::vector<double>& numbers, Vector otherwise) {
   for (int i = 0; !numbers.empty() && i < Vector::length(); ++i)
@@ -13,7 +13,7 @@ Vector vector_of(const std::vector<double>& numbers, Vector otherwise) {
   return otherwise;
 }
 
-// By glTF number. Notes of what is read differently go to the level.
+// By glTF number. Conversion notes are added to the level.
 Material material_of(const SourceDocument& document, std::size_t material, Level& level);
 std::optional<Light> light_of(const SourceDocument& document, std::size_t node);
 std::optional<Camera> camera_of(const SourceDocument& document, std::size_t node, Level& level);

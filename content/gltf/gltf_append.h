@@ -1,4 +1,4 @@
-// Data added to a document: each piece gets a bufferView and a buffer of its own, until the document is packed.
+// Adds data to a document. Each piece gets its own bufferView and buffer until the document is packed.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-// Says which /accessors/i it is. `component`, `target`: glTF's numbers; `width`: components of an element.
+// Returns i of /accessors/i. `component`, `target`: glTF's numbers; `width`: components per element.
 template <class T>
 std::size_t add_accessor(SourceDocument& document, const std::vector<T>& values, int component, std::size_t width,
                          int target) {

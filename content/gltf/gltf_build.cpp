@@ -1,4 +1,4 @@
-// A Level that did not come from glTF, as glTF. What load_level reads of the result is the Level again, bit for bit.
+// Writes a Level that was not loaded from glTF as glTF. load_level reads back the same Level, bit for bit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,12 +66,12 @@ class Builder {
       out.json["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
       out.buffers.push_back(std::move(bytes_));
     }
-    out.images.resize(model_.images.size());  // which lie in the buffer
+    out.images.resize(model_.images.size());  // stored in the buffer
     out.model = std::move(model_);
     return out;
   }
 
-  // Pictures are textures by the same numbers.
+  // Texture i uses picture i.
   void images(std::size_t first = 0) {
     for (std::size_t i = first; i < level_.images.size(); ++i) {
       const Image& image = level_.images[i];
@@ -103,7 +103,7 @@ class Builder {
     if (m.height_texture >= 0)
       out.extras = tinygltf::Value(tinygltf::Value::Object{{"height_texture", texture_value(m.height_texture)},
                                                            {"height_scale", value(m.height_scale)}});
-    // glTF's factor ends at 1; what is brighter is scaled by a power of two, which loses no bit.
+    // glTF limits the factor to 1. Brighter values are scaled by a power of two, which is exact.
     float strength = 1.0f;
     while (std::max({m.emissive.x, m.emissive.y, m.emissive.z}) > strength) strength *= 2.0f;
     out.emissiveFactor = numbers(m.emissive / strength);
@@ -126,7 +126,7 @@ class Builder {
     model_.materials.push_back(std::move(out));
   }
 
-  // Nothing to say: no extension.
+  // All values are defaults: no extension.
   void extend(tinygltf::ExtensionMap& extensions, const char* name, tinygltf::Value::Object members) {
     if (members.empty()) return;
     extensions[name] = tinygltf::Value(std::move(members));
@@ -134,7 +134,7 @@ class Builder {
     if (std::find(used.begin(), used.end(), name) == used.end()) used.emplace_back(name);
   }
 
-  // Appends an array to the buffer as a bufferView of its own.
+  // Appends an array to the buffer in a new bufferView.
   int add_view(const void* data, std::size_t size, int target) {
     bytes_.resize((bytes_.size() + 7) / 8 * 8);
     const auto* begin = static_cast<const std::uint8_t*>(data);
@@ -147,7 +147,7 @@ class Builder {
     model_.bufferViews.push_back(std::move(view));
     return static_cast<int>(model_.bufferViews.size() - 1);
   }
-  // ... and an accessor over it.
+  // Appends an array with an accessor.
   int add_accessor(const void* data, std::size_t count, std::size_t element, int component, int type, int target) {
     tinygltf::Accessor accessor;
     accessor.bufferView = add_view(data, count * element, target);
@@ -198,7 +198,7 @@ class Builder {
       if (!primitive.normal.empty()) attributes["NORMAL"] = add_attribute(primitive.normal, TINYGLTF_TYPE_VEC3);
       if (!primitive.tangent.empty()) attributes["TANGENT"] = add_attribute(primitive.tangent, TINYGLTF_TYPE_VEC4);
       if (!primitive.uv.empty()) attributes["TEXCOORD_0"] = add_attribute(primitive.uv, TINYGLTF_TYPE_VEC2);
-      // A textured material on a primitive without coordinates is not glTF: all of it takes the texture's corner.
+      // glTF requires texture coordinates for a textured material: without any, all are (0, 0).
       else if (has_textures(primitive.material))
         attributes["TEXCOORD_0"] = add_attribute(std::vector<vec2>(count, vec2(0)), TINYGLTF_TYPE_VEC2);
       for (const PaintedAttribute& painted : kPainted)
@@ -217,7 +217,7 @@ class Builder {
       made.mode = TINYGLTF_MODE_TRIANGLES;
       out.primitives.push_back(std::move(made));
     }
-    if (out.primitives.empty()) {  // glTF has no mesh without primitives
+    if (out.primitives.empty()) {  // a glTF mesh needs at least one primitive
       mesh_number_.push_back(-1);
       return Done{};
     }
@@ -271,7 +271,7 @@ class Builder {
     model_.lights.push_back(std::move(out));
   }
 
-  // Every channel has accessors of its own; the times' bounds are as glTF wants them.
+  // Every channel has its own accessors, with the bounds of times that glTF requires.
   void animations() {
     for (const LevelAnimation& animation : level_.animations) add_animation(animation);
   }

@@ -1,4 +1,4 @@
-// Draco compression of a document (KHR_draco_mesh_compression), and the removal of what it leaves without use.
+// Compresses a document with Draco (KHR_draco_mesh_compression) and removes data that is no longer used.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace pliant {
 
 namespace {
 
-// Calls visit(reference) for every number under `key`, wherever it stands.
+// Calls visit(reference) for every number under `key`, at any depth.
 template <class Visit>
 void each_reference(Json& json, const char* key, const Visit& visit) {
   if (!json.is_structured()) return;
@@ -24,7 +24,7 @@ void each_reference(Json& json, const char* key, const Visit& visit) {
   for (Json& child : json) each_reference(child, key, visit);
 }
 
-// Calls visit(reference) for every number of an accessor that glTF 2.0 or EXT_mesh_gpu_instancing has.
+// Calls visit(reference) for every accessor index of glTF 2.0 and EXT_mesh_gpu_instancing.
 template <class Visit>
 void each_accessor(Json& json, const Visit& visit) {
   const auto all_of = [&](Json& map) {
@@ -53,7 +53,7 @@ void each_accessor(Json& json, const Visit& visit) {
       }
 }
 
-// Drops the elements of json[collection] that no reference names, and renumbers the references.
+// Removes unreferenced elements of json[collection] and renumbers the references.
 template <class EachReference>
 void drop_unused(Json& json, const char* collection, const EachReference& each_reference_of) {
   if (!json.contains(collection)) return;
@@ -72,7 +72,7 @@ void drop_unused(Json& json, const char* collection, const EachReference& each_r
     json[collection] = std::move(kept);
 }
 
-// Whether this primitive's data are triangles of plain attributes, all present.
+// Whether the primitive consists of triangles with plain attributes, all with data.
 bool can_compress(const SourceDocument& document, const Json& primitive) {
   const int mode = value_of(primitive, "mode", 4);
   const Json& attributes = primitive["attributes"];
@@ -131,7 +131,7 @@ Status compress_primitive(SourceDocument& document, Json& primitive, int bits, c
   primitive["indices"] = accessors.size();
   accessors.push_back({{"componentType", kUnsignedInt}, {"count", mesh.index.size()}, {"type", "SCALAR"}});
   primitive.erase("mode");
-  // Each blob is a buffer of its own until the document is packed.
+  // Each blob has its own buffer until the document is packed.
   document.json["bufferViews"].push_back({{"buffer", document.buffers.size()}, {"byteLength", blob->size()}});
   document.json["buffers"].push_back({{"byteLength", blob->size()}});
   document.buffers.push_back(std::move(*blob));
@@ -140,7 +140,7 @@ Status compress_primitive(SourceDocument& document, Json& primitive, int bits, c
   return Done{};
 }
 
-// Every bufferView gets a buffer of its own, so that packing carries only what is used.
+// Gives every bufferView its own buffer, so that packing copies only used bytes.
 void split_buffers(SourceDocument& document) {
   if (!document.json.contains("bufferViews")) return;
   std::vector<Bytes> buffers;

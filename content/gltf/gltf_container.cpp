@@ -15,7 +15,7 @@ std::uint32_t read_u32(std::span<const std::uint8_t> bytes, std::size_t at) {
   return value;
 }
 
-// Counts nesting and values without parsing: a parser's tree takes up to a hundred bytes for two of text.
+// Counts nesting and values without parsing: a parsed tree takes up to a hundred bytes for two bytes of text.
 bool json_is_bounded(std::span<const std::uint8_t> text, Findings& findings) {
   std::size_t depth = 0, deepest = 0, values = 0;
   bool in_string = false;
@@ -42,7 +42,7 @@ bool json_is_bounded(std::span<const std::uint8_t> text, Findings& findings) {
   return within(limits::kJsonDepth, deepest, "nests ") && within(limits::kJsonValues, values, "has ");
 }
 
-// What is made of the elements of these lists takes far more than their text.
+// The objects built from the elements of these lists take far more memory than their text.
 bool lists_are_bounded(const Json& json, Findings& findings) {
   if (!json.is_object()) return true;
   for (const char* key : {"accessors", "animations", "bufferViews", "buffers", "cameras", "images", "materials",

@@ -1,4 +1,4 @@
-// The steps of open_gltf before and between the checks: container, JSON, and the bytes that URIs stand for.
+// The steps of open_gltf before and between the checks: container, JSON, and the bytes that URIs refer to.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@ namespace pliant {
 
 struct Container {
   std::span<const std::uint8_t> json, bin;
-  std::span<const std::uint8_t> glb;  // the whole file as far as it declares; empty: it is no GLB
+  std::span<const std::uint8_t> glb;  // the file up to its declared length; empty: not a GLB
   bool has_bin = false;
 };
 
@@ -20,21 +20,21 @@ inline void add_warning(Findings& findings, std::string pointer, std::string mes
   findings.push_back({Severity::kWarning, std::move(pointer), std::move(message)});
 }
 
-// GLB into its chunks; false after an error.
+// Splits a GLB into its chunks; false after an error.
 bool split_glb(std::span<const std::uint8_t> file, Container& out, Findings& findings);
-// JSON of bounded depth and number of values; false after an error.
+// Parses JSON with bounded depth and number of values; false after an error.
 bool parse_json(std::span<const std::uint8_t> text, Json& json, Findings& findings);
 
-// What URIs stand for, by glTF number.
+// The bytes that URIs refer to, by glTF number.
 struct FetchedBytes {
-  std::vector<Bytes> buffers;        // as long as declared; empty: in the BIN chunk, or a placeholder
-  std::vector<bool> is_placeholder;  // of buffers: without data
-  std::vector<Bytes> images;         // encoded; empty: in a bufferView, or not there
+  std::vector<Bytes> buffers;        // of the declared length; empty: in the BIN chunk, or a placeholder
+  std::vector<bool> is_placeholder;  // per buffer: it has no data
+  std::vector<Bytes> images;         // encoded; empty: in a bufferView, or missing
 };
-// Structure and meaning have been checked.
+// Requires checked structure and meaning.
 FetchedBytes fetch_bytes(const SourceDocument& document, const Container& container, Findings& findings);
 
-// Compares document.images with what they claim to be, and drops what is not shown.
+// Compares document.images with their declared types, and drops unsupported formats.
 void check_pictures(SourceDocument& document, Findings& findings);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// What reading a document takes, added up before the first accessor is read: accessors may share a few bytes, and
-// primitives, sets of weights and skins may share accessors, so that a small file could fill any memory or take hours.
+// Adds up the memory needed to read a document before the first accessor is read. Accessors may share bytes;
+// primitives, weight sets and skins may share accessors. A small file could otherwise exhaust the memory or take hours.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,9 +11,9 @@ namespace pliant {
 
 namespace {
 
-// How many bytes a sound file makes of each of its own: of accessors as floats; of meshes as the level holds them.
+// Bytes in memory per byte of a usual file: accessors as floats; meshes in the level.
 constexpr double kAccessorBytes = 16.0, kMeshBytes = 64.0;
-// [byte] A vertex and a corner of a mesh, the latter in a strip; a set of joints and weights; a joint's matrices.
+// [byte] Per mesh vertex; per corner (of a strip); per set of joints and weights; per joint, its matrices.
 constexpr double kVertex = 64.0, kCorner = 16.0, kWeights = 32.0, kJoint = 64.0;
 
 class Cost {
@@ -22,7 +22,7 @@ class Cost {
     for (const Bytes& buffer : document.buffers) stored_ += static_cast<double>(buffer.size());
   }
 
-  // Every accessor is read once to be checked.
+  // Every accessor is read once by the checks.
   bool accessors() {
     double sum = 0.0;
     for (std::size_t i = 0; i < document_.model.accessors.size(); ++i) {
@@ -33,7 +33,7 @@ class Cost {
     return true;
   }
 
-  // Every mesh is read once as it is, and once for each node with a skin.
+  // Every mesh is read once, and once more for each node with a skin.
   void meshes() {
     std::vector<double> cost;
     double sum = 0.0;
@@ -66,7 +66,7 @@ class Cost {
     return static_cast<double>(layout_of(document_.model.accessors[accessor]).components());
   }
 
-  // `beyond_the_multiple` [byte] of what the buffers hold.
+  // `beyond_the_multiple` [byte]: needed beyond the multiple of the buffers' size.
   bool within(double beyond_the_multiple, const std::string& pointer, const char* what) {
     if (beyond_the_multiple <= static_cast<double>(most(limits::kDecoded))) return true;
     findings_.push_back(
@@ -81,7 +81,7 @@ class Cost {
     double vertices = 0.0, sets = 0.0, widths = 0.0;
     for (const auto& [name, index] : primitive.attributes) {
       const std::size_t accessor = static_cast<std::size_t>(index);
-      vertices = count(accessor);  // of all attributes the same
+      vertices = count(accessor);  // equal for all attributes
       widths += width(accessor);
       sets += name.rfind("WEIGHTS_", 0) == 0;
     }
@@ -100,7 +100,7 @@ class Cost {
 
   const SourceDocument& document_;
   Findings& findings_;
-  double stored_ = 0.0;  // [byte] that the buffers hold; placeholders hold none
+  double stored_ = 0.0;  // [byte] size of the buffers; placeholders have none
 };
 
 }  // namespace

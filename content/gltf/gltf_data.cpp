@@ -1,5 +1,5 @@
-// The bytes of a glTF file against what its JSON promises: finite numbers, declared bounds, indices, unit vectors,
-// weights. Every accessor is read once; what the buffers do not hold (placeholders) cannot be wrong.
+// Checks the bytes of a glTF file against its JSON: finite numbers, declared bounds, indices, unit vectors, weights.
+// Every accessor is read once. Placeholders have no data to check.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace pliant {
 
 namespace {
 
-// How far a unit vector's length, and a sum of weights, may be from 1: 8-bit quantisation leaves this much.
+// Tolerance for the length of unit vectors and for sums of weights: the error of 8-bit quantisation.
 constexpr float kUnitTolerance = 0.00674f;
 constexpr float kWeightTolerance = 0.01f;
 
@@ -49,10 +49,10 @@ class DataCheck {
   }
   static std::string pointer_of(std::size_t accessor) { return fmt::format("/accessors/{}", accessor); }
   const Json& accessor(std::size_t i) const { return json_["accessors"][i]; }
-  // True the first time an accessor is looked at in this role, if it has data.
+  // True the first time an accessor with data is checked in this role.
   bool first(std::size_t i, Role role) { return has_data(document_, i) && seen_.insert({i, role}).second; }
 
-  // Numbers must be finite, and min and max what the elements say.
+  // Numbers must be finite, and min and max must match the elements.
   void bounds(std::size_t i) {
     const AccessorLayout layout = layout_of(accessor(i));
     if (!layout.known || !has_data(document_, i)) return;
@@ -60,14 +60,14 @@ class DataCheck {
     const bool is_float = layout.component_type == kFloat;
     const bool declared = accessor(i).contains("min") || accessor(i).contains("max");
     if (!is_float && !declared) return;
-    // Bounds are of the stored values: for quantised data, the integers.
+    // Bounds refer to the stored values: integers for quantised data.
     if (is_float)
       compare_bounds(i, layout.components(), read_floats(document_, i), 2e-6);
     else
       compare_bounds(i, layout.components(), read_stored(document_, i), 0.0);
   }
 
-  // `slack`: exporters print bounds with six digits or more.
+  // `slack`: tolerance, because exporters print bounds with six or more digits.
   template <class T>
   void compare_bounds(std::size_t i, std::size_t width, const std::vector<T>& values, double slack) {
     std::vector<double> low(width, INFINITY), high(width, -INFINITY);
@@ -101,7 +101,7 @@ class DataCheck {
   // The first three of `width` components are a unit vector; with `sign`, the fourth is 1 or -1.
   void unit_vectors(std::size_t i, std::size_t width, bool sign) {
     const std::vector<float> values = read_floats(document_, i);
-    // Exporters write zeros where triangles are degenerate: mend_directions makes them anew.
+    // Exporters write zeros at degenerate triangles: mend_directions recomputes them.
     const auto at = [&](std::size_t e) { return vec3(values[e], values[e + 1], values[e + 2]); };
     std::size_t zeros = 0, first = 0;
     double longest = 0.0;
@@ -153,7 +153,7 @@ class DataCheck {
     }
     const auto largest = largest_index_.find(i);
     if (largest == largest_index_.end()) return;
-    // The largest number of a type begins a new strip in other formats, and on some graphics hardware (glTF 3.7.2.1).
+    // The largest value of an index type restarts a strip in other formats and on some GPUs (glTF 3.7.2.1).
     if (const std::uint32_t restart = restart_index(accessor(i)["componentType"].get<int>());
         largest->second == restart)
       return error(pointer + "/indices",
@@ -164,7 +164,7 @@ class DataCheck {
       error(pointer + "/indices", fmt::format("refer to vertex {} of {}", largest->second, vertices));
   }
 
-  // Weights of a vertex are not negative and sum to 1 over all sets.
+  // A vertex's weights must be nonnegative and sum to 1 over all sets.
   void weights(const Json& attributes, const std::string& pointer) {
     std::vector<float> sums;
     for (int set = 0; attributes.contains(fmt::format("WEIGHTS_{}", set)); ++set) {
@@ -184,7 +184,7 @@ class DataCheck {
                     fmt::format("have weights that sum to {:.3g} instead of 1 in element {}; scaled", sums[v], v));
   }
 
-  // Skins of other sizes may share the accessor: its largest number is looked up once.
+  // Skins of different sizes may share the accessor: its largest index is cached.
   void skinned(const Json& node) {
     const std::size_t joints = json_["skins"][node["skin"].get<std::size_t>()]["joints"].size();
     for (const Json& primitive : json_["meshes"][node["mesh"].get<std::size_t>()]["primitives"])
@@ -200,8 +200,8 @@ class DataCheck {
       }
   }
 
-  // A joint moves a vertex with one weight (3.7.3.3), within a set and between sets. Skins are read at rest, where the
-  // sum is as good.
+  // A joint may have only one weight for a vertex (3.7.3.3), within a set and between sets. Skins are only read at
+  // rest, where adding duplicate weights gives the same result.
   void joints(const Json& attributes, const std::string& pointer) {
     std::vector<std::pair<std::vector<std::uint32_t>, std::vector<float>>> sets;
     std::set<std::size_t> read;
@@ -258,7 +258,7 @@ class DataCheck {
           continue;
         const std::vector<float> q = read_floats(document_, output);
         for (std::size_t k = 0; k * 4 + 4 <= q.size(); ++k) {
-          if (cubic && k % 3 != 1) continue;  // tangents stand before and after each value
+          if (cubic && k % 3 != 1) continue;  // tangents are stored before and after each value
           const float norm = std::sqrt(q[4 * k] * q[4 * k] + q[4 * k + 1] * q[4 * k + 1] + q[4 * k + 2] * q[4 * k + 2] +
                                        q[4 * k + 3] * q[4 * k + 3]);
           if (std::abs(norm - 1.0f) > kUnitTolerance) {

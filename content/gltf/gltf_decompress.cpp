@@ -1,4 +1,4 @@
-// A document without Draco compression: what KHR_draco_mesh_compression holds, as plain accessors.
+// Removes Draco compression: converts data of KHR_draco_mesh_compression into plain accessors.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ Status decompress_primitive(SourceDocument& document, DracoReader& draco, Json& 
                                         kUnsignedShort, 1, 34963);
   else
     primitive["indices"] = add_accessor(document, mesh->index, kUnsignedInt, 1, 34963);
-  primitive.erase("mode");  // Draco data are triangles
+  primitive.erase("mode");  // Draco data are always triangles
   primitive["extensions"].erase(kDracoExtension);
   if (primitive["extensions"].empty()) primitive.erase("extensions");
   return Done{};

@@ -15,13 +15,13 @@ namespace pliant {
 
 namespace {
 
-// Draco allocates by what a header claims. No mesh of this many elements compresses further than this share of a byte
-// each, beyond a first million that costs little.
+// Draco allocates the sizes that a header claims. Beyond a first million elements, which cost little, no mesh has more
+// than this many elements per byte.
 constexpr std::uint64_t kFreeElements = 1 << 20, kElementsPerByte = 64;
-// [byte] What several blobs that one process decodes may come to.
+// [byte] Limit for all blobs decoded in one process.
 constexpr std::size_t kMostTogether = std::size_t{64} << 20;
 
-// Reads counts from the header: the rest of the stream is left to the library.
+// Reads counts from the header; the library reads the rest of the stream.
 class HeaderReader {
  public:
   explicit HeaderReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -62,8 +62,8 @@ void skip_metadata(HeaderReader& in, int depth) {
   }
 }
 
-// The largest count of faces or points that the stream's header claims; 0 if it is none that this code can read (then
-// the library refuses it as well).
+// The largest count of faces or points that the header claims. 0 if the header is not readable here; the library then
+// rejects it too.
 std::uint64_t claimed_elements(std::span<const std::uint8_t> blob) {
   HeaderReader in(blob);
   in.skip(5);
@@ -78,10 +78,10 @@ std::uint64_t claimed_elements(std::span<const std::uint8_t> blob) {
   }
   if (is_mesh == 0) return in.fixed(4);
   const bool sequential = method == 0;
-  // Counts became variable in length with 2.2 for sequential streams and with 2.0 for edgebreaker's.
+  // Counts have variable length since 2.2 for sequential streams, since 2.0 for edgebreaker.
   const auto count = [&] { return version < (sequential ? 0x0202 : 0x0200) ? in.fixed(4) : in.varint(); };
-  if (!sequential) in.byte();                    // how edgebreaker walks
-  if (!sequential && version < 0x0202) count();  // vertices that splits add
+  if (!sequential) in.byte();                    // edgebreaker's traversal method
+  if (!sequential && version < 0x0202) count();  // vertices added by splits
   const std::uint64_t first = count();
   return std::max(first, count());
 }
@@ -90,7 +90,7 @@ Error refuse(const std::string& what) {
   return Error{"Draco data", what + "; compress the mesh again"};
 }
 
-// A decoded mesh with every index inside it.
+// Decodes a mesh and checks that every index is in range.
 Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::span<const std::uint8_t> blob) {
   if (blob.size() < 11 || std::memcmp(blob.data(), "DRACO", 5) != 0)
     return refuse("does not begin as a Draco stream does");
@@ -108,7 +108,7 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::span<const std::uint8_t> b
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
     if (!decoded.ok()) return refuse(std::string("cannot be decoded: ") + decoded.status().error_msg());
     std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
-    // Integers come out as stored; whether they are normalised is for the glTF accessor to say.
+    // Integers are kept as stored; the glTF accessor defines whether they are normalised.
     for (int i = 0; i < mesh->num_attributes(); ++i) mesh->attribute(i)->set_normalized(false);
     for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f)
       for (const draco::PointIndex& point : mesh->face(f))
@@ -153,7 +153,7 @@ draco::GeometryAttribute::Type type_of(const std::string& name) {
   return draco::GeometryAttribute::GENERIC;
 }
 
-// One value per vertex, stored as T.
+// Adds an attribute with one value per vertex, stored as T.
 template <class T>
 std::uint32_t add_attribute(draco::Mesh& mesh, const DracoAttribute& in, draco::DataType type, std::size_t vertices) {
   draco::GeometryAttribute header;
@@ -168,7 +168,7 @@ std::uint32_t add_attribute(draco::Mesh& mesh, const DracoAttribute& in, draco::
   return mesh.attribute(id)->unique_id();
 }
 
-// What a child decoded, as bytes and back.
+// Serialises the child's result, and reads it back.
 Bytes pack(const DracoMesh& mesh) {
   Bytes out;
   const std::uint64_t sizes[3] = {mesh.vertices, mesh.index.size(), mesh.attributes.size()};
@@ -210,7 +210,7 @@ Result<DracoMesh> unpack(Taker& in) {
 
 using NamedAttributes = std::vector<std::pair<std::string, const draco::PointAttribute*>>;
 
-// The attributes that `wanted(mesh)` names.
+// Decodes the attributes that `wanted(mesh)` returns.
 template <class Wanted>
 Result<DracoMesh> decode_here(std::span<const std::uint8_t> blob, const Wanted& wanted) {
   const Result<std::unique_ptr<draco::Mesh>> mesh = decode_mesh(blob);

@@ -14,8 +14,8 @@ namespace pliant {
 namespace {
 
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
-constexpr double kOfEach = 2e-3;  // [s] that a process takes to begin and to end
-// Blobs that one process decodes: a level may have thousands of a few bytes each.
+constexpr double kOfEach = 2e-3;  // [s] overhead per process
+// Blobs decoded by one process: a level may have thousands of a few bytes each.
 constexpr std::size_t kTogether = 256, kTogetherBytes = 1 << 20;
 
 void normalize(std::vector<float>& values, int component_type) {
@@ -30,7 +30,7 @@ void normalize(std::vector<float>& values, int component_type) {
 
 DracoReader::DracoReader(const SourceDocument& document) : document_(document) {
   const Json& meshes = array_of(document.json, "meshes");
-  // Once as it is, and for each node with a skin its surface and its weights.
+  // Each mesh is read once, and twice more for each node with a skin: its surface and its weights.
   std::vector<std::size_t> reads(meshes.size(), 1);
   for (const Json& node : array_of(document.json, "nodes"))
     if (node.contains("skin")) reads[node["mesh"].get<std::size_t>()] += 2;
@@ -70,7 +70,7 @@ Result<std::vector<DracoMesh>> DracoReader::decode(const std::vector<Key>& keys)
   return meshes;
 }
 
-// With those that stand next in the document, as long as they are small.
+// Decodes this blob together with the next small ones of the document.
 Status DracoReader::decode(const Key& key, const std::string& where) {
   if (bytes_of(key).empty()) return Error{where, "stands on a buffer without data; add its bytes"};
   std::vector<Key> keys;
@@ -89,7 +89,7 @@ Status DracoReader::decode(const Key& key, const std::string& where) {
       return Done{};
     }
     if (keys.size() == 1) return Error{where, meshes.error().message()};
-    keys.resize(1);  // another of them is damaged, and is to be named in its place
+    keys.resize(1);  // another blob is damaged; its error is reported when it is read
   }
   return Error{where, "takes too long to read with the Draco data before it; split the level"};
 }

@@ -1,5 +1,5 @@
-// What a mesh or a channel of an animation was when it was read, as 64 bits: whether it has changed is asked when a
-// level is saved, and a copy would double the memory that a level takes.
+// 64-bit hashes of meshes and animation channels as they were read. Saving uses them to detect changes; copies would
+// double the memory of a level.
 #include "content/gltf/gltf_document.h"
 #include "runtime/hash.h"
 

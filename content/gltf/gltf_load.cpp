@@ -1,5 +1,5 @@
-// load_level: a checked glTF document -> Level. Nodes come out parents first; meshes, materials and pictures keep their
-// glTF numbers (skinned instances follow after the meshes).
+// load_level: a checked glTF document -> Level. Nodes are ordered parents first. Meshes, materials and pictures keep
+// their glTF numbers; skinned instances follow after the meshes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ LocalTransform transform_of(const tinygltf::Node& node) {
   local.scale = vector_of(node.scale, local.scale);
   const vec4 q = vector_of(node.rotation, vec4(0, 0, 0, 1));
   local.rotation = quat(q.w, q.x, q.y, q.z);
-  // A unit quaternion to single precision is kept to the bit, so that saving changes nothing.
+  // A quaternion of unit length in single precision is kept bit for bit, so that saving does not change it.
   const dquat exact(local.rotation);
   if (std::abs(glm::length(exact) - 1.0) > 1e-6) local.rotation = quat(glm::normalize(exact));
   return local;
@@ -68,7 +68,7 @@ std::size_t shown_scene(const SourceDocument& document) {
   return static_cast<std::size_t>(std::max(document.model.defaultScene, 0));
 }
 
-// Parents first, the shown scene's roots before all others; every node keeps its number as its source.
+// Parents first, roots of the shown scene first; every node keeps its number as its source.
 void order_nodes(const SourceDocument& document, Level& level) {
   const std::vector<tinygltf::Node>& nodes = document.model.nodes;
   const std::vector<tinygltf::Scene>& scenes = document.model.scenes;
@@ -183,7 +183,7 @@ Status fill(SourceDocument& document, Level& level) {
   if (const Status status = read_animations(document, level); !status) return status;
   if (const Status status = read_scene(document, level); !status) return status;
   level.notes.insert(level.notes.end(), meshes.notes().begin(), meshes.notes().end());
-  // The same note once, in order of first appearance.
+  // Keep each note once, in order of first appearance.
   std::vector<std::string> once;
   std::size_t of_document = 0;
   for (std::size_t i = 0; i < level.notes.size(); ++i) {
@@ -226,7 +226,7 @@ Result<std::string> read_about(const fs::path& path) {
 
 namespace {
 
-// Names the file in an error and in the Level.
+// Adds the file's name to the error or the Level.
 Result<Level> from_file(Result<Level> level, const fs::path& path) {
   if (!level) {
     const std::string where = level.error().where;
@@ -238,7 +238,7 @@ Result<Level> from_file(Result<Level> level, const fs::path& path) {
   return level;
 }
 
-// Of the file as a whole `validate` says no more than this.
+// A finding about the whole file has no remedy in its text; add one.
 std::string with_cure(const Finding& finding) {
   const bool needs = finding.pointer.empty() && finding.message.find("; ") == std::string::npos;
   return finding.message + (needs ? "; export or save it again" : "");
@@ -255,7 +255,7 @@ Result<Level> level_of(SourceDocument document, const Findings& findings) {
   return level;
 }
 
-// What may throw where memory ends, or where the checks have missed something.
+// Catches exceptions of failed allocations, and of faults that the checks have missed.
 Result<Level> guarded(const std::function<Result<Level>()>& read) {
   try {
     return read();

@@ -1,4 +1,4 @@
-// What glTF 2.0 says of pictures, cameras, lights and material variants. Called by check_meaning.
+// Checks pictures, cameras, lights and material variants against glTF 2.0. Called by check_meaning.
 #include <fmt/format.h>
 
 #include <set>
@@ -58,7 +58,7 @@ void check_cameras(const Json& json, Meaning& check) {
   }
 }
 
-// KHR_materials_ior: an index of refraction is 1 at least, or 0.
+// KHR_materials_ior: an index of refraction is at least 1, or 0.
 void check_materials(const Json& json, Meaning& check) {
   const Json& materials = array_of(json, "materials");
   for (std::size_t i = 0; i < materials.size(); ++i)

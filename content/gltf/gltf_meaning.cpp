@@ -1,5 +1,5 @@
-// What glTF 2.0 says beyond types and references: hierarchy, buffers and accessors. The users of accessors are checked
-// in gltf_primitives.cpp, what is only looked at in gltf_look.cpp. The structure has been checked before.
+// Checks glTF 2.0 rules beyond types and references: hierarchy, buffers and accessors. gltf_primitives.cpp checks the
+// users of accessors, gltf_look.cpp the appearance. Requires a checked structure.
 #include "content/gltf/gltf_meaning.h"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ namespace pliant {
 
 namespace {
 
-// Version strings are MAJOR.MINOR; this reader knows 2.0.
+// Version strings are MAJOR.MINOR; this reader supports 2.0.
 void check_asset(const Json& json, Meaning& check) {
   const auto parse = [&](const char* key, int& major, int& minor) {
     const std::string version = value_of<std::string>(json["asset"], key, "2.0");
@@ -65,8 +65,8 @@ void check_buffer_views(const Json& json, Meaning& check) {
   }
 }
 
-// That `count` elements of `element` bytes, `stride` apart, lie inside their bufferView, aligned: their components in
-// the buffer, and matrices to four bytes in the bufferView.
+// Checks that `count` elements of `element` bytes, `stride` apart, lie inside their bufferView and are aligned: their
+// components in the buffer, and matrices to four bytes in the bufferView.
 void check_placement(const Json& json, const Json& holder, const std::string& pointer, std::uint64_t count,
                      std::uint64_t element, std::uint64_t stride, std::uint64_t component, std::uint64_t alignment,
                      Meaning& check) {
@@ -142,7 +142,7 @@ bool is_trs(const Json& matrix) {
   return true;
 }
 
-// The parent of every node, -1 for roots; a node with two parents, or in a loop, is an error.
+// The parent of every node, -1 for roots. A node with two parents or in a cycle is an error.
 std::vector<std::int32_t> check_hierarchy(const Json& json, Meaning& check) {
   const Json& nodes = array_of(json, "nodes");
   std::vector<std::int32_t> parent(nodes.size(), -1);
@@ -156,7 +156,7 @@ std::vector<std::int32_t> check_hierarchy(const Json& json, Meaning& check) {
         slot = static_cast<std::int32_t>(i);
     }
   }
-  // Every node has at most one parent, so a node that no root leads to is in a loop or below one.
+  // Every node has at most one parent, so a node that no root reaches is in a cycle or below one.
   std::vector<bool> reached(nodes.size(), false);
   std::vector<std::size_t> stack;
   for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -205,7 +205,7 @@ void check_nodes(const Json& json, Meaning& check) {
 
 void check_skins(const Json& json, const std::vector<std::int32_t>& parent, Meaning& check) {
   const Json& skins = array_of(json, "skins");
-  // Each found root is kept for the nodes on the way to it: chains of many joints are climbed once.
+  // Roots found are cached for all nodes on the way, so that long joint chains are traversed once.
   std::vector<std::int32_t> known(parent.size(), -1);
   const auto root_of = [&](std::int32_t node) {
     std::int32_t root = node;
@@ -270,7 +270,7 @@ void check_meaning(const Json& json, Findings& findings) {
   check_buffer_views(json, check);
   check_accessors(json, check);
   const std::vector<std::int32_t> parent = check_hierarchy(json, check);
-  if (any_error(findings)) return;  // what follows walks the hierarchy and reads layouts
+  if (any_error(findings)) return;  // the following checks traverse the hierarchy and read layouts
   check_nodes(json, check);
   check_skins(json, parent, check);
   check_skeletons(json, parent, check);

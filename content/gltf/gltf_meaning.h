@@ -1,4 +1,4 @@
-// Shared by the files that check meaning: the list of findings, and what each bufferView and accessor serves.
+// Shared by the checks of meaning: the list of findings, and the use of each bufferView and accessor.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-// Times and values of animations may share a bufferView, but no accessor.
+// Times and values of animations may share a bufferView, but not an accessor.
 enum class BufferUse { kVertices, kIndices, kMatrices, kImage, kTimes, kValues };
 
 class Meaning {
@@ -18,7 +18,7 @@ class Meaning {
   Meaning(const Json& json, Findings& findings) : json_(json), findings_(findings) {}
   void error(std::string pointer, std::string message);
   void warn(std::string pointer, std::string message);
-  // Notes that an accessor, and the bufferView below it, serve this end; another end before is an error.
+  // Records this use of an accessor and its bufferView; an error if another use was recorded before.
   void use(std::size_t accessor, BufferUse use, const std::string& pointer);
   void use_view(std::size_t view, BufferUse use, const std::string& pointer);
 
@@ -28,7 +28,8 @@ class Meaning {
   std::map<std::size_t, BufferUse> accessor_use_, view_use_;
 };
 
-// `parent`: of every node, -1 for roots. Skins of a scene have their joints in it, below their skeleton.
+// `parent`: of every node, -1 for roots. A scene that shows a skin must contain its joints, and they must be below its
+// skeleton.
 void check_skeletons(const Json& json, const std::vector<std::int32_t>& parent, Meaning& check);
 void check_images(const Json& json, Meaning& check);
 void check_cameras(const Json& json, Meaning& check);

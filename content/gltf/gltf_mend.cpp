@@ -23,7 +23,7 @@ bool all_have_direction(const std::vector<vec3>& values) {
   return std::all_of(values.begin(), values.end(), has_direction);
 }
 
-// Floats instead of what an accessor stood on: in its place, or in a buffer of their own.
+// Replaces an accessor's data by floats: in place, or in a new buffer.
 void write_floats(SourceDocument& document, std::size_t index, const std::vector<float>& values, std::size_t width) {
   Json& accessor = document.json["accessors"][index];
   accessor.erase("min");
@@ -49,7 +49,7 @@ void write_floats(SourceDocument& document, std::size_t index, const std::vector
   document.buffers.push_back(std::move(bytes));
 }
 
-// A unit vector perpendicular to another one.
+// A unit vector perpendicular to the given one.
 vec3 perpendicular(vec3 normal) {
   const vec3 axis = std::abs(normal.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 1, 0);
   return glm::normalize(cross(normal, axis));
@@ -66,7 +66,7 @@ class Mender {
     const std::size_t at = attributes["NORMAL"].get<std::size_t>();
     const std::vector<float> values = read_floats(document_, at);
     std::vector<vec3> normal = directions(values, 3);
-    if (std::none_of(normal.begin(), normal.end(), has_direction)) {  // as if there were none
+    if (std::none_of(normal.begin(), normal.end(), has_direction)) {  // the same as no normals
       attributes.erase("NORMAL");
       attributes.erase("TANGENT");
       return;

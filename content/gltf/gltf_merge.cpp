@@ -1,5 +1,5 @@
-// merge_document: nodes and scenes, and the order of the steps. What the Level does not know of is moved along with the
-// element that it belongs to; numbers by which glTF refers to nodes, meshes, lights and cameras follow.
+// merge_document: nodes and scenes, and the order of the steps. Data unknown to the Level move with their element.
+// References to nodes, meshes, lights and cameras are renumbered.
 #include "content/gltf/gltf_merge.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ void set_or_erase(Json& object, const char* key, Json list) {
     object[key] = std::move(list);
 }
 
-// The children of every node in their order: as `children` lists them, then those that only say so as `parent`.
+// The children of every node in order: those listed in `children`, then those that only name it as `parent`.
 std::vector<std::vector<std::int32_t>> children_of(const std::vector<LevelNode>& nodes) {
   std::vector<std::vector<std::int32_t>> out(nodes.size());
   std::vector<bool> placed(nodes.size(), false);
@@ -43,7 +43,7 @@ std::vector<std::vector<std::int32_t>> children_of(const std::vector<LevelNode>&
   return out;
 }
 
-// Names under any "extensions".
+// Collects the names under any "extensions".
 void collect_extensions(const Json& json, std::set<std::string>& names) {
   if (!json.is_structured()) return;
   if (json.is_object())
@@ -57,7 +57,7 @@ void collect_extensions(const Json& json, std::set<std::string>& names) {
     for (const Json& element : json) collect_extensions(element, names);
 }
 
-// Extensions that were somewhere and are nowhere now, and those of Pliant that are nowhere.
+// Removes extensions that are no longer used, and unused ones of Pliant, from the declarations.
 void undeclare_extensions(const Json& before, Json& json) {
   std::set<std::string> had, have;
   collect_extensions(before, had);
@@ -73,7 +73,7 @@ void undeclare_extensions(const Json& before, Json& json) {
   }
 }
 
-// Whether every reference to accessors and bufferViews is one that drop_unused_data knows.
+// Whether drop_unused_data knows every reference to accessors and bufferViews.
 bool all_references_known(const Json& json) {
   for (const Json& name : array_of(json, "extensionsUsed")) {
     const std::string text = name.get<std::string>();
@@ -120,7 +120,7 @@ Merge merge_nodes(const Level& level) {
   merge.read_by_number.resize(count);
   for (const LevelNode& node : level.source->nodes_as_read)
     merge.read_by_number[static_cast<std::size_t>(node.source)] = &node;
-  // The first node that says so comes from a node of the document; any other is a copy of it, and new.
+  // The first node with this source comes from the document; others with the same source are copies, and new.
   std::vector<bool> stays(count, false);
   for (const LevelNode& node : level.nodes) {
     const bool old = node.source >= 0 && static_cast<std::size_t>(node.source) < count &&
@@ -150,7 +150,7 @@ Merge merge_nodes(const Level& level) {
   return merge;
 }
 
-// A node without a name is called by its mesh or its number when it is read, and both may have changed.
+// An unnamed node gets its mesh's name or its number when it is read; both may have changed.
 void merge_names(Merge& merge) {
   const Json& json = merge.document.json;
   for (std::size_t i = 0; i < merge.level.nodes.size(); ++i) {
@@ -166,7 +166,7 @@ void merge_names(Merge& merge) {
 void merge_scenes(Merge& merge) {
   Json& json = merge.document.json;
   const std::vector<LevelNode>& nodes = merge.level.nodes;
-  // Scenes that are not shown keep those of their roots that still are.
+  // Other scenes keep those of their roots that are still roots.
   std::vector<bool> is_root(nodes.size(), false);
   Json shown = Json::array();
   bool all_shown = true, ascending = true;

@@ -1,5 +1,5 @@
-// merge_document: meshes. What was painted since is written into the document's own primitives; whose shape has changed
-// is written anew; and a skin stays where it still shows what the Level shows.
+// merge_document: meshes. Changed paint is written into the document's primitives. Meshes of changed shape are
+// rewritten. A skin is kept if it still gives the shape in the Level.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ bool same_shape(const MeshAsRead& a, const MeshAsRead& b) {
   return std::equal(a.primitives.begin(), a.primitives.end(), b.primitives.begin(), b.primitives.end(), same);
 }
 
-// Whether a node's joints are where they were relative to it, to rounding: what its skin shows then is the same.
+// Whether a node's joints have kept their place relative to it, within rounding, so that its skin gives the same shape.
 class SkinsAtRest {
  public:
   explicit SkinsAtRest(const Merge& merge) : merge_(merge) {
@@ -83,7 +83,7 @@ class MeshMerge {
  private:
   const LevelMesh& mesh(std::size_t m) const { return merge_.level.meshes[m]; }
 
-  // How each mesh is written: as the document's, or anew.
+  // Decides how each mesh is written: as in the document, or anew.
   void find_uses() {
     const std::vector<LevelMesh>& meshes = merge_.level.meshes;
     std::map<std::pair<std::int32_t, std::int32_t>, const MeshAsRead*> read;
@@ -105,25 +105,25 @@ class MeshMerge {
     for (std::size_t m = 0; m < meshes.size(); ++m)
       if (unused_[m] && mesh(m).skinned < 0) (read_[m] ? as_read_ : anew_)[m] = true;
   }
-  // A skinned mesh is that of the document only on the node whose skin it shows.
+  // A skinned mesh equals the document's only on the node that has its skin.
   bool shows_as_read(std::size_t node, std::size_t m) const {
     if (!read_[m] || mesh(m).skinned < 0) return read_[m] != nullptr;
     return merge_.from[node] == mesh(m).skinned && skins_.is(mesh(m).skinned);
   }
 
-  // One of /meshes/i for every way in which it is painted: the first stays where it was, others are copies.
+  // One element of /meshes/i per painted variant: the first keeps its place, others are copies.
   Status variants() {
     number_.assign(now_.size(), -1);
     if (!json_.contains("meshes")) return Done{};
     const Json read = json_["meshes"];
     Json copies = Json::array();
     std::vector<std::map<Paint, std::int32_t>> made(read.size());
-    const std::int32_t copy = 1 << 30;  // copies are numbered from here until it is known how many stay
+    const std::int32_t copy = 1 << 30;  // temporary numbers of copies, until the number of kept meshes is known
     for (const auto& chosen : {in_use(false), in_use(true), unused()})
       for (const std::size_t m : chosen) {
         const std::size_t source = static_cast<std::size_t>(mesh(m).source);
         const auto [at, is_new] = made[source].insert({paint_of(now_[m]), -1});
-        if (is_new && made[source].size() > 1 && unused_[m]) continue;  // nobody would see it
+        if (is_new && made[source].size() > 1 && unused_[m]) continue;  // no node shows it
         if (is_new) {
           const bool first = made[source].size() == 1;
           if (!first) copies.push_back(read[source]);
@@ -157,8 +157,8 @@ class MeshMerge {
     return out;
   }
 
-  // Painted attributes and the name. Draco data have their vertices in the order of decoding, and so has a Primitive:
-  // an attribute beside them is an accessor in that order.
+  // Writes painted attributes and the name. A Primitive's vertices have the order of the decoded Draco data. An
+  // attribute beside Draco data is an accessor in that order.
   Status paint(Json& out, std::size_t m) {
     if (mesh(m).name != value_of<std::string>(out, "name", "")) out["name"] = mesh(m).name;
     for (std::size_t p = 0; p < now_[m].primitives.size(); ++p) {
@@ -180,13 +180,13 @@ class MeshMerge {
     return Done{};
   }
 
-  // What the document does not have: meshes, materials, images and animations, by the writer of whole Levels.
+  // Appends meshes, materials, images and animations that are not in the document, with build_document.
   Status append();
-  // The texture that shows image `i` of the Level.
+  // The texture of the Level's image `i`.
   std::size_t texture_of(std::size_t image);
   void point_textures(Json& material);
 
-  // Skins that lost a joint go.
+  // Removes skins that have lost a joint.
   void skins() {
     if (!json_.contains("skins")) return;
     std::vector<bool> stays;
@@ -239,13 +239,13 @@ class MeshMerge {
   SkinsAtRest skins_;
   // By Level mesh.
   std::vector<MeshAsRead> now_;
-  std::vector<const MeshAsRead*> read_;        // nothing: new, or of another shape than when it was read
-  std::vector<bool> as_read_, anew_, unused_;  // some node shows it as the document's, as a new one; none does
-  std::vector<std::int32_t> number_, made_;    // /meshes/i of the document's, of the new one
+  std::vector<const MeshAsRead*> read_;        // nullptr: new, or its shape has changed since reading
+  std::vector<bool> as_read_, anew_, unused_;  // some node shows it as in the document; some node as new; no node
+  std::vector<std::int32_t> number_, made_;    // number in /meshes of the kept one; of the new one
   std::vector<std::int32_t> skin_now_;         // /skins/i as read -> now
 };
 
-// Adds an offset to object[key] where it is.
+// Adds an offset to object[key] if present.
 void shift(Json& object, const char* key, std::size_t by) {
   if (object.contains(key)) object[key] = object[key].get<std::size_t>() + by;
 }
@@ -311,7 +311,7 @@ std::size_t MeshMerge::texture_of(std::size_t image) {
   return json_["textures"].size() - 1;
 }
 
-// The builder calls textures by their images.
+// build_document numbers textures by their images.
 void MeshMerge::point_textures(Json& json) {
   if (!json.is_object()) return;
   for (auto& [key, value] : json.items()) {

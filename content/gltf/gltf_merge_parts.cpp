@@ -22,7 +22,7 @@ bool same(const std::optional<Camera>& a, const std::optional<Camera>& b) {
   return a->yfov == b->yfov && a->znear == b->znear && a->zfar == b->zfar;
 }
 
-// A list that nodes refer to: `reference` finds a node's reference, or nothing.
+// A list that nodes refer to. `reference` returns a node's reference, or nullptr.
 template <class Reference>
 class SharedList {
  public:
@@ -34,7 +34,8 @@ class SharedList {
     for (std::size_t i = 0; i < merge.level.nodes.size(); ++i)
       if (const Json* number = reference(merge.object(i))) ++users_[number->template get<std::size_t>()];
   }
-  // What node `i` has from now on: `made`, over what it had before if `change` can be made to that. Its number.
+  // Sets the element of node `i` to `made`: by `change` of its previous element if possible, else as a new one. Returns
+  // its number.
   template <class Change>
   std::size_t set(std::size_t i, Json made, const Change& change) {
     const Json* number = reference_(merge_.object(i));
@@ -58,7 +59,7 @@ class SharedList {
   void clear(std::size_t i) {
     if (const Json* number = reference_(merge_.object(i))) --users_[number->template get<std::size_t>()];
   }
-  // Without elements that have lost their last node; the numbers of those that stay.
+  // Removes elements that no node uses any more; returns the new numbers.
   std::vector<std::int32_t> finish(Json& list) {
     std::vector<bool> stays;
     for (std::size_t k = 0; k < list_.size(); ++k) stays.push_back(users_[k] > 0 || !used_before_[k]);
@@ -141,7 +142,7 @@ void merge_cameras(Merge& merge) {
     json["cameras"] = std::move(cameras);
 }
 
-// "/nodes/3/translation" with the number that node 3 has now; "" if it is gone.
+// "/nodes/3/translation" with the new number of node 3; "" if it was removed.
 std::string pointer_now(const std::string& pointer, const Merge& merge) {
   const std::pair<std::string, const std::vector<std::int32_t>&> lists[] = {
       {"/nodes/", merge.node_now},
@@ -160,13 +161,13 @@ std::string pointer_now(const std::string& pointer, const Merge& merge) {
   return pointer;
 }
 
-// Morph targets of what a node shows.
+// Number of morph targets of the node's mesh.
 std::size_t targets_of(const Json& json, const Json& node) {
   if (!node.contains("mesh")) return 0;
   return array_of(json["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0], "targets").size();
 }
 
-// Whether the channel still moves something; its numbers become those of now.
+// Whether the channel's target still exists; renumbers its references.
 bool follow(Json& target, Merge& merge) {
   if (extension_of(target, "KHR_animation_pointer")) {
     Json& pointer = target["extensions"]["KHR_animation_pointer"]["pointer"];
@@ -182,7 +183,7 @@ bool follow(Json& target, Merge& merge) {
   return target["path"] != "weights" || targets_of(merge.document.json, node) == targets_of(read, node_read);
 }
 
-// Samplers that no channel has any more go.
+// Removes samplers that no channel uses.
 void drop_samplers(Json& animation) {
   std::vector<bool> stays(animation["samplers"].size(), false);
   for (const Json& channel : animation["channels"]) stays[channel["sampler"].get<std::size_t>()] = true;

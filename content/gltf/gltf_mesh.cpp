@@ -28,7 +28,7 @@ bool has_triangles(const tinygltf::Primitive& primitive) {
   return primitive.mode >= TINYGLTF_MODE_TRIANGLES && primitive.mode <= TINYGLTF_MODE_TRIANGLE_FAN;
 }
 
-// Extensions are read from the checked JSON: SourceDocument.
+// Extensions are read from the checked JSON: see SourceDocument.
 const Json& json_of(const SourceDocument& document, std::size_t mesh, std::size_t primitive) {
   return document.json["meshes"][mesh]["primitives"][primitive];
 }
@@ -67,7 +67,7 @@ std::vector<std::uint32_t> as_triangles(int mode, std::vector<std::uint32_t> cor
   return out;
 }
 
-// Attributes are read from the Draco data where it has them, from accessors otherwise.
+// Attributes come from the Draco data if present there, otherwise from accessors.
 struct MeshReader::Source {
   const std::map<std::string, int>* attributes = nullptr;  // name -> accessor
   std::map<std::string, std::vector<float>> decoded;
@@ -152,7 +152,7 @@ Result<Primitive> MeshReader::read_primitive(std::size_t mesh, std::size_t numbe
     if (which == "TANGENT" && all_directions(values, 4)) out.tangent = as_vectors<vec4>(values);
     if (which == "TEXCOORD_0") out.uv = as_vectors<vec2>(values);
   }
-  // Those in Draco data; others have been mended in the document.
+  // Only those of Draco data: others have been repaired in the document.
   if (const std::size_t mended = mend_normals(out.position, out.index, out.normal); mended > 0)
     notes_.insert(fmt::format("{}: {} normal{} of length 0 made anew", pointer, mended, mended == 1 ? "" : "s"));
   for (const PaintedAttribute& painted : kPainted) {

@@ -1,4 +1,4 @@
-// glTF meshes as triangles in plain arrays.
+// Reads glTF meshes as triangles in plain arrays.
 #pragma once
 
 #include <set>
@@ -9,27 +9,26 @@
 
 namespace pliant {
 
-// A primitive's corners as triangles, counter-clockwise like the first, by its mode: 4 triangles, 5 a strip, 6 a fan
-// (glTF 2.0, 3.7.2.1).
+// Converts a primitive's corners into triangles with the winding of the first, by its mode: 4 triangles, 5 a strip, 6 a
+// fan (glTF 2.0, 3.7.2.1).
 std::vector<std::uint32_t> as_triangles(int mode, std::vector<std::uint32_t> corners);
 
 class MeshReader {
  public:
   explicit MeshReader(const SourceDocument& document);
 
-  // Every primitive that has triangles: strips, fans, quantised, sparse and Draco data resolved. Points and lines are
-  // left out, with a note; Primitive::source says which are not. Errors: what Draco data turn out to be, non-finite
-  // numbers.
+  // Reads every primitive that has triangles; resolves strips, fans, quantised, sparse and Draco data. Points and lines
+  // are skipped with a note; Primitive::source identifies the rest. Errors: invalid Draco data, non-finite numbers.
   Result<LevelMesh> read(std::size_t mesh);
 
-  // The mesh as `skin` shows it at rest: vertices moved by joint matrices times inverse bind matrices, then back into
-  // the node's own frame. `world`: of every /nodes/i.
+  // The mesh as deformed by `skin` at rest: vertices times joint matrices times inverse bind matrices, transformed back
+  // into the node's frame. `world`: of every /nodes/i.
   Result<LevelMesh> read_skinned(std::size_t mesh, std::size_t skin, const std::vector<dmat4>& world, std::size_t node);
 
   const std::set<std::string>& notes() const { return notes_; }
 
  private:
-  struct Source;  // one primitive's attributes, wherever they come from
+  struct Source;  // one primitive's attributes from either source
   Result<Primitive> read_primitive(std::size_t mesh, std::size_t primitive);
   Status read_draco(const Json& extension, const std::string& pointer, Source& source);
   std::vector<float> attribute(const Source& source, const char* name) const;

@@ -1,5 +1,5 @@
-// The one translation unit that holds tinygltf's code: its reader between callbacks of ours, its writers of JSON and of
-// GLB (which Debian's library does not let out).
+// The only translation unit with tinygltf's code: its reader, with our callbacks, and its writers of JSON and GLB
+// (which Debian's library does not export).
 #include <fstream>  // tinygltf's writer needs it even without file access
 #include <utility>
 #define TINYGLTF_IMPLEMENTATION
@@ -14,7 +14,7 @@ namespace pliant {
 
 namespace {
 
-// "buffer/3" and "image/0", the only names that read_model's documents have, as the bytes they stand for.
+// The documents of read_model use only the names "buffer/3" and "image/0"; this returns their bytes.
 Bytes* served(const std::string& name, void* user) {
   auto& fetched = *static_cast<FetchedBytes*>(user);
   for (const auto& [prefix, all] : {std::pair{"buffer/", &fetched.buffers}, std::pair{"image/", &fetched.images}})
@@ -31,7 +31,7 @@ bool exists(const std::string& name, void* user) {
 std::string as_it_is(const std::string& name, void*) {
   return name;
 }
-// Every name is read once: the bytes change hands.
+// Every name is read once, so the bytes are moved.
 bool hand_over(std::vector<unsigned char>* out, std::string*, const std::string& name, void* user) {
   Bytes* bytes = served(name, user);
   if (bytes) *out = std::move(*bytes);
@@ -44,7 +44,7 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
   return true;
 }
 
-// The reader only appends. An element takes up to 3 kB: long lists grow once, not by doubling.
+// The reader only appends. An element takes up to 3 kB, so reserve instead of doubling.
 void reserve(const Json& json, tinygltf::Model& model) {
   model.accessors.reserve(array_of(json, "accessors").size());
   model.bufferViews.reserve(array_of(json, "bufferViews").size());
@@ -53,7 +53,7 @@ void reserve(const Json& json, tinygltf::Model& model) {
   model.nodes.reserve(array_of(json, "nodes").size());
 }
 
-// Whether every element of the document has become one of the Model, with the same number.
+// Whether every element of the document is in the Model, with the same number.
 bool is_complete(const Json& json, const tinygltf::Model& model) {
   const auto same = [](const Json& object, const char* key, const auto& elements) {
     return array_of(object, key).size() == elements.size();
@@ -87,7 +87,7 @@ void read_model(SourceDocument& document, const Container& container, FetchedByt
   tinygltf::TinyGLTF reader;
   reader.SetFsCallbacks({&exists, &as_it_is, &hand_over, nullptr, &fetched});
   reader.SetImageLoader(&keep_encoded, nullptr);
-  std::string errors, warnings;  // not shown: the checks before have said all that there is to say
+  std::string errors, warnings;  // not shown: our checks have reported every fault
   reserve(document.json, document.model);
   bool read = false;
   std::string text;
@@ -119,7 +119,7 @@ void reread_model(SourceDocument& document, Findings& findings) {
   for (const Bytes& bytes : fetched.buffers) fetched.is_placeholder.push_back(bytes.empty());
   fetched.images = document.images;
   for (Bytes& bytes : fetched.images)
-    if (bytes.empty()) bytes.assign(1, 0);  // one that is not shown
+    if (bytes.empty()) bytes.assign(1, 0);  // unsupported format
   const std::vector<Bytes> images = std::exchange(document.images, {});
   document.model = {};
   document.json_is_mended = true;
@@ -131,7 +131,8 @@ Json model_as_json(const tinygltf::Model& model) {
   std::ostringstream text;
   tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, text, false, false);
   Json json = Json::parse(text.str());
-  // What 2.7 loses: elements without members are null, names end at a NUL, an emission below 1e-12 is none.
+  // Restores what tinygltf 2.7 loses: elements without members become null, names end at a NUL, emission below 1e-12 is
+  // dropped.
   for (const char* key : {"nodes", "scenes"})
     if (json.contains(key))
       for (Json& element : json[key])

@@ -1,4 +1,4 @@
-// What glTF 2.0 says of those who use accessors: mesh primitives, morph targets, materials' texture coordinates,
+// Checks the users of accessors against glTF 2.0: mesh primitives, morph targets, texture coordinates of materials,
 // animations. Called by check_meaning.
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ namespace pliant {
 
 namespace {
 
-// TEXCOORD_3 -> {TEXCOORD, 3}; POSITION -> {POSITION, -1}; false: not a name that glTF knows.
+// TEXCOORD_3 -> {TEXCOORD, 3}; POSITION -> {POSITION, -1}; false: not a glTF name.
 bool split_attribute(const std::string& name, std::string& semantic, int& set) {
   set = -1;
   semantic = name;
@@ -69,7 +69,7 @@ class MeshCheck {
     if (mesh.contains("weights") && mesh["weights"].size() != targets)
       check_.error(pointer + "/weights", "are not as many as the morph targets");
   }
-  // Attributes of different accessors in one bufferView are interleaved, and that needs a stride.
+  // Several accessors of vertex attributes in one bufferView need a stride.
   void shared_views() {
     for (const auto& [view, accessors] : vertex_accessors_)
       if (accessors.size() > 1 && !json_["bufferViews"][view].contains("byteStride"))
@@ -108,7 +108,7 @@ class MeshCheck {
         check_.error(pointer, semantic + " sets are not numbered 0, 1, 2 without gaps");
   }
 
-  // A vertex has its weights once: the same numbers under two names would count twice.
+  // A vertex has its weights once: the same accessor under two names would count twice.
   void weight_sets(const Json& attributes, const std::string& pointer) {
     std::set<std::size_t> seen;
     for (const auto& [name, value] : attributes.items())
@@ -128,7 +128,7 @@ class MeshCheck {
     check_.use(index, BufferUse::kIndices, pointer + "/indices");
   }
 
-  // Every texture of a material needs the texture coordinates that it names.
+  // Every texture of a material needs the texture coordinate set that it refers to.
   void texcoords(const Json& material, const std::string& where, std::size_t available, const std::string& pointer) {
     for (const auto& [key, value] : material.items()) {
       if (!value.is_object() || key == "extras") continue;
@@ -175,7 +175,7 @@ class MeshCheck {
         if (json_["accessors"][index]["count"].get<std::uint64_t>() != vertices)
           check_.error(here, "has another count than the primitive's attributes");
       }
-    // A material is walked once per number of texture coordinates that it meets.
+    // Check a material once per number of available texture coordinate sets.
     if (!primitive.contains("material")) return;
     const std::size_t material = primitive["material"].get<std::size_t>();
     if (materials_seen_.insert({material, sets["TEXCOORD"].size()}).second)
@@ -189,7 +189,7 @@ class MeshCheck {
   std::set<std::pair<std::size_t, std::size_t>> materials_seen_;
 };
 
-// Nodes with morph weights and skins must find them on their mesh.
+// Nodes with morph weights or skins need a mesh with matching attributes.
 void check_node_meshes(const Json& json, Meaning& check) {
   const Json& nodes = array_of(json, "nodes");
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -215,10 +215,10 @@ void check_meshes(const Json& json, Meaning& check) {
   check_node_meshes(json, check);
 }
 
-// What animations refer to must be sound also where they are not played: saving keeps them.
+// Unused animation data are checked too, because saving keeps them.
 void check_animations(const Json& json, Meaning& check) {
   const Json& animations = array_of(json, "animations");
-  std::map<std::size_t, bool> splines;  // outputs: whether of CUBICSPLINE
+  std::map<std::size_t, bool> splines;  // per output accessor: CUBICSPLINE
   for (std::size_t a = 0; a < animations.size(); ++a) {
     const Json& samplers = animations[a]["samplers"];
     const std::string pointer = fmt::format("/animations/{}", a);

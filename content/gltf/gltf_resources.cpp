@@ -1,4 +1,4 @@
-// The bytes of buffers and pictures: data URIs, files beside the level, the BIN chunk.
+// Fetches the bytes of buffers and pictures: data URIs, files beside the level, the BIN chunk.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ std::optional<DataUri> parse_data_uri(const std::string& uri) {
   if (comma == std::string::npos) return std::nullopt;
   const std::string head = uri.substr(5, comma - 5);
   if (head.size() < 7 || head.substr(head.size() - 7) != ";base64") return std::nullopt;
-  // What stands between the type and ";base64" are parameters NAME=VALUE.
+  // Between the type and ";base64" are parameters NAME=VALUE.
   std::istringstream parts(head.substr(0, head.size() - 7));
   DataUri data;
   std::getline(parts, data.mime, ';');
@@ -80,14 +80,14 @@ bool is_remote(const std::string& uri) {
   return uri.rfind("http://", 0) == 0 || uri.rfind("https://", 0) == 0;
 }
 
-// A URI's ending, in small letters.
+// A URI's extension, in lower case.
 std::string ending_of(const std::string& uri) {
   std::string extension = fs::path(uri.substr(0, 4096)).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   return extension;
 }
-// A picture in a file of a format that is not shown.
+// A picture file in an unsupported format.
 bool is_foreign(const std::string& uri) {
   const std::string extension = ending_of(uri);
   return !is_data_uri(uri) && (extension == ".webp" || extension == ".ktx2" || extension == ".dds");
@@ -99,7 +99,7 @@ bool is_missing(const SourceDocument& document, const std::string& uri) {
   return path && !fs::exists(*path, ignored);
 }
 
-// The bytes that a buffer's or picture's URI stands for; of a file the first `wanted`.
+// The bytes that a buffer's or picture's URI refers to; of a file, the first `wanted`.
 std::optional<DataUri> fetch(const std::string& uri, const fs::path& folder, const std::string& pointer,
                              const Limit& limit, std::uint64_t wanted, Findings& findings) {
   if (is_data_uri(uri)) {
@@ -120,7 +120,7 @@ std::optional<DataUri> fetch(const std::string& uri, const fs::path& folder, con
   return DataUri{"", std::move(*bytes)};
 }
 
-// A buffer's bytes; empty where it has none, or they lie in the BIN chunk.
+// A buffer's bytes; empty if it has none or uses the BIN chunk.
 Bytes fetch_buffer(const SourceDocument& document, std::size_t number, const Container& container, Findings& findings) {
   const Json& buffer = document.json["buffers"][number];
   const std::string pointer = fmt::format("/buffers/{}", number);
@@ -152,14 +152,14 @@ Bytes fetch_buffer(const SourceDocument& document, std::size_t number, const Con
   return {};
 }
 
-// A picture's bytes; empty where it lies in a bufferView, elsewhere, or is of a format that is not shown.
+// A picture's bytes; empty if it is in a bufferView, is missing, or has an unsupported format.
 Bytes fetch_picture(const SourceDocument& document, std::size_t number, Findings& findings) {
   const Json& image = document.json["images"][number];
   if (!image.contains("uri")) return {};
   const std::string pointer = fmt::format("/images/{}/uri", number);
   const std::string& uri = image["uri"].get_ref<const std::string&>();
   if (is_remote(uri) || is_foreign(uri)) return {};
-  // A surface can be touched without its picture: a missing one is only told of.
+  // A surface can be touched without its picture: a missing one is only a warning.
   if (is_missing(document, uri)) {
     add_warning(findings, pointer, "names " + uri.substr(0, 100) + ", which does not exist; shown as plain white");
     return {};
@@ -172,7 +172,7 @@ Bytes fetch_picture(const SourceDocument& document, std::size_t number, Findings
 
 FetchedBytes fetch_bytes(const SourceDocument& document, const Container& container, Findings& findings) {
   FetchedBytes out;
-  // Several may name the same file, and each is held for itself: they are added up before they are read.
+  // Several buffers may name the same file and each keeps a copy: check the total size before reading.
   const Json& buffers = array_of(document.json, "buffers");
   double total = 0.0;
   for (std::size_t i = 0; i < buffers.size(); ++i) {
@@ -202,7 +202,7 @@ FetchedBytes fetch_bytes(const SourceDocument& document, const Container& contai
   return out;
 }
 
-// Pictures are recognised and compared with what they claim; they are decoded only by load_level.
+// Detects the format of pictures and compares it with the declared type. Only load_level decodes them.
 void check_pictures(SourceDocument& document, Findings& findings) {
   for (std::size_t i = 0; i < document.images.size(); ++i) {
     const Json& image = document.json["images"][i];
@@ -223,7 +223,7 @@ void check_pictures(SourceDocument& document, Findings& findings) {
         !extension_is_used(document.json, "KHR_texture_basisu"))
       add_error(findings, pointer, "is KTX2, which needs KHR_texture_basisu in extensionsUsed; use PNG or JPEG");
     const bool is_png = format == ImageFormat::kPng, is_jpeg = format == ImageFormat::kJpeg;
-    // Both the member and a data URI may say what the picture is.
+    // Both the member and a data URI may declare the type.
     for (const std::string& mime : {claimed, embedded})
       if (!mime.empty() && ((is_png && mime != "image/png") || (is_jpeg && mime != "image/jpeg")))
         add_error(findings, pointer, fmt::format("claims to be {} but is not; correct its type", mime.substr(0, 60)));

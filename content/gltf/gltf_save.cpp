@@ -1,4 +1,4 @@
-// save_level: the document that the Level came from, or one built from it, with what has changed since.
+// save_level: updates the Level's source document with all changes, or builds a new document.
 #include "content/gltf/gltf_save.h"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ void set_extensions(Json& json, Json& object, Json pliant) {
     object["extensions"] = std::move(extensions);
 }
 
-// A cap is the word of who opened the file and not its maker's: what it lowered is saved as it was read.
+// A safety cap is the user's setting, not the author's: capped values are saved as they were read.
 LevelNode as_before_cap(LevelNode node, const LevelNode& read, const SafetyCap& cap) {
   const auto restore = [](double& value, double before, double most) {
     if (value == std::min(before, most)) value = before;
@@ -46,7 +46,7 @@ LevelNode as_before_cap(LevelNode node, const LevelNode& read, const SafetyCap& 
   return node;
 }
 
-// A file name as a relative URI: whatever could be read otherwise is percent-encoded.
+// A file name as a relative URI: ambiguous characters are percent-encoded.
 std::string as_uri(const std::string& name) {
   std::string uri;
   for (const char c : name) {
@@ -56,7 +56,7 @@ std::string as_uri(const std::string& name) {
   return uri;
 }
 
-// Nothing is written that load_level would refuse for what its JSON says.
+// Rejects output that load_level would reject by its JSON.
 Status check_readable(const std::string& text) {
   Json json = Json::parse(text);
   Findings findings;
@@ -68,7 +68,7 @@ Status check_readable(const std::string& text) {
   return Done{};
 }
 
-// Refuses to replace a .bin that is there but is no buffer of the .gltf that is replaced.
+// Refuses to overwrite an existing .bin that is not a buffer of the replaced .gltf.
 Status check_unrelated(const fs::path& bin, const fs::path& gltf) {
   std::error_code ignored;
   if (!fs::exists(fs::symlink_status(bin, ignored))) return Done{};
@@ -120,7 +120,7 @@ Bytes pack_document(SourceDocument& document, bool keep_image_uris) {
     packed.insert(packed.end(), bytes.begin(), bytes.end());
     return packed.size() - bytes.size();
   };
-  // Where each buffer went; placeholders without data stay as they are, behind the packed one.
+  // New place of each buffer; placeholders without data stay, after the packed one.
   std::vector<std::size_t> offset(document.buffers.size()), number(document.buffers.size(), 0);
   Json placeholders = Json::array();
   for (std::size_t i = 0; i < document.buffers.size(); ++i) {
@@ -157,7 +157,7 @@ Bytes pack_document(SourceDocument& document, bool keep_image_uris) {
   if (!images.empty()) json["images"] = std::move(images);
   Json buffers = Json::array();
   if (!packed.empty()) {
-    // A buffer alone stays what else it says.
+    // A single buffer keeps its other members.
     Json whole = document.buffers.size() == 1 && !document.buffers[0].empty() ? json["buffers"][0] : Json::object();
     whole.erase("uri");
     whole["byteLength"] = packed.size();
@@ -180,7 +180,7 @@ Result<Bytes> level_as_glb(const Level& level) {
 
 namespace {
 
-// The text of a document; a name that is no UTF-8 has none.
+// The document as text; fails if a name is not UTF-8.
 Result<std::string> json_text(const Json& json, int indent) {
   try {
     return json.dump(indent);
@@ -189,7 +189,7 @@ Result<std::string> json_text(const Json& json, int indent) {
   }
 }
 
-// What is written is read first, as every run and the editor read it.
+// Reads the output back before writing the file, as a run and the editor would.
 Status check_opens(Json json, const Bytes& bin, std::size_t size, const fs::path& path) {
   if (!bin.empty()) json["buffers"][0].erase("uri");
   const Result<std::string> text = json_text(json, -1);

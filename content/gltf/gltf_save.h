@@ -5,13 +5,13 @@
 
 namespace pliant {
 
-// A document with everything that a Level says but PLIANT extensions, for Levels that did not come from glTF.
+// A document with everything in the Level except PLIANT extensions, for Levels that were not read from glTF.
 Result<SourceDocument> build_document(const Level& level);
 
-// Some parts of a Level as a document of their own, without nodes. Materials, images and nodes that they refer to keep
-// the Level's numbers: who appends the document to another one knows what they are there.
+// Parts of a Level as a separate document without nodes. References to materials, images and nodes keep the Level's
+// numbers; the code that appends the document renumbers them.
 struct LevelParts {
-  std::size_t first_material = 0, first_image = 0;  // these and all behind them
+  std::size_t first_material = 0, first_image = 0;  // these and all after them
   std::vector<std::size_t> meshes, animations;
 };
 struct BuiltParts {
@@ -20,33 +20,32 @@ struct BuiltParts {
 };
 Result<BuiltParts> build_parts(const Level& level, const LevelParts& parts);
 
-// The document of level.source with all that has changed since, PLIANT extensions included.
+// The document of level.source updated with all changes, including PLIANT extensions.
 Result<SourceDocument> merge_document(const Level& level);
-// PLIANT extensions of all nodes and of the scene that is shown. `number`: /nodes/i of every node; `read`: what it was
-// when the document was read, or nothing.
+// Writes the PLIANT extensions of all nodes and of the shown scene. `number`: /nodes/i of every node; `read`: the node
+// as read, or nullptr.
 void write_extensions(const Level& level, const std::vector<std::int32_t>& number,
                       const std::vector<const LevelNode*>& read, SourceDocument& document);
 
 Json light_json(const Light& light);     // an element of KHR_lights_punctual's lights
 Json camera_json(const Camera& camera);  // an element of cameras
 
-// Triangles of every primitive without morph targets go into Draco blobs; what nothing refers to any more is dropped.
+// Compresses triangles of every primitive without morph targets with Draco; drops unreferenced data.
 Status compress_document(SourceDocument& document, int bits);
 
-// The opposite: Draco blobs become plain accessors. `all`: also of primitives that compress_document would leave out.
+// Converts Draco blobs into plain accessors. `all`: also of primitives that compress_document would skip.
 Status decompress_document(SourceDocument& document, bool all);
-// Drops accessors, bufferViews and bytes that nothing refers to.
+// Removes unreferenced accessors, bufferViews and bytes.
 void drop_unused_data(SourceDocument& document);
 
 // Adds to extensionsUsed, and to extensionsRequired if `required`.
 void declare_extension(Json& json, const std::string& name, bool required);
-Json transform_json(const LocalTransform& local);  // translation, rotation, scale where they are not the default
+Json transform_json(const LocalTransform& local);  // non-default translation, rotation and scale
 
-// Moves a document's pictures (unless `keep_image_uris`) and buffers into one; returns it. /buffers/0 then stands for
-// it.
+// Moves a document's pictures (unless `keep_image_uris`) and buffers into one buffer, /buffers/0, and returns it.
 Bytes pack_document(SourceDocument& document, bool keep_image_uris);
 
-// A Level built, packed and wrapped as a .glb file.
+// A Level built, packed and written as a .glb file.
 Result<Bytes> level_as_glb(const Level& level);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// What glTF 2.0 (3.7.3.2) says of a skin's place: its skeleton is the joints' common root or above it, and a scene that
-// shows a skinned mesh has the joints that move it. Called by check_meaning.
+// Checks skins against glTF 2.0 (3.7.3.2). A skeleton is the joints' common root or an ancestor of it. A scene that
+// shows a skinned mesh contains the joints that move it. Called by check_meaning.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-// Whether all joints hang on this node, or are it. A chain of joints is climbed once.
+// Whether all joints are this node or below it. Results are cached, so that chains are traversed once.
 bool all_below(const Json& joints, std::int32_t skeleton, const std::vector<std::int32_t>& parent) {
   std::vector<std::int8_t> known(parent.size(), -1);
   known[static_cast<std::size_t>(skeleton)] = 1;
@@ -28,7 +28,7 @@ bool all_below(const Json& joints, std::int32_t skeleton, const std::vector<std:
   return true;
 }
 
-// Whether a node is in the scene. A chain of parents is climbed once.
+// Whether each node is in the scene. Results are cached, so that chains are traversed once.
 std::vector<bool> shown_in(const Json& scene, const std::vector<std::int32_t>& parent) {
   std::vector<std::int8_t> known(parent.size(), -1);
   for (const Json& root : array_of(scene, "nodes")) known[root.get<std::size_t>()] = 1;
@@ -60,7 +60,7 @@ void check_skeletons(const Json& json, const std::vector<std::int32_t>& parent, 
   const Json &nodes = array_of(json, "nodes"), &scenes = array_of(json, "scenes");
   for (std::size_t s = 0; s < scenes.size(); ++s) {
     const std::vector<bool> shown = shown_in(scenes[s], parent);
-    std::vector<std::int8_t> whole(skins.size(), -1);  // whether the scene has all joints of a skin
+    std::vector<std::int8_t> whole(skins.size(), -1);  // whether the scene contains all joints of a skin
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       if (!shown[i] || !nodes[i].contains("skin")) continue;
       const std::size_t skin = nodes[i]["skin"].get<std::size_t>();

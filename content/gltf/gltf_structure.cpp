@@ -1,4 +1,4 @@
-// Walks a document by the table of gltf_specification.h: types, ranges, references.
+// Checks a document by the table of gltf_specification.h: types, ranges, references.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr const char* kPliant = "PLIANT_";
 
 struct ByteRange {
   double min = -INFINITY, max = INFINITY;
-  bool open = false;  // min itself is out
+  bool open = false;  // min itself is excluded
   std::string text;
   bool holds(double value) const { return (open ? value > min : value >= min) && value <= max; }
 };
@@ -86,7 +86,7 @@ struct Table {
 
 class Structure {
  public:
-  bool mended() const { return mended_; }  // an integer stood as 1.0
+  bool mended() const { return mended_; }  // an integer was written as 1.0
   Structure(const Json& root, Findings& findings) : root_(root), findings_(findings) {
     if (root.is_object() && array_of(root, "extensionsUsed").is_array())
       for (const Json& name : array_of(root, "extensionsUsed"))
@@ -135,13 +135,13 @@ class Structure {
     error(pointer, fmt::format("is {}, not {}", shown(json), wanted));
   }
 
-  // "on a node", in the words of the specification.
+  // "on a node", in the specification's terms.
   static std::string place(const std::string& type) {
     if (type == "root") return "at the top level";
     const bool vowel = std::string("aeiou").find(type[0]) != std::string::npos;
     return fmt::format("on a{} {}", vowel ? "n" : "", type);
   }
-  // Where the table has it, as what to do.
+  // The objects that the table allows it on, as a remedy.
   static std::string right_place(const std::string& name, const std::string& type) {
     std::string places;
     for (const auto& [object, names] : table().extensions)
@@ -153,7 +153,7 @@ class Structure {
     return out;
   }
 
-  // What is ours but does not stand among extensions is read by nobody.
+  // PLIANT_* members outside of extensions are ignored by readers: report them.
   void check_strays(const Json& json, const std::string& type, const std::string& pointer) {
     const std::string target = type == "scene" || type == "root" ? "a scene's or node's" : "a node's";
     const auto look = [&](const Json& object, const std::string& where) {
@@ -206,7 +206,7 @@ class Structure {
     }
   }
 
-  // An integer may stand as 1.0; it is written as 1 then.
+  // An integer may be written as 1.0; it is rewritten as 1.
   bool integer(Json& json) {
     const bool is_float = json.is_number_float(), is_integer = as_integer(json);
     mended_ = mended_ || (is_float && is_integer);
@@ -225,7 +225,7 @@ class Structure {
   void check_number(const Json& json, const ByteRange& range, const std::string& pointer) {
     if (!json.is_number()) return mismatch(pointer, json, "a number");
     const double value = json.get<double>();
-    // Everything is read into single precision: a number beyond it would become infinite.
+    // Values are stored in single precision: a larger number would become infinite.
     if (!std::isfinite(static_cast<float>(value))) return error(pointer, "is too large a number");
     if (!range.holds(value)) error(pointer, fmt::format("is {}, out of the range {}", json.dump(), range.text));
   }

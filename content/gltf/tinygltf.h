@@ -1,5 +1,5 @@
-// tinygltf without file access and picture codecs, and under a namespace of its own: a program that uses Pliant may
-// hold another version of it, and two of one name would mix without a word from the linker.
+// tinygltf without file access and picture codecs, in its own namespace. A program that uses Pliant may contain another
+// version of it. Two versions under one name would violate the one-definition rule without a linker error.
 #pragma once
 
 #define TINYGLTF_NO_FS

@@ -8,12 +8,12 @@ namespace pliant {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kEnd = 24.0;  // of z, where 1 - L is rounding
+constexpr double kEnd = 24.0;  // of z, from which 1 - L is below rounding
 
 struct Rule {
   std::vector<double> at, weight;
 };
-// Gauss and Legendre's on [0, 1]: roots of the polynomial by Newton.
+// Gauss-Legendre rule on [0, 1]: roots of the polynomial by Newton's method.
 Rule gauss(int n) {
   Rule out{std::vector<double>(static_cast<std::size_t>(n)), std::vector<double>(static_cast<std::size_t>(n))};
   for (int i = 0; i < n; ++i) {
@@ -36,7 +36,7 @@ Rule gauss(int n) {
   return out;
 }
 
-double missing(double z, double k) {  // 1 - L(z), by e^(-2z) so that nothing overflows
+double missing(double z, double k) {  // 1 - L(z), in terms of e^(-2z) to avoid overflow
   const double e = std::exp(-2 * z), sinh2 = (1 - e * e) / 2, cosh2 = (1 + e * e) / 2;
   const double below = 2 * k * cosh2 + (1 + k * k + 4 * z * z) * e;
   return (2 * k * (cosh2 - sinh2) + (1 + k * k + 4 * z * z + 4 * z) * e) / below;
@@ -58,7 +58,7 @@ BondedLayer::BondedLayer(double radius_over_thickness, double poisson) {
       for (std::size_t j = 0; j < n; ++j) system[i * n + j] -= weight_[q] * cosine[i] * cosine[j] * t.weight[j];
   }
   for (std::size_t i = 0; i < n; ++i) system[i * n + i] += 1.0;
-  // Elimination; the kernel is a contraction, so that no pivot is small.
+  // Gaussian elimination without pivoting; the kernel is a contraction, so no pivot is small.
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i + 1; j < n; ++j) {
       const double share = system[j * n + i] / system[i * n + i];
@@ -84,7 +84,7 @@ double BondedLayer::surface(double radii) const {
   const double end = std::asin(1 / radii);
   double u = 2 / kPi * end;
   for (std::size_t q = 0; q < at_.size(); ++q) {
-    double direct = 0.0;  // of what phi is more than 1
+    double direct = 0.0;  // integral of phi - 1
     for (std::size_t i = 0; i < turn.at.size(); ++i)
       direct += end * turn.weight[i] * std::cos(at_[q] * radii * std::sin(end * turn.at[i]));
     u += weight_[q] * (2 / kPi * direct - std::cyl_bessel_j(0.0, at_[q] * radii));

@@ -17,7 +17,7 @@
 
 namespace pliant {
 
-// [1] of a / h, from 0 (deep: 1) on; beyond kThinnest radii the layer counts as that thin. nu from 0 to 0.5.
+// [1] as a function of a / h, from 0 (half-space: 1); above kThinnest the value at kThinnest is used. nu from 0 to 0.5.
 inline constexpr double kThinnest = 20.0;
 
 class BondedLayer {
@@ -27,7 +27,7 @@ class BondedLayer {
   double surface(double radii) const;        // [1] u at this distance from the axis, in radii of the punch
 
  private:
-  std::vector<double> at_, weight_;  // x, and 2 / pi (1 - L) A(x) dx; none where it is deep
+  std::vector<double> at_, weight_;  // x, and 2 / pi (1 - L) A(x) dx; empty for a half-space
   double factor_ = 1.0;
 };
 

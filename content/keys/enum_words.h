@@ -1,5 +1,5 @@
-// The words that stand for enumerators in level files and arguments, each once. A new enumerator without a word does
-// not compile (-Wswitch).
+// Names of enumerators in level files and arguments, defined once. A new enumerator without a name does not compile
+// (-Wswitch).
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace pliant {
 
-// nullptr past the last enumerator. Enumerators count from 0 without a gap.
+// Returns nullptr after the last enumerator. Enumerators count from 0 without gaps.
 constexpr const char* word_of(Response response) {
   switch (response) {
     case Response::kFollow:
@@ -117,7 +117,7 @@ constexpr const char* word_of(ToolForce force) {
   return nullptr;
 }
 
-// All words of an enumeration, in the order of its values.
+// All names of an enumeration, in the order of its values.
 template <class Enum>
 std::vector<std::string> words_of() {
   std::vector<std::string> words;

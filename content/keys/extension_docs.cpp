@@ -1,4 +1,4 @@
-// The table of keys as JSON Schemas and as Markdown.
+// The key table as JSON Schemas and as Markdown.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -71,7 +71,7 @@ Json schema_of(const Key& key, const Json& standard) {
   return out;
 }
 
-// An owner with this extension at its defaults.
+// An object with this extension at its defaults.
 struct Defaults {
   LevelNode node;
   Level level;

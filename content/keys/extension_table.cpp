@@ -13,7 +13,7 @@ namespace pliant {
 
 namespace {
 
-// A member of a component, or of its authored part, as a function from its owner.
+// Accessor of a component's member, or of a member of its authored part, from its owner.
 template <class Owner, class T, class Part, class Member>
 auto at(std::optional<T> Owner::*slot, Member Part::*member) {
   return [slot, member](void* owner) -> Member& { return (*(static_cast<Owner*>(owner)->*slot)).*member; };
@@ -23,7 +23,7 @@ auto at(T Owner::*slot, Member Part::*member) {
   return [slot, member](void* owner) -> Member& { return (static_cast<Owner*>(owner)->*slot).*member; };
 }
 
-// get and set of one member through conversions to and from JSON.
+// Key with get and set through conversions to and from JSON.
 template <class Access, class ToJson, class FromJson>
 Key key(std::string name, std::string unit, KeyType type, std::string doc, Access access, ToJson to_json,
         FromJson from_json) {
@@ -45,7 +45,7 @@ Key number(std::string name, std::string unit, Range range, Access access, std::
   out.range = range;
   return out;
 }
-// What a number may be, and what it usually is.
+// Allowed and usual range of a number.
 struct Ranges {
   Ranges(Range may_be, Range usually) : hard(may_be), usual(usually) {}
   Range hard, usual;
@@ -75,7 +75,7 @@ Key choice(std::string name, Access access, std::string doc) {
       std::move(name), "", KeyType::kChoice, std::move(doc), access,
       [](Enum value) {
         const char* const word = word_of(value);
-        return std::string(word ? word : "(no such value)");  // of a number that a program made up
+        return std::string(word ? word : "(no such value)");  // for an invalid enumerator set by a program
       },
       [](const Json& json) { return *value_of_word<Enum>(json.get<std::string>()); });
   out.choices = words_of<Enum>;

@@ -1,4 +1,4 @@
-// The rows of extensions.h's table, for the files that walk it.
+// The rows of extensions.h's table, for the files that iterate over it.
 #pragma once
 
 #include <functional>
@@ -14,18 +14,18 @@ enum class KeyType { kNumber, kFlag, kText, kChoice, kColor, kPair, kVector, kPo
 
 inline constexpr std::size_t kMostPoints = 16;  // of a key of type kPoints
 
-// One key. Owners are LevelNode (node extensions) or Level (scene extensions), handed over as void*.
+// One key. The owner, passed as void*, is a LevelNode (node extensions) or Level (scene extensions).
 struct Key {
   std::string name;  // dots are nested objects: relaxation.time
   std::string unit;
   KeyType type = KeyType::kNumber;
   Range range;
-  Range usual;                                      // beyond it, other than 0, `validate` asks what was meant
-  std::vector<std::string> (*choices)() = nullptr;  // of a choice: its words, registered ones included
+  Range usual;                                      // `validate` queries values outside of it, except 0
+  std::vector<std::string> (*choices)() = nullptr;  // of a choice: its words, including registered ones
   std::string doc;
   bool alias = false;  // sets other keys; never saved
   std::function<Json(const void*)> get;
-  std::function<void(void*, const Json&)> set;  // the value has been checked
+  std::function<void(void*, const Json&)> set;  // requires a checked value
 };
 
 struct Extension {
@@ -34,22 +34,24 @@ struct Extension {
   bool on_scene = false;
   std::vector<Key> keys;
   std::function<bool(const void*)> present;
-  std::function<void(void*)> add;            // with defaults
-  std::function<std::string(void*)> settle;  // after keys were set: derives what follows; a sentence if they clash
+  std::function<void(void*)> add;            // adds it with defaults
+  std::function<std::string(void*)> settle;  // after keys were set: computes derived values; returns an error if keys
+                                             // conflict
 };
 
 const std::vector<Extension>& extension_table();
 const Extension* find_extension(const std::string& name);
-// That its author has said a key: into LevelNode::stated or Level::stated.
+// Records in LevelNode::stated or Level::stated that the file sets the key.
 void note_stated(const Extension& extension, const Key& key, void* owner);
 const Key* find_key(const Extension& extension, const std::string& name);
-// The key of NODE.EXTENSION.KEY, where the node's name may hold dots; null: none.
+// The key of NODE.EXTENSION.KEY; the node's name may contain dots. nullptr: none.
 const Key* find_key_of_path(const std::string& path);
 
-// "" or what is wrong with the value.
+// Returns "" or an error.
 std::string check_value(const Key& key, const Json& value);
 std::string range_text(const Key& key);
-// "" or that a number (each of a vector's or point's) is not what it usually is, and the unit that was perhaps meant.
+// Returns "" or a question if a number (or any component of a vector or point) is outside the usual range, with the
+// unit that was perhaps meant.
 std::string doubt(const Key& key, const Json& value);
 std::string usual_text(const Key& key);
 // The closest of `names`, as "; did you mean X?", or "" if none is close.

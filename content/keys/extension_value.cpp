@@ -1,4 +1,4 @@
-// What may stand for a key, and the words for what may not.
+// Checks values of keys, and words the errors.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,13 +26,13 @@ struct Prefixed {
   const char* meant;
   double factor;
 };
-// In what people measure what a key has in SI units.
+// Common units of quantities that keys have in SI units.
 constexpr Prefixed kMeant[] = {
     {"Pa", "kPa", 1e3},          {"Pa", "MPa", 1e6},      {"m", "mm", 1e-3},       {"m", "cm", 1e-2}, {"s", "ms", 1e-3},
     {"rad", "degrees", kDegree}, {"N/m", "N/mm", 1e3},    {"kg/m3", "g/cm3", 1e3}, {"kg", "g", 1e-3}, {"N", "mN", 1e-3},
     {"Hz", "kHz", 1e3},          {"m/s2", "cm/s2", 1e-2}, {"N m", "N mm", 1e-3}};
 
-// "; kPa meant? then write 5000", where that would be a usual value.
+// "; kPa meant? then write 5000", if that would be a usual value.
 std::string unit_question(const Key& key, double value) {
   if (!std::isfinite(key.usual.min)) return "";
   for (const Prefixed& each : kMeant)
@@ -41,7 +41,7 @@ std::string unit_question(const Key& key, double value) {
   return "";
 }
 
-// As much of a word as a sentence needs.
+// Truncates a word for an error message.
 std::string cut(const std::string& word) {
   return word.substr(0, 100);
 }
@@ -129,7 +129,8 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
   std::string best;
   std::size_t least = 1 + std::min<std::size_t>(3, word.size() / 2);
   for (const std::string& name : names) {
-    // Letters changed, added, left out or swapped with their neighbour (optimal string alignment), row by row.
+    // Edit distance: letters changed, added, removed or swapped with their neighbour (optimal string alignment), row by
+    // row.
     std::vector<std::size_t> row(name.size() + 1), before, before_that;
     for (std::size_t j = 0; j <= name.size(); ++j) row[j] = j;
     for (std::size_t i = 1; i <= std::min<std::size_t>(word.size(), 64); ++i) {

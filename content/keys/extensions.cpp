@@ -12,7 +12,7 @@ namespace pliant {
 
 namespace {
 
-// Reads one extension object into its owner, telling `report(pointer, message)` of every fault.
+// Reads one extension object into its owner; calls `report(pointer, message)` for every fault.
 template <class Report>
 class KeyReader {
  public:
@@ -22,11 +22,11 @@ class KeyReader {
   void read(const Json& json, const std::string& pointer) {
     extension_.add(owner_);
     walk(json, "", pointer);
-    // A modulus of 0 is not given.
+    // A modulus of 0 counts as absent.
     if (extension_.name == "deformable" && given("stiffness") && static_cast<LevelNode*>(owner_)->deformable->young > 0)
       report_(pointer, "gives both young and stiffness; keep one, young is calibrated to a stiffness");
     if (const std::string clash = extension_.settle(owner_); !clash.empty()) {
-      const std::string first = clash.substr(0, clash.find(' '));  // the key that it begins with, if any
+      const std::string first = clash.substr(0, clash.find(' '));  // the message begins with the key, if there is one
       report_(given(first.c_str()) ? pointer + "/" + first : pointer, clash);
     }
   }
@@ -75,7 +75,7 @@ class KeyReader {
   std::vector<std::string> given_;
 };
 
-// Every PLIANT_* extension that an object has.
+// Reads every PLIANT_* extension of an object.
 template <class Report>
 void read_all(const Json& extensions, const std::string& pointer, bool on_scene,
               const std::vector<std::string>& node_names, void* owner, const Report& report) {
@@ -93,13 +93,13 @@ void read_all(const Json& extensions, const std::string& pointer, bool on_scene,
   }
 }
 
-// The first fault as an error.
+// Keeps the first fault as an error.
 struct FirstFault {
   std::optional<Error>& error;
   void operator()(const std::string& pointer, const std::string& message) const {
     if (!error) error = Error{pointer, message};
   }
-  void doubt(const std::string&, const std::string&) const {}  // only `validate` asks
+  void doubt(const std::string&, const std::string&) const {}  // only `validate` reports doubts
 };
 struct AllFaults {
   Findings& findings;
@@ -120,11 +120,11 @@ Json& place(Json& json, const std::string& dotted) {
 Json write(const Extension& extension, const void* owner, const void* defaults, const std::set<std::string>& stated,
            const Json& before) {
   Json out = Json::object();
-  // A stiffness that was calibrated follows from `young` again.
+  // A calibrated stiffness is derived from `young` at loading, so it is not saved.
   const bool young = extension.name == "deformable" && static_cast<const LevelNode*>(owner)->deformable->young > 0.0;
   for (const Key& key : extension.keys) {
     if (key.alias || (young && key.name == "stiffness")) continue;
-    if (extension.name == "deformable" && key.name == "young" && !young) continue;  // 0: not given, also where said
+    if (extension.name == "deformable" && key.name == "young" && !young) continue;  // 0: absent, even if written
     const Json value = key.get(owner);
     if (value.is_null() || (value == key.get(defaults) && !stated.contains(extension.name + "." + key.name))) continue;
     place(out, key.name) = value;
@@ -144,7 +144,7 @@ Json write_all(bool on_scene, const Owner& owner, const Json& before) {
     const std::string name = "PLIANT_" + extension.name;
     const bool was = before.is_object() && before.contains(name);
     Json json = write(extension, &owner, &defaults, owner.stated, was ? before[name] : Json());
-    // PLIANT_simulation is always there in memory; it is written only if it says something.
+    // PLIANT_simulation always exists in memory; it is written only if it has keys.
     if (extension.name == "simulation" && json.empty() && !was) continue;
     out[name] = std::move(json);
   }

@@ -6,7 +6,7 @@ namespace pliant {
 
 namespace {
 
-constexpr double kLargestWhole = 9007199254740992.0;  // 2^53: up to here a double holds every integer
+constexpr double kLargestWhole = 9007199254740992.0;  // 2^53: a double represents all integers up to here
 
 }  // namespace
 

@@ -1,11 +1,11 @@
-// Integers of JSON files.
+// Integers in JSON files.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
 namespace pliant {
 
-// Whether a value is an integer. One that stands as 1.0, as languages with one kind of number write it, becomes 1.
+// Whether a value is an integer. 1.0, as written by languages with one number type, is replaced by 1.
 bool as_integer(nlohmann::json& json);
 
 }  // namespace pliant

@@ -8,8 +8,8 @@
 namespace pliant {
 namespace {
 
-constexpr int kCircles = 16;  // of contact, evenly: d' over Hertz's is constant between them
-// Gauss and Legendre's on [0, 1].
+constexpr int kCircles = 16;  // evenly spaced contact radii; the ratio of d' to Hertz's is constant between them
+// Gauss-Legendre rule on [0, 1].
 constexpr double kAt[4] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
 constexpr double kWeight[4] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269};
 
@@ -21,7 +21,7 @@ double hertz(double radius, double depth) {
 
 LayerSphere::LayerSphere(double radius, double thickness, double poisson, double deepest) : radius_(radius) {
   if (!(thickness > 0.0)) return;
-  // On a layer d grows slower with a than on a half-space, at most by half (d = a^2 / 2R where it is thin).
+  // On a layer d grows more slowly with a than on a half-space, at least half as fast (d = a^2 / 2R for a thin one).
   const double widest = std::sqrt(2 * radius * deepest), step = widest / kCircles;
   std::vector<double> growth;  // [1] d' over 2 a / R, between circles
   double depth = 0.0, force = 0.0;
@@ -29,10 +29,10 @@ LayerSphere::LayerSphere(double radius, double thickness, double poisson, double
   over_hertz_.push_back(1.0);
   for (int i = 0; i < kCircles; ++i) {
     const double r = (i + 1) * step;
-    double known = 0.0, last = 0.0;  // of r^2 / 2R: by the circles before, and by this one per growth
+    double known = 0.0, last = 0.0;  // parts of r^2 / 2R: of the previous circles, and of this one per unit growth
     for (int j = 0; j <= i; ++j)
       for (int q = 0; q < 4; ++q) {
-        // u has a root's slope beside the punch: toward r by squares.
+        // u has a square-root slope at the punch's edge: substitute squares towards r.
         const double s = kAt[q], from = (i - j + 1) * step, to = (i - j) * step;
         const double near = std::sqrt(to) + s * (std::sqrt(from) - std::sqrt(to)), a = r - near * near;
         const double length = kWeight[q] * 2 * near * (std::sqrt(from) - std::sqrt(to));
@@ -56,7 +56,7 @@ double LayerSphere::force(double depth) const {
   const auto above = std::min<std::size_t>(
       depth_.size() - 1,
       static_cast<std::size_t>(std::upper_bound(depth_.begin() + 1, depth_.end(), depth) - depth_.begin()));
-  // Even steps of the contact's radius: in the root of the depth.
+  // The table has even steps of the contact radius: interpolate in the square root of the depth.
   const double low = std::sqrt(depth_[above - 1]), high = std::sqrt(depth_[above]);
   const double share = (std::sqrt(depth) - low) / (high - low);
   return hertz(radius_, depth) * (over_hertz_[above - 1] + share * (over_hertz_[above] - over_hertz_[above - 1]));

@@ -14,14 +14,14 @@ namespace pliant {
 
 class LayerSphere {
  public:
-  // radius, thickness (0: deep) and the largest depth that will be asked for [m].
+  // radius, thickness (0: half-space) and the largest depth needed [m].
   LayerSphere(double radius, double thickness, double poisson, double deepest);
-  // [m2] at a depth [m] from 0 to `deepest`: times E* it is the force.
+  // [m2] at a depth [m] from 0 to `deepest`; times E* it is the force.
   double force(double depth) const;
 
  private:
   double radius_;
-  std::vector<double> depth_, over_hertz_;  // [m]; [1] F over Hertz's; none where it is deep
+  std::vector<double> depth_, over_hertz_;  // [m]; [1] F over Hertz's; empty for a half-space
 };
 
 }  // namespace pliant

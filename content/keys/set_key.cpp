@@ -1,4 +1,4 @@
-// --set NODE.EXT.KEY=VALUE, over the table of extensions.
+// --set NODE.EXT.KEY=VALUE, using the table of extensions.
 #include <algorithm>
 
 #include "content/gltf/gltf_document.h"
@@ -14,13 +14,13 @@ struct Assignment {
   Json value;
 };
 
-// A value is JSON where it parses as JSON, otherwise the text itself: 300, true, [1, 0, 0], sls.
+// Parses the value as JSON; if that fails, takes the text itself: 300, true, [1, 0, 0], sls.
 Json value_of_text(const std::string& text) {
   Json json = Json::parse(text, nullptr, false);
   return json.is_discarded() ? Json(text) : json;
 }
 
-// Node names may contain dots: the node is what stands before an extension's name.
+// Node names may contain dots: the node is the part before an extension's name.
 bool split(const Level& level, const std::string& path, Assignment& out) {
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
     const std::size_t end = path.find('.', dot + 1);
@@ -33,7 +33,7 @@ bool split(const Level& level, const std::string& path, Assignment& out) {
     for (const LevelNode& node : level.nodes)
       if (node.name == out.node) return true;
   }
-  // Not understood: the first two dots divide it, for the sentence that says what is wrong.
+  // Not understood: split at the first two dots for the error message.
   const std::size_t first = path.find('.');
   const std::size_t second = first == std::string::npos ? first : path.find('.', first + 1);
   if (second == std::string::npos) return false;
@@ -41,7 +41,7 @@ bool split(const Level& level, const std::string& path, Assignment& out) {
   return true;
 }
 
-// A node is named as in a file: by name or by glTF number. A name that is a number comes first.
+// A node is referred to as in a file, by name or by glTF number; a matching name has precedence.
 Json name_of_node(const Level& level, const std::string& text) {
   const auto is_named = [&](const LevelNode& node) { return node.name == text; };
   if (std::any_of(level.nodes.begin(), level.nodes.end(), is_named)) return text;
@@ -52,7 +52,7 @@ Json name_of_node(const Level& level, const std::string& text) {
   return text;
 }
 
-// An extension that was set somewhere, and by what at last.
+// An extension that was modified, and the last assignment to it.
 struct Touched {
   const Extension* extension;
   void* owner;
@@ -61,7 +61,7 @@ struct Touched {
 
 void assign(const Extension& extension, const Key& key, const Json& value, void* owner, const std::string& where,
             std::vector<Touched>& touched) {
-  // Stiffness and Young's modulus stand for each other: the one that is set last holds.
+  // Stiffness and Young's modulus exclude each other: the last one set wins.
   if (extension.name == "deformable" && key.name == "stiffness")
     static_cast<LevelNode*>(owner)->deformable->young = 0.0;
   key.set(owner, value);
@@ -74,7 +74,7 @@ void assign(const Extension& extension, const Key& key, const Json& value, void*
   touched.push_back({&extension, owner, where});
 }
 
-// One assignment; what follows from it and what clashes is left to the end, as in a file.
+// Applies one assignment. Derived values and conflicts are handled at the end, as for a file.
 Status set_one(Level& level, const std::string& assignment, std::vector<Touched>& touched) {
   const std::string where = "--set " + assignment;
   const std::size_t equals = assignment.find('=');
@@ -127,7 +127,7 @@ Status set_one(Level& level, const std::string& assignment, std::vector<Touched>
 }  // namespace
 
 Status set_keys(Level& level, const std::vector<std::string>& assignments) {
-  // Nothing changes unless everything can.
+  // All assignments take effect, or none.
   Level changed;
   changed.nodes = level.nodes;
   changed.environment = level.environment;

@@ -1,4 +1,5 @@
-// What a level's author has said (LevelNode::stated, Level::stated), when components come and go.
+// Maintains the list of keys that the level's author has set (LevelNode::stated, Level::stated) when components are
+// added or removed.
 #pragma once
 
 #include <set>
@@ -6,7 +7,7 @@
 
 namespace pliant {
 
-// A component that goes or begins anew takes with it what was said of its keys; `extension` is without PLIANT_.
+// Removing or resetting a component also removes its keys from the list; `extension` is without PLIANT_.
 inline void forget_stated(std::set<std::string>& stated, const std::string& extension) {
   std::erase_if(stated, [&](const std::string& key) { return key.starts_with(extension + "."); });
 }

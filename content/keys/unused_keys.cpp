@@ -11,14 +11,14 @@ namespace pliant {
 
 namespace {
 
-// When a key is read by nobody, for those that are not always read. A key without a row is read wherever it stands.
+// When a key has no effect. A key without a row always has one.
 struct UnusedRow {
   const char *extension, *key;
   bool (*unused)(const LevelNode&);
   const char* what;
 };
 
-// A law that a program has registered may read any constant.
+// A registered law may read any constant.
 bool is_law_other_than(SpringLaw law, const LevelNode& node) {
   return node.deformable->spring != law && node.deformable->spring <= SpringLaw::kStandardLinearSolid;
 }
@@ -66,7 +66,7 @@ constexpr UnusedRow kRows[] = {
      "is not needed where `mass` is given; remove one of them"},
 };
 
-// Every value that the owner has other than a fresh one.
+// Whether the owner's value differs from the default.
 template <class Owner>
 bool is_set(const Extension& extension, const Key& key, const Owner& owner) {
   Owner fresh;

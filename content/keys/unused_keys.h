@@ -1,5 +1,4 @@
-// Settings that are written but read by nobody in the scene that they stand in: a key of another law, of another
-// driver, of a device that moves nothing.
+// Finds settings without effect in their scene: a key of another law or driver, or of a device that moves nothing.
 #pragma once
 
 #include <string>
@@ -10,16 +9,16 @@
 namespace pliant {
 
 struct UnusedKey {
-  std::int32_t node = -1;  // Level node; -1: of the scene
+  std::int32_t node = -1;  // Level node; -1: the scene
   std::string pointer;     // "PLIANT_haptic_device/scale"; the key as in the table, relaxation.time
-  std::string what;        // why it has no effect; what to do
+  std::string what;        // why it has no effect, and what to do
 };
 
-// Keys whose value is other than the default, and devices as a whole; in the order of the nodes, the scene's last.
-// Only nodes in the scene.
+// Keys that differ from their default, and whole devices, in the order of nodes, then the scene. Only nodes in the
+// scene.
 std::vector<UnusedKey> find_unused_keys(const Level& level);
 
-// The same as notes: each key once, with how many other nodes have it too.
+// The same as notes: each key once, with the number of other nodes that have it.
 std::vector<std::string> unused_key_notes(const Level& level);
 
 }  // namespace pliant

@@ -13,10 +13,10 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kLooked = 96;  // vertices of a mesh that are looked at
+constexpr std::size_t kLooked = 96;  // vertices of a mesh that are tested
 constexpr std::size_t kNamedParts = 3;
 
-// The vertices of a mesh, spread evenly over its list, in another frame.
+// Vertices of a mesh, spread evenly over its list, transformed to another frame.
 std::vector<dvec3> some_vertices(const LevelMesh& mesh, const dmat4& frame) {
   std::size_t count = 0;
   for (const Primitive& p : mesh.primitives) count += p.position.size();
@@ -33,14 +33,14 @@ bool in_box(const Box& box, dvec3 p) {
   return glm::all(glm::greaterThanEqual(p, dvec3(box.min))) && glm::all(glm::lessThanEqual(p, dvec3(box.max)));
 }
 
-// Finds the nearest of many points: they lie in cells of a grid, and cells are looked through shell by shell.
+// Finds the nearest of many points with a grid, cell shell by cell shell.
 class NearestVertex {
  public:
   explicit NearestVertex(const Mesh& mesh) : mesh_(mesh) {
     cell_ = std::max(1e-9, 2.0 * static_cast<double>(mesh.mean_edge));
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) cells_[key(place(dvec3(mesh.position(v))))].push_back(v);
   }
-  // Within `reach` [m]; kBorder: none is.
+  // Within `reach` [m]; kBorder: none.
   std::uint32_t find(dvec3 p, double reach, double& away) const {
     const glm::i64vec3 at = place(p);
     const auto shells = static_cast<std::int64_t>(std::min(64.0, std::ceil(reach / cell_)));

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMostAlternatives = 8, kMostWrappers = 8, kLongestWord = 40, kLongestShown = 80;
 
 constexpr std::array<std::string_view, 4> kKinds{"any-force", "any-pose", "any", "mouse"};
-// Drivers of hardware that is plugged in, or of a maker's service: their first device.
+// Drivers of directly connected hardware or of a vendor's service; they open their first device.
 constexpr std::array<std::string_view, 9> kHardware{"spacemouse", "dualsense", "dualshock4",     "gamepad", "polhem",
                                                     "falcon",     "haply",     "forcedimension", "touch"};
 constexpr std::array<std::string_view, 15> kSimulatedKeys{
@@ -44,7 +44,7 @@ std::vector<std::string_view> parts_of(std::string_view text, char mark) {
   }
 }
 
-// Words and numbers with their units: nothing that a path, an address or a shell needs beyond them.
+// Only words and numbers with units: excludes the characters that paths, addresses and shells need.
 bool plain(std::string_view word) {
   const auto harmless = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -54,7 +54,7 @@ bool plain(std::string_view word) {
 }
 
 struct Option {
-  std::string_view key, value;  // without '=' the key is empty
+  std::string_view key, value;  // empty if there is no '='
 };
 Option option(std::string_view text) {
   const std::size_t equals = text.find('=');
@@ -62,7 +62,7 @@ Option option(std::string_view text) {
   return {bare(text.substr(0, equals)), bare(text.substr(equals + 1))};
 }
 
-// "" and the words added to `out`, or what it does that a level may not.
+// Returns "" and appends the words to `out`, or why a level may not request this.
 std::string wrapper(std::string_view words, std::string& out) {
   bool first = true;
   for (const std::string_view piece : parts_of(words, ',')) {
@@ -106,7 +106,7 @@ std::string kind(std::string_view what, std::string& out) {
   return "is no kind of device";
 }
 
-// "" and what is to be opened, or what it does that a level may not.
+// Returns "" and what to open, or why a level may not request this.
 std::string alternative(std::string_view text, std::string& out) {
   const std::vector<std::string_view> parts = parts_of(text, '|');
   if (std::string wrong = kind(parts.front(), out); !wrong.empty()) return wrong;
@@ -120,7 +120,7 @@ std::string shown(std::string_view text) {
   return printable(std::string(text.substr(0, kLongestShown)) + (text.size() > kLongestShown ? "..." : ""));
 }
 
-// In single quotes a shell reads nothing but the quote itself.
+// Within single quotes a shell interprets only the quote itself.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : printable(text)) out += c == '\'' ? std::string("'\\''") : std::string(1, c);

@@ -1,6 +1,6 @@
-// What a level may ask a run for. A level is a file of whoever wrote it, and its PLIANT_haptic_device/id may name kinds
-// of devices only: addresses, ports, serial lines, files, and wrappers that touch files are the user's word (`--probe`,
-// an answer to a question). One place decides, for `run`, the window, the editor, `validate` and `inspect`.
+// The devices that a level may request. A level is untrusted, so PLIANT_haptic_device/id may name kinds of devices
+// only. Addresses, ports, serial lines, files, and wrappers that use files need the user's consent (`--probe`, or an
+// answer to a question). `run`, the window, the editor, `validate` and `inspect` all use this decision.
 #pragma once
 
 #include <string>
@@ -12,24 +12,25 @@
 namespace pliant {
 
 struct DeviceRequest {
-  std::string allowed;               // the alternatives that a level may name, as they are to be opened; "": none
-  std::vector<std::string> refused;  // of each other one a sentence: "`network:10.0.0.7:17716` names an address, ..."
+  std::string allowed;               // the alternatives that a level may request, as they are opened; "": none
+  std::vector<std::string> refused;  // one sentence per rejected alternative: "`network:10.0.0.7:17716` names an
+                                     // address, ..."
 };
 
-// Of the text alone. What is not known to be harmless is refused, whatever its spelling.
+// Decides from the text alone. Anything not known to be harmless is rejected.
 DeviceRequest device_request(std::string_view id);
 
 // A device of the level with an `id`.
 struct LevelRequest {
   std::size_t node = 0;  // its node
-  std::string moves;     // the probe or tool that it moves; of none, its node's own name
-  std::string id;        // as the level says it
-  bool used = false;     // its driver is `external`: the id is read
+  std::string moves;     // the probe or tool that it moves; if none, its node's own name
+  std::string id;        // as in the level
+  bool used = false;     // its driver is `external`, so the id is used
   DeviceRequest request;
 };
 std::vector<LevelRequest> device_requests(const Level& level);
 
-// "give it yourself with --probe tip='device:network:10.0.0.7:17716'", fit for a shell whatever the level's names are.
+// "give it yourself with --probe tip='device:network:10.0.0.7:17716'", quoted for a shell.
 std::string device_cure(const LevelRequest& asked);
 
 }  // namespace pliant

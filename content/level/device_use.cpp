@@ -22,7 +22,7 @@ std::vector<DeviceFault> find_shared_devices(const Level& level) {
   std::vector<DeviceFault> faults;
   const auto use = [&](std::size_t n, const std::string& named) {
     const auto found = named.empty() ? by_name.end() : by_name.find(named);
-    if (!named.empty() && found == by_name.end()) return;  // spawn says so
+    if (!named.empty() && found == by_name.end()) return;  // spawn reports it
     const std::size_t device = named.empty() ? n : found->second;
     if (!level.nodes[device].device) return;
     const auto [taken, fresh] = moves.try_emplace(device, n);
@@ -49,7 +49,7 @@ std::vector<DeviceFault> find_unmoved_probes(const Level& level) {
     std::size_t mover = n;
     if (!node.probe_device.empty()) {
       const auto named = by_name.find(node.probe_device);
-      if (named == by_name.end()) continue;  // spawn says so
+      if (named == by_name.end()) continue;  // spawn reports it
       mover = named->second;
     }
     const std::optional<HapticDevice>& device = level.nodes[mover].device;

@@ -1,5 +1,5 @@
-// Which device moves which probe or tool. One device moves one of them: two would each be told that the whole of its
-// force is theirs, and only the last one's would leave.
+// Which device moves which probe or tool. A device may move only one: with two, each would compute a full force, and
+// only the last would be rendered.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@ namespace pliant {
 
 struct DeviceFault {
   std::size_t node;  // a probe or tool
-  std::string what;  // as what follows "node X"
+  std::string what;  // text that follows "node X"
 };
 
-// Probes and tools whose device moves another one already. In the order of the nodes; only those of the scene.
+// Probes and tools whose device already moves another one. In the order of the nodes; only those of the scene.
 std::vector<DeviceFault> find_shared_devices(const Level& level);
 
-// Probes in the scene that no device moves, or one whose driver is `null`: they stand where they are.
+// Probes in the scene with no device, or with driver `null`: they do not move.
 std::vector<DeviceFault> find_unmoved_probes(const Level& level);
 
 }  // namespace pliant

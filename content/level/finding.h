@@ -1,4 +1,4 @@
-// What a check found in a file: where (a JSON pointer, or empty for the file as a whole), what, and how bad.
+// A finding of a check of a file: place (a JSON pointer, or empty for the whole file), message and severity.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@
 namespace pliant {
 
 enum class Severity {
-  kError,    // the file is refused
-  kWarning,  // read, but not as its author may expect
+  kError,    // the file is rejected
+  kWarning,  // read, but perhaps not as its author expects
   kNote,     // worth knowing
 };
 
 struct Finding {
   Severity severity = Severity::kError;
   std::string pointer;  // JSON pointer, e.g. /meshes/0/primitives/0
-  std::string message;  // what is wrong, and after a semicolon what to do
+  std::string message;  // the fault, and after a semicolon the remedy
 };
 using Findings = std::vector<Finding>;
 

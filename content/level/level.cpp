@@ -37,7 +37,7 @@ bool has_area(const LevelMesh& mesh, const dmat3& frame) {
 }
 
 void make_touchable(Level& level) {
-  std::vector<dmat3> frame;  // of each node; parents stand before children
+  std::vector<dmat3> frame;  // per node; parents come before children
   for (LevelNode& node : level.nodes) {
     dmat3 own = glm::mat3_cast(dquat(node.local.rotation));
     for (int i = 0; i < 3; ++i) own[i] *= static_cast<double>(node.local.scale[i]);

@@ -1,5 +1,5 @@
-// A level as a document: what a glTF file says, decoded and checked, before anything is welded, reordered or simulated.
-// load_level reads it, save_level writes what was read, spawn turns it into a World.
+// A level as a document: the decoded and checked content of a glTF file, before any processing for simulation.
+// load_level reads it, save_level writes it, spawn turns it into a World.
 #pragma once
 
 #include <filesystem>
@@ -36,12 +36,12 @@ struct Primitive {
   std::vector<float> handle;         // _HANDLE
   std::vector<std::uint32_t> index;  // three per triangle
   std::int32_t material = -1;
-  std::int32_t source = -1;  // its number in the mesh that LevelMesh::source names; -1: new
+  std::int32_t source = -1;  // its index in the mesh LevelMesh::source; -1: new
 };
 
 struct NodeMotion {       // PLIANT_motion
   std::string script;     // .csv, relative to the level; "": animations
-  std::string animation;  // its name; "": every one that names the node
+  std::string animation;  // its name; "": every animation of this node
   bool repeat = true;
   double speed = 1.0;  // [1]
 };
@@ -50,7 +50,7 @@ struct LevelMesh {
   std::string name;
   std::vector<Primitive> primitives;
   std::int32_t source = -1;   // /meshes/i of Level::source; -1: new
-  std::int32_t skinned = -1;  // /nodes/i whose skin has moved these vertices to where they are at rest; -1: none
+  std::int32_t skinned = -1;  // /nodes/i whose skin at rest deformed these vertices; -1: none
 };
 
 struct LevelNode {
@@ -58,7 +58,7 @@ struct LevelNode {
   std::int32_t parent = -1;
   std::vector<std::int32_t> children;
   LocalTransform local;
-  bool in_scene = true;    // reached from the scene that is shown
+  bool in_scene = true;    // in the shown scene
   std::int32_t mesh = -1;  // into Level::meshes
   std::optional<Light> light;
   std::optional<Camera> camera;
@@ -70,13 +70,13 @@ struct LevelNode {
   std::optional<Handle6> handle;         // PLIANT_handle
   std::optional<RigidBody> rigid_body;   // PLIANT_rigid_body
   std::optional<NodeMotion> motion;      // PLIANT_motion
-  std::int32_t source = -1;              // /nodes/i of Level::source; -1: new, as a copy of a node is
-  std::set<std::string> stated;          // keys that a file or --set has said, at their default too: deformable.shape
+  std::int32_t source = -1;              // /nodes/i of Level::source; -1: new, for instance a copy
+  std::set<std::string> stated;          // keys set by the file or --set, even to their default: deformable.shape
 
-  bool has_pliant() const;  // any of those
+  bool has_pliant() const;  // any of the above
 };
 
-// What an animation does to one node. Times in seconds from 0; values as glTF has them, rotations x, y, z, w.
+// Channels of an animation. Times in seconds from 0; values as in glTF, rotations as x, y, z, w.
 enum class NodeProperty : std::uint8_t { kTranslation, kRotation, kScale };
 struct LevelChannel {
   std::int32_t node = -1;  // into Level::nodes
@@ -85,7 +85,7 @@ struct LevelChannel {
 };
 struct LevelAnimation {
   std::string name;
-  double length = 0.0;  // [s] of the longest channel: all of them start over together
+  double length = 0.0;  // [s] of the longest channel: all channels restart together
   std::vector<LevelChannel> channels;
   std::int32_t source = -1;  // /animations/i of Level::source; -1: new
 };
@@ -100,45 +100,44 @@ struct SourceDocument;  // the parsed glTF, kept so that saving loses nothing
 
 struct Level {
   std::string name;   // file name without extension
-  std::string about;  // what it shows, in a sentence: asset.extras.about; "": not said
+  std::string about;  // description in a sentence, asset.extras.about; "": none
   std::filesystem::path path;
-  std::vector<LevelNode> nodes;  // parents stand before children
+  std::vector<LevelNode> nodes;  // parents come before children
   std::vector<LevelMesh> meshes;
   std::vector<Material> materials;
   std::vector<Image> images;
   std::vector<LevelAnimation> animations;
   std::optional<LevelEnvironment> environment;
   Simulation simulation;         // PLIANT_simulation
-  std::set<std::string> stated;  // its keys that a file or --set has said: simulation.soft_step
+  std::set<std::string> stated;  // keys set by the file or --set: simulation.soft_step
   std::vector<std::string>
-      notes;  // what was read differently than a user might expect (collision meshes, skipped points...)
-  std::size_t document_notes = 0;  // of these, the first are warnings of the document (open_gltf)
-  // The glTF it came from. While it is there, save_level writes into it what has changed since and keeps the rest:
-  // extras, extensions that Pliant does not know, skins, morph targets. The `source` of a node, mesh, primitive or
-  // animation says which one of the document it is; what comes from another Level has -1. Nodes may be added, removed,
-  // reordered (parents before children), reparented, renamed and copied, meshes added, painted and changed. Materials
-  // and images are those of the document by number; new ones are appended. Without it, everything is written from the
-  // Level alone.
+      notes;  // notes on conversions that a user might not expect (collision meshes, skipped points...)
+  std::size_t document_notes = 0;  // how many of these, at the front, are warnings of the document (open_gltf)
+  // The source glTF document. If present, save_level updates it with all changes and keeps the rest: extras, unknown
+  // extensions, skins, morph targets. `source` of a node, mesh, primitive or animation identifies the document's
+  // element; -1: from elsewhere. Nodes may be added, removed, reordered (parents before children), reparented, renamed
+  // and copied; meshes may be added, painted and changed. Materials and images keep the document's numbers; new ones
+  // are appended. Without a source document, everything is written from the Level.
   std::shared_ptr<SourceDocument> source;
 
-  bool has_pliant() const;  // any PLIANT_* extension; false: a bare mesh
+  bool has_pliant() const;  // has any PLIANT_* extension; false: a bare mesh
 };
 
-// Node-to-world matrices of nodes whose parents stand before them.
+// Node-to-world matrices; parents must come before their children.
 std::vector<dmat4> world_matrices(const std::vector<LevelNode>& nodes);
 
-// Whether any triangle of a mesh has an area in a node's frame; false: a placeholder, neither shown nor touched.
+// Whether any triangle of a mesh has an area in a node's frame. False: a placeholder, neither shown nor touched.
 bool has_area(const LevelMesh& mesh, const dmat3& frame);
 
-// A bare mesh becomes touchable: every node whose mesh has an area gets a default Deformable.
+// Makes a bare mesh touchable: every node whose mesh has an area gets a default Deformable.
 void make_touchable(Level& level);
 
-// Level -> World: nodes become entities (Name, transforms, Hierarchy), meshes are welded, cleaned, put in Hilbert order
-// and zoned, scale is baked in; scripts are read. Progress over a second goes to stderr. The World is not yet prepared
-// for touch (prepare_touch), and its environment has no panorama (level_file.h: spawn). `notes` gets what was read
-// differently than a user might expect of the files that the level names.
+// Level -> World. Nodes become entities (Name, transforms, Hierarchy). Meshes are welded, cleaned, Hilbert-ordered and
+// divided into zones; scale is baked in; scripts are read. Progress messages go to stderr after a second. The World is
+// not yet prepared for touch (prepare_touch) and has no panorama (level_file.h: spawn). `notes` receives unexpected
+// conversions of referenced files.
 Result<World> spawn_level(const Level& level, std::vector<std::string>* notes = nullptr);
-// Whether what the nodes make of the meshes is within limits (content/files/limits.h): said before a mesh is built.
+// Checks the size of all instances against the limits (content/files/limits.h), before a mesh is built.
 Status check_level_size(const Level& level);
 
 }  // namespace pliant

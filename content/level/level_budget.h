@@ -1,6 +1,6 @@
-// How much a level makes of its meshes: a small file can name a mesh often. Spawn asks before it builds anything, and
-// again where a mesh was cut finer. Every question is answered by a sentence, "" where it is within limits
-// (content/files/limits.h).
+// The total size of a level's mesh instances: a small file can instance a mesh often. Spawn checks it before building,
+// and again after refining a mesh. Each function returns "" if the size is within the limits (content/files/limits.h),
+// else an error sentence.
 #pragma once
 
 #include <string>
@@ -27,7 +27,7 @@ class LevelBudget {
 
  private:
   std::vector<MeshSize> sizes_;
-  MeshSize own_;  // of all meshes, each once
+  MeshSize own_;  // of all meshes, each counted once
 };
 
 }  // namespace pliant

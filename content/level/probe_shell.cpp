@@ -7,16 +7,16 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint32_t kAround = 16, kRings = 6;  // of vertices: about the axis, in each half from pole to equator
+constexpr std::uint32_t kAround = 16, kRings = 6;  // vertices around the axis; rings in each half from pole to equator
 
-// About the +Y axis from `from` to `from + length`; of no length, a sphere.
+// A capsule along +Y from `from` to `from + length`; a sphere if length is 0.
 void add_capsule(dvec3 from, double radius, double length, Primitive& out) {
   const auto first = static_cast<std::uint32_t>(out.position.size());
   const auto add = [&](double polar, double around, double along) {
     const dvec3 way(std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around));
     out.position.emplace_back(from + dvec3(0, along, 0) + radius * way);
   };
-  // From the upper pole down; where there is a shaft, the equator twice.
+  // From the upper pole down; a capsule has two equators.
   const std::uint32_t rings = 2 * kRings - 1 + (length > 0.0 ? 1u : 0u);
   add(0.0, 0.0, length);
   for (std::uint32_t r = 1; r <= rings; ++r) {

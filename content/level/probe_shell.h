@@ -1,4 +1,4 @@
-// A probe's surface as a mesh, for where it meets soft and rigid bodies: a sphere or a capsule at every tip.
+// A probe's surface mesh for contact with soft and rigid bodies: a sphere or a capsule at every tip.
 #pragma once
 
 #include "components/mesh.h"
@@ -7,10 +7,10 @@
 
 namespace pliant {
 
-// [m] What a point is among bodies: two surfaces meet, and a point has none.
+// [m] Radius that a point probe gets for contact with bodies, which is between two surfaces.
 inline constexpr double kPointShell = 5e-4;
 
-// Probe frame, outward normals, closed. Vertices lie on the surface, faces up to 2 % of the radius below it.
+// Probe frame, outward normals, closed. Vertices lie on the surface; faces lie up to 2 % of the radius below it.
 Result<Mesh> probe_shell(const Probe& probe);
 
 }  // namespace pliant

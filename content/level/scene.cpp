@@ -1,4 +1,4 @@
-// A scene is a Level that is written in code (pliant/scene.h).
+// A scene is a Level built by code (pliant/scene.h).
 #include "pliant/scene.h"
 
 #include "content/level/level.h"

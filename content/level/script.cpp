@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8's, as spreadsheets write it
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, as written by spreadsheet programs
 constexpr std::string_view kPositions = "time_s,x,y,z", kPoses = "time_s,x,y,z,qw,qx,qy,qz";
 
 std::string_view trim(std::string_view s) {
@@ -18,7 +18,7 @@ std::string_view trim(std::string_view s) {
                                          : s.substr(begin, s.find_last_not_of(" \t\r") - begin + 1);
 }
 
-// The next line of `text`, which is shortened by it.
+// Removes the next line from `text` and returns it.
 std::string_view take_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   const std::string_view line = text.substr(0, end);
@@ -26,14 +26,14 @@ std::string_view take_line(std::string_view& text) {
   return trim(line);
 }
 
-// The names of a header with nothing around them: "time_s, x" is "time_s,x".
+// Removes blanks from a header: "time_s, x" becomes "time_s,x".
 std::string without_blanks(std::string_view line) {
   std::string names(line);
   std::erase_if(names, [](char c) { return c == ' ' || c == '\t'; });
   return names;
 }
 
-// Exactly `count` finite numbers between commas.
+// Parses exactly `count` finite numbers separated by commas.
 bool parse_row(std::string_view line, double* values, int count) {
   for (int i = 0; i < count; ++i) {
     const std::size_t comma = line.find(',');

@@ -1,4 +1,4 @@
-// Scripts: CSV files that say where a probe is, and when.
+// Scripts: CSV files with the poses of a probe over time.
 #pragma once
 
 #include <filesystem>
@@ -10,20 +10,19 @@
 
 namespace pliant {
 
-// Reads `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz` (a header line with exactly these names, then rows of numbers):
-// seconds, strictly ascending; metres, world frame; rotation to world, normalised here. Lines that start with # and
-// empty lines are skipped; a UTF-8 byte order mark, blanks around names and numbers, and CRLF are read over. At most 64
-// MiB and 4,000,000 rows. Errors name the file and the line.
+// Reads `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz`: a header line with exactly these names, then rows of numbers.
+// Times in seconds, strictly ascending; positions in metres, world frame; rotations to world, normalised here. Ignores
+// empty lines, lines that start with #, a UTF-8 byte order mark, blanks and CR. At most 64 MiB and 4,000,000 rows.
+// Errors name the file and the line.
 Result<Path> load_script(const std::filesystem::path& path);
 
-// The same from text; `where` stands in front of errors.
+// The same from text; errors begin with `where`.
 Result<Path> parse_script(std::string_view text, const std::string& where);
 
-// The scripts of a level: a file is read once, however many nodes name it, and all rows together are at most
-// limits::kScriptRows.
+// The scripts of a level. Each file is read once; all rows together are at most limits::kScriptRows.
 class ScriptLibrary {
  public:
-  // The script in a file. Its rows count once, and again whenever who asks makes a copy of them.
+  // The script in a file. Its rows count once, and again each time that the caller copies them (`copied`).
   Result<const Path*> read(const std::filesystem::path& file, bool copied);
 
  private:

@@ -1,5 +1,5 @@
-// What a surface would be as tissue, before a level says so: for `inspect`, and for an editor that shows it while
-// somebody moves a slider. Nothing is embedded and no world is made, so it takes a second at most (lattice.h).
+// Previews the tetrahedra of a surface, for `inspect` and for an editor while a slider is moved. Embeds nothing and
+// creates no world, so it takes at most a second (lattice.h).
 #pragma once
 
 #include <stop_token>
@@ -10,27 +10,27 @@
 namespace pliant {
 
 struct SoftPreview {
-  double cell = 0.0;  // [m] of the lattice, also where the body names none
+  double cell = 0.0;  // [m] of the lattice, also if the body specifies none
   std::size_t tetrahedra = 0;
   std::size_t pinned = 0, on_handle = 0;  // nodes
-  std::uint32_t parts = 0;                // that are kept
-  std::uint32_t parts_lost = 0;           // too small to keep (tet_parts.h)
+  std::uint32_t parts = 0;                // kept
+  std::uint32_t parts_lost = 0;           // dropped as too small (tet_parts.h)
   TetQuality quality;
   double volume = 0.0;   // [m3]
-  double wall = 0.0;     // [m] thickness of the thin wall that the surface is; 0: it is none
-  double step_ms = 0.0;  // [ms] of a soft step on this machine, pressed by a tool: an estimate (step_cost.h)
-  std::vector<std::string> findings;  // as inspect says them, without the body's name
+  double wall = 0.0;     // [m] wall thickness; 0: not a thin wall
+  double step_ms = 0.0;  // [ms] estimated time of a soft step on this machine, with tool contact (step_cost.h)
+  std::vector<std::string> findings;  // as in inspect, without the body's name
 
-  TetMesh body;  // without embedding, its nodes in the order free, handle, pinned
+  TetMesh body;  // without embedding; nodes in the order free, handle, pinned
 
-  // To draw, object frame.
+  // For drawing, object frame.
   std::vector<dvec3> nodes;                         // [m]
   std::vector<std::array<std::uint32_t, 2>> edges;  // of tetrahedra, each once; ascending
 };
 
-// `surface`: the node's mesh in the object frame (build_mesh). `body.cell` and what else is 0 is found as a run finds
-// it. `handle`: null where the body has none. `stop`: ends it early, from any thread, with an error that says so.
-// Errors: those that a run would end with. The same whatever the number of threads, but for step_ms.
+// `surface`: the node's mesh in the object frame (build_mesh). `body.cell` and other zero values are chosen as for a
+// run. `handle`: null if the body has none. `stop`: cancels from any thread; returns an error. Other errors are those
+// of a run. The result does not depend on the number of threads, except step_ms.
 Result<SoftPreview> preview_soft_body(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle = nullptr,
                                       const std::stop_token& stop = {});
 

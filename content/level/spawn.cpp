@@ -1,4 +1,4 @@
-// Level -> World. Nodes become entities in order; meshes are built once for every way in which a node scales them.
+// Level -> World. Nodes become entities in order. A mesh is built once for every distinct scale of its nodes.
 #include <fmt/format.h>
 
 #include <array>
@@ -17,6 +17,7 @@
 #include "content/level/level_budget.h"
 #include "content/level/probe_shell.h"
 #include "content/level/script.h"
+#include "content/level/soft_store.h"
 #include "content/level/spawn_motion.h"
 #include "content/level/spawn_soft.h"
 #include "content/mesh/mesh_build.h"
@@ -26,8 +27,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kDentDepth = 1.5;   // [1] of a surface's reach: so deep its dent takes along what lies below
-constexpr double kFlatScale = 1e-9;  // [1] of the diagonal cubed: no volume
+constexpr double kDentDepth = 1.5;   // [1] of a surface's reach: depth up to which a dent moves carried parts below it
+constexpr double kFlatScale = 1e-9;  // [1] of the diagonal cubed: below it, no volume
 
 dmat4 inverse(const Pose& pose) {
   const dquat back = glm::conjugate(pose.rotation);
@@ -42,11 +43,11 @@ std::string with_commas(std::size_t number) {
   return text;
 }
 
-// What nodes have in common that share what was built of a mesh.
+// Properties that nodes must have in common to share a built mesh.
 struct TouchShape {
   bool touchable;
   double crease_angle;              // [rad]
-  std::array<float, 16> to_object;  // the frame that is baked into the mesh
+  std::array<float, 16> to_object;  // the transform baked into the mesh
   auto operator<=>(const TouchShape&) const = default;
 };
 
@@ -56,10 +57,10 @@ mat4 matrix_of(const TouchShape& shape) {
   return m;
 }
 
-// A mesh as some node wants it.
+// A mesh as built for a node.
 struct Baked {
-  std::optional<DentSize> dents;  // that must show; nothing: none need
-  bool refined = false;           // cut finer for that
+  std::optional<DentSize> dents;  // dents that the mesh must resolve; empty: none
+  bool refined = false;           // refined for that
   Handle<Mesh> touch;
   Handle<DrawMesh> draw;
 };
@@ -99,7 +100,7 @@ class Spawner {
     if (!shared.empty()) return at(shared.front().node, shared.front().what);
     return Done{};
   }
-  // Only the count of run(). A motion that cannot be made is for run() to refuse: without it nothing moves.
+  // Only the count of run(). run() reports invalid motions; here they count as no motion.
   Status check_size() {
     Result<LevelMotions> motions = make_motions(level_, folder_, scripts_);
     motions_ = motions ? std::move(*motions) : unmoved(level_);
@@ -146,7 +147,7 @@ class Spawner {
     return Done{};
   }
 
-  // Drawable, and Deformable, SoftBody or RigidBody where the node is one.
+  // Adds Drawable, and Deformable, SoftBody or RigidBody if the node has one.
   Status surface(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
     if (node.soft_body) return soft_body(n);
@@ -170,7 +171,7 @@ class Spawner {
       deformable.field = world_.fields.add({});
       if (deformable.reach <= 0.0) deformable.reach = default_reach(world_.meshes[deformable.mesh]);
       built_.vertices += static_cast<double>(world_.meshes[deformable.mesh].vertex_count);
-      if (Status s = within(n, budget_.ask_vertices(built_.vertices)); !s) return s;  // finer meshes have more
+      if (Status s = within(n, budget_.ask_vertices(built_.vertices)); !s) return s;  // refined meshes have more
     }
     if (node.rigid_body) return rigid_body(n, baked->touch);
     return Done{};
@@ -185,7 +186,7 @@ class Spawner {
     return at(n, "has PLIANT_rigid_body but its mesh encloses no volume; close the mesh, or set `fixed`");
   }
 
-  // What is carried and only looked at may be scaled on its way, so nothing of its frame goes into its mesh.
+  // A moving node that is only drawn may change its scale, so its transform is not baked into its mesh.
   bool has_pose(std::size_t n) const { return is_touched(level_.nodes[n]) || !motions_.moves[n]; }
   TouchShape shape_of(std::size_t n) const {
     const LevelNode& node = level_.nodes[n];
@@ -197,7 +198,7 @@ class Spawner {
 
   static bool is_touched(const LevelNode& node) { return node.deformable || node.rigid_body; }
 
-  // Tissue is never shared: which of its nodes are held is the node's own.
+  // Soft bodies share nothing, because pinned nodes are per body.
   Status soft_body(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
     const LevelMesh* mesh = node.mesh < 0 ? nullptr : &level_.meshes[static_cast<std::size_t>(node.mesh)];
@@ -205,7 +206,7 @@ class Spawner {
       if (Status s = count_triangles(n, budget_.of(node.mesh).triangles); !s) return s;
     const Pose pose = rigid_part(motions_.world[n]);
     progress_.say("preparing meshes, now `" + node.name + "`", share_of(n));
-    Result<SoftParts> parts = make_soft_parts(node, mesh, mat4(inverse(pose) * motions_.world[n]), folder_);
+    Result<SoftParts> parts = find_soft_parts(node, mesh, mat4(inverse(pose) * motions_.world[n]), folder_);
     if (!parts) return at(n, parts.error().message());
     tetrahedra_ += static_cast<double>(parts->tets.tets.size());
     if (Status s = within(n, LevelBudget::ask(limits::kTets, tetrahedra_)); !s) return s;
@@ -220,14 +221,14 @@ class Spawner {
     return Done{};
   }
 
-  // What is only drawn and lies inside of what deforms: it goes along, or a sentence says that it stays.
+  // Attaches drawn parts inside a deformable object to it, or notes that they stay fixed.
   Status carry_parts(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
     if (!node.in_scene) return Done{};
     const SoftBody* const soft = world_.registry.find<SoftBody>(entities_[n]);
     const Deformable* const surface = world_.registry.find<Deformable>(entities_[n]);
     const bool carries = soft ? soft->carries == Carries::kInside : surface && surface->carries == Carries::kInside;
-    if (!soft && !carries) return Done{};  // a dent is local: what it leaves behind is no news
+    if (!soft && !carries) return Done{};  // a dent is local: parts that stay need no note
     const Mesh& mesh = world_.meshes[soft ? soft->collision_mesh : surface->mesh];
     const dmat4 to_object = inverse(rigid_part(motions_.world[n]));
     std::vector<std::int32_t> parts =
@@ -252,7 +253,7 @@ class Spawner {
     return Done{};
   }
 
-  // Its mesh is made anew in the frame of what carries it.
+  // Rebuilds the part's mesh in the frame of its carrier.
   Status carry(std::size_t by, std::size_t part, const dmat4& to_object) {
     const LevelNode& node = level_.nodes[part];
     const LevelMesh& mesh = level_.meshes[static_cast<std::size_t>(node.mesh)];
@@ -283,7 +284,7 @@ class Spawner {
     return Done{};
   }
 
-  // What the nodes want is counted before the first of it is built.
+  // Counts the total size before anything is built.
   Status count() {
     std::set<std::pair<std::int32_t, TouchShape>> shapes;
     MeshSize wanted;
@@ -316,7 +317,7 @@ class Spawner {
     return within(n, budget_.ask_triangles(built_.triangles += triangles));
   }
 
-  // Once a mesh, however many nodes show it.
+  // Once per mesh, for all its nodes.
   void note_winding(std::int32_t mesh, const BuiltMesh& built) {
     const std::string turned = winding_note(built.report);
     if (!turned.empty() && noted_.insert(mesh).second) notes_.push_back("mesh `" + built.mesh.name + "`: " + turned);
@@ -330,7 +331,7 @@ class Spawner {
     refined_.from += built.report.refined_from;
     refined_.to += built.mesh.triangles.size();
   }
-  // One sentence, however many nodes there are.
+  // One note for all nodes.
   void say_refinement() {
     if (refined_.count == 0) return;
     notes_.push_back(refined_.names + refined_.more + ": " + with_commas(refined_.from) + " triangles refined to " +
@@ -343,7 +344,7 @@ class Spawner {
     notes_.push_back("`" + placeholder_ + "`" + more + ": no triangle with an area; left out as a placeholder");
   }
 
-  // Whether what was built for one node's dents is what another node wants.
+  // Whether the mesh built for one node's dents also suits another node.
   bool serves(const Baked& built, const Baked& wanted) const {
     if (built.dents == wanted.dents) return true;
     if (built.refined || !wanted.dents) return !built.refined;
@@ -399,7 +400,7 @@ class Spawner {
     return Done{};
   }
 
-  // A probe is moved by the device it names, else by the device on its own node, else by nobody.
+  // A probe is moved by the device it names, else by the device on its own node, else by none.
   Status link_probe(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
     if (!node.probe || !node.in_scene) return Done{};
@@ -417,7 +418,7 @@ class Spawner {
     return Done{};
   }
 
-  // Where there is a soft or rigid body, probes have a surface to meet it with.
+  // Gives probes a surface mesh if there is a soft or rigid body.
   Status give_shells() {
     const auto is_body = [](const LevelNode& node) { return node.in_scene && (node.soft_body || node.rigid_body); };
     if (std::none_of(level_.nodes.begin(), level_.nodes.end(), is_body)) return Done{};
@@ -432,7 +433,7 @@ class Spawner {
     return Done{};
   }
 
-  // Who reads a handle finds its device by name; it must be there.
+  // A handle refers to its device by name; check that it exists.
   Status check_handle(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
     if (!node.handle || !node.in_scene || node.handle->device.empty()) return Done{};
@@ -446,20 +447,20 @@ class Spawner {
   const Level& level_;
   const std::filesystem::path folder_;
   World world_;
-  std::vector<Entity> entities_;  // of each node; kNoEntity: not in the scene
+  std::vector<Entity> entities_;  // per node; kNoEntity: not in the scene
   LevelMotions motions_;
   ScriptLibrary scripts_;
-  std::map<const Path*, Handle<Path>> paths_;                    // of the scripts that move devices
+  std::map<const Path*, Handle<Path>> paths_;                    // of scripts that move devices
   std::unordered_map<std::string, std::size_t> by_name_;         // first node in the scene with this name
   std::vector<std::map<TouchShape, std::vector<Baked>>> baked_;  // of each mesh of the level
-  std::set<std::int32_t> noted_;                                 // meshes whose winding a note speaks of
+  std::set<std::int32_t> noted_;                                 // meshes whose winding has been noted
   const LevelBudget budget_;
   MeshSize built_;           // so far; vertices of deformable surfaces
   double tetrahedra_ = 0.0;  // so far
   struct {
     std::size_t count = 0, from = 0, to = 0;  // nodes, triangles
     std::string names, more;
-  } refined_;                       // meshes that were cut finer
+  } refined_;                       // refined meshes
   std::size_t placeholders_ = 0;    // nodes whose mesh has no surface
   std::string placeholder_;         // the first of them
   std::vector<std::string> notes_;  // of tetrahedra and winding, finer meshes

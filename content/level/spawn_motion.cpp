@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kEven = 1e-4;         // [1] how far scales may differ and count as one: files are single precision
+constexpr double kEven = 1e-4;         // [1] relative tolerance for equal scales: files have single precision
 constexpr double kFarthestMove = 1e6;  // [m], [s] of a script
 
 Track& track_of(PrescribedMotion& motion, NodeProperty property) {
@@ -23,13 +23,13 @@ bool empty(const PrescribedMotion& motion) {
   return motion.translation.empty() && motion.rotation.empty() && motion.scale.empty();
 }
 
-// One value for all time.
+// Whether the motion is constant.
 bool stands(const PrescribedMotion& motion) {
   const auto constant = [](const Track& track) { return track.times.size() <= 1; };
   return motion.speed == 0.0 || (constant(motion.translation) && constant(motion.rotation) && constant(motion.scale));
 }
 
-// Rotation and one scale for all axes (or mirrored): a frame in which turning changes no shape.
+// A rotation and uniform scale (or mirroring): rotations in this frame are rigid.
 bool is_even(const dmat4& frame) {
   const dvec3 x(frame[0]), y(frame[1]), z(frame[2]);
   const double size = std::max({dot(x, x), dot(y, y), dot(z, z)});
@@ -75,7 +75,7 @@ class MotionMaker {
     out_.notes.push_back("node `" + level_.nodes[n].name + "` " + what);
   }
 
-  // Which nodes have something below them, or are it, that can be touched; whether anything is pushed by contacts.
+  // Finds nodes that can be touched or have such a node below them; and whether anything is moved by contacts.
   void look_below() {
     touched_.assign(level_.nodes.size(), false);
     for (std::size_t n = level_.nodes.size(); n-- > 0;) {
@@ -102,13 +102,13 @@ class MotionMaker {
         if (!stands(motion)) out_.motion[n] = std::move(motion);
       }
     }
-    // What stands still stands where its component says, in single precision.
+    // A static node takes its transform from its component, in single precision.
     out_.world[n] = above * (out_.motion[n] ? frame : local_frame(out_.local[n])).matrix();
     out_.moves[n] = out_.motion[n] || (node.parent >= 0 && out_.moves[parent]);
     return out_.moves[n] && node.in_scene ? check_carried(n) : Done{};
   }
 
-  // The node's own motion, as file and script say.
+  // The node's own motion, from file and script.
   Status read(std::size_t n, PrescribedMotion& motion) {
     const NodeMotion asked = level_.nodes[n].motion.value_or(NodeMotion{});
     motion.repeats = asked.repeat;
@@ -154,7 +154,7 @@ class MotionMaker {
     return Done{};
   }
 
-  // What can be touched keeps its shape: scale and shear are baked into its mesh.
+  // A touchable node keeps its shape: scale and shear are baked into its mesh.
   Status keep_shape(std::size_t n, const dmat4& above, PrescribedMotion& motion) {
     if (!touched_[n]) return Done{};
     if (!motion.scale.empty()) {
@@ -196,7 +196,7 @@ class MotionMaker {
   std::vector<std::vector<Source>> channels_;  // of each node, in the order of the file
   std::vector<bool> touched_;
   bool something_is_pushed_ = false;
-  std::string left_behind_;  // name of the first node that a moving one leaves
+  std::string left_behind_;  // name of the first static node that is not carried by its moving parent
   LevelMotions out_;
 };
 

@@ -1,4 +1,4 @@
-// What carries the nodes of a level: its glTF animations, and the scripts that PLIANT_motion names.
+// The motions of a level's nodes: its glTF animations, and the scripts of PLIANT_motion.
 #pragma once
 
 #include <filesystem>
@@ -9,21 +9,21 @@
 
 namespace pliant {
 
-// Per node of the level. Frames are those at time 0: a motion begins where it says, not where the node stands in the
+// Per node of the level. Frames are at time 0: a motion starts at its first value, not at the node's transform in the
 // file.
 struct LevelMotions {
-  std::vector<std::optional<PrescribedMotion>> motion;  // of the node itself
-  std::vector<bool> moves;                              // it or a node above it has one
+  std::vector<std::optional<PrescribedMotion>> motion;  // the node's own
+  std::vector<bool> moves;                              // it or an ancestor has a motion
   std::vector<LocalTransform> local;
   std::vector<dmat4> world;        // node to world
-  std::vector<std::string> notes;  // of what is left out
+  std::vector<std::string> notes;  // on omitted parts
 };
 
-// Errors, each with the node: scripts that cannot be read, animations that are not there, a script that turns a surface
-// under uneven scales, soft and rigid bodies that would be carried. An animation that would change the scale of
-// something that can be touched, or turn it under uneven scales, loses that part, with a note.
+// Errors name the node: unreadable scripts, missing animations, a script that rotates a surface under non-uniform
+// scales, carried soft or rigid bodies. An animation loses, with a note, the part that would scale something touchable,
+// or rotate it under non-uniform scales.
 Result<LevelMotions> make_motions(const Level& level, const std::filesystem::path& folder, ScriptLibrary& scripts);
-// The same where nothing moves.
+// The same without motion.
 LevelMotions unmoved(const Level& level);
 
 }  // namespace pliant

@@ -18,12 +18,12 @@
 namespace pliant {
 namespace {
 
-// [mean edges of the tetrahedra] Tissue is touched through its collision mesh's vertices: where they are farther apart,
-// whatever presses between them moves those far away and sinks through the tissue below it.
+// [mean edges of the tetrahedra] Tissue is touched through the vertices of its collision mesh. If they are farther
+// apart, an object that presses between them moves distant vertices and sinks into the tissue below it.
 constexpr double kLongestEdge = 2.0;
 constexpr double kEdgeOverCell = 0.91;  // [1] mean edge of the lattice's tetrahedra
-constexpr double kLeastFocus = 0.01;    // [1] of the diagonal: half of that of the author's box is not taken for less
-constexpr double kFocusOverBox = 2.0;   // [1] radius of the lattice's focus over half the diagonal of the body's
+constexpr double kLeastFocus = 0.01;    // [1] of the diagonal: smallest half diagonal used for the author's focus box
+constexpr double kFocusOverBox = 2.0;   // [1] radius of the lattice's focus over half the diagonal of the author's box
 
 // The tetrahedra of the body's file, in the object frame.
 Result<TetMesh> read_tets(const std::string& name, const std::string& file, const mat4& to_object,
@@ -59,7 +59,7 @@ double mean_edge(const TetMesh& mesh) {
 
 constexpr double kMostLost = 0.5;  // [1] of the tissue, in parts too small to keep
 
-// Bits of what is thinner than the cell.
+// The body is thinner than the cell and falls into small parts.
 Error in_crumbs(const TetMesh& tets, const SoftBody& body, const Mesh& surface) {
   const TetReport& report = tets.report;
   const std::string cell = length_text(report.cell);
@@ -87,8 +87,8 @@ bool meet(const Box& a, const Box& b) {
   return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
 }
 
-// Mesh::of_source of the given primitives, of which what is touched was made: the vertices of each are the first of its
-// finer one; those of a primitive that was left out as a whole are in no triangle.
+// Mesh::of_source for the given primitives, from which the touched ones were refined. Each given primitive's vertices
+// come first in its refined one. A primitive that was left out is in no triangle.
 std::vector<std::uint32_t> given_sources(const std::vector<Primitive>& given, const std::vector<Primitive>& touched,
                                          const std::vector<std::uint32_t>& of_touched) {
   std::vector<std::uint32_t> out;

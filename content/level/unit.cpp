@@ -40,7 +40,7 @@ void scale_roots(Level& level, double metres) {
   }
 }
 
-// Parents stand before children, so one pass places every node.
+// Parents come before children, so one pass suffices.
 std::vector<mat4> world_matrices(const Level& level) {
   std::vector<mat4> world;
   for (const LevelNode& node : level.nodes) {

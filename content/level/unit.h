@@ -1,4 +1,4 @@
-// What one unit of a file is: --unit of `run` and `convert`, and the hint of `run` and `inspect` that it looks wrong.
+// The length unit of a file: --unit of `run` and `convert`, and the hint of `run` and `inspect` that it looks wrong.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace pliant {
 
-// m, cm, mm, in, or a number: metres for one unit of the input.
+// m, cm, mm, in, or a number: metres per unit of the input.
 Result<double> parse_unit(const std::string& text);
 
-// Only a bare mesh may have another unit than metres.
+// Only a bare mesh may have a unit other than metres.
 Status check_unit(const Level& level, double metres);
-// Scales the whole scene about the world's origin: what the roots say, their children inherit.
+// Scales the whole scene about the world's origin by scaling its roots.
 void scale_roots(Level& level, double metres);
 
 // Of every node, node -> world.
 std::vector<mat4> world_matrices(const Level& level);
-// [m] around all meshes of the scene that is shown.
+// [m] Bounding box of all meshes of the shown scene.
 Box bounds(const Level& level);
 
-// A sentence where a scene of this size is probably not in metres; else empty.
-// `bare`: without PLIANT extensions, so that --unit can scale it.
+// A sentence if a scene of this size is probably not in metres; else empty. `bare`: without PLIANT extensions, so that
+// --unit can scale it.
 std::string unit_hint(const Box& box, bool bare = true);
 
 }  // namespace pliant

@@ -6,7 +6,7 @@ void build_zones(Mesh& mesh) {
   const std::uint32_t zones = (mesh.vertex_count + kZoneSize - 1) / kZoneSize;
   mesh.zone_box.assign(zones, Box{});
 
-  // Each triangle widens the zones of its corners; where those differ, they are neighbours.
+  // Each triangle extends the boxes of its corners' zones; different zones become neighbours.
   std::vector<std::uint64_t> pairs;
   for (const uvec3& t : mesh.triangles) {
     Box box;

@@ -1,4 +1,4 @@
-// Zones: runs of kZoneSize vertices. Along the Hilbert curve they are compact patches; here they get boxes and
+// Zones: runs of kZoneSize vertices, which are compact patches along the Hilbert curve. Computes their boxes and
 // neighbours.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-// zone_box (of the vertices and of every triangle around them) and the neighbour lists (ascending, symmetric).
+// Fills zone_box (of the vertices and all triangles around them) and the neighbour lists (ascending, symmetric).
 void build_zones(Mesh& mesh);
 
 }  // namespace pliant

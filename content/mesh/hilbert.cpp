@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-// 16 bits spread to every third place.
+// Spreads 16 bits to every third position.
 std::uint64_t spread(std::uint64_t x) {
   x = (x | (x << 16)) & 0x0000ff0000ffull;
   x = (x | (x << 8)) & 0x00f00f00f00full;
@@ -18,7 +18,7 @@ std::uint64_t spread(std::uint64_t x) {
   return x;
 }
 
-// Least significant digit first: stable, so equal keys keep their index order. Digits that all keys share are skipped.
+// Least significant digit first. Stable: equal keys keep their index order. Skips digits that all keys share.
 void radix_sort(std::vector<HilbertItem>& items) {
   constexpr unsigned kDigit = 12, kPasses = 3 * kHilbertBits / kDigit;
   constexpr std::size_t kBuckets = std::size_t{1} << kDigit;

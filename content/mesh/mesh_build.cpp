@@ -22,7 +22,7 @@
 namespace pliant {
 namespace {
 
-// Welded positions into the touch mesh, padded to whole zones with copies of the last vertex, which nothing names.
+// Copies welded positions into the touch mesh, padded to whole zones with unreferenced copies of the last vertex.
 void lay_out(const Welded& welded, Mesh& mesh) {
   mesh.vertex_count = static_cast<std::uint32_t>(welded.position.size());
   const std::size_t padded = (welded.position.size() + kZoneSize - 1) / kZoneSize * kZoneSize;
@@ -43,7 +43,7 @@ void lay_out(const Welded& welded, Mesh& mesh) {
   mesh.triangles = welded.triangle;
 }
 
-// The mean of a painted factor over the painted copies of each vertex; its value for `unpainted` where no copy is
+// The mean of a painted factor over the painted copies of each vertex; the default for `unpainted` if no copy is
 // painted. Empty: painted nowhere.
 Result<std::vector<float>> paint(const std::string& name, const PaintedAttribute& attribute,
                                  std::span<const Primitive> primitives, const Gathered& gathered, const Welded& welded,
@@ -107,7 +107,7 @@ std::string winding_doubt(const MeshReport& report) {
 
 namespace {
 
-// What no longer depends on how the surface was found: the tree, zones, paint and what is drawn.
+// The steps that do not depend on how the surface was found: tree, zones, paint and draw mesh.
 Status finish(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered,
               const Welded& welded, BuiltMesh& built) {
   Mesh& mesh = built.mesh;
@@ -129,7 +129,7 @@ Status finish(std::span<const Primitive> primitives, const mat4& to_object, cons
   return Done{};
 }
 
-// Creases and normals as they were before the surface was cut finer, not as the pieces' own angles would have them.
+// Copies creases and normals from before refinement instead of deriving them from the pieces' angles.
 void take_creases(const FinerMesh& finer, const Welded& welded, const Corners& corners, Mesh& mesh) {
   const auto given = [&](std::uint32_t corner) {
     return finer.normal[3 * std::size_t{welded.source_triangle[corner / 3]} + corner % 3];
@@ -157,7 +157,7 @@ void take_creases(const FinerMesh& finer, const Welded& welded, const Corners& c
   keep_split_normals(mesh);
 }
 
-// The coarse mesh's vertices are among the finer one's, at the same places.
+// The coarse mesh's vertices are among the refined one's, at the same positions.
 std::vector<std::uint32_t> sources_in(const Mesh& finer, const Mesh& coarse) {
   const auto key = [](vec3 p) {
     Hash hash;
@@ -182,7 +182,7 @@ Result<BuiltMesh> build_finer(const FinerMesh& finer, BuiltMesh coarse) {
   BuiltMesh built;
   Mesh& mesh = built.mesh;
   mesh.name = coarse.mesh.name;
-  MeshReport of_pieces;  // what the file lacked is in the report of the coarse mesh
+  MeshReport of_pieces;  // defects of the file are in the report of the coarse mesh
   check_in();
   const Welded welded = weld(*gathered, of_pieces);
   check_in();

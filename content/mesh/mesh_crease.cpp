@@ -18,13 +18,13 @@ dvec3 face_normal(const Mesh& mesh, std::uint32_t triangle) {
   return cross(dvec3(mesh.position(t.y)) - a, dvec3(mesh.position(t.z)) - a);
 }
 
-// [rad] between two directions of any length.
+// [rad] Angle between two vectors of any length.
 double turn(dvec3 a, dvec3 b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-// Says of an edge what the file's normals say: the copies of its ends that the triangles on both sides name carry
-// different ones.
+// Crease information from the file's normals: an edge is a crease if the vertex copies on its two sides have different
+// normals.
 class FileNormals {
  public:
   FileNormals(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered,
@@ -54,7 +54,7 @@ class FileNormals {
   const Directions to_;
 };
 
-// The corners around one vertex, in fans that no crease and no border cuts.
+// The corners around a vertex, grouped in fans between creases and borders.
 class Fans {
  public:
   void find(const Mesh& mesh, const Corners& corners, std::uint32_t vertex) {
@@ -63,7 +63,7 @@ class Fans {
     root_.resize(count_);
     for (std::uint32_t c = 0; c < count_; ++c) root_[c] = c;
     for (std::uint32_t c = 0; c < count_; ++c) {
-      // Forwards only: the edge that leaves the vertex here arrives at it in the triangle across.
+      // Only forwards: the edge leaving the vertex here arrives at it in the neighbour triangle.
       const std::uint32_t t = begin_[c] / 3;
       const int i = static_cast<int>(begin_[c] % 3);
       const std::uint32_t other = mesh.across[t][i];
@@ -74,7 +74,7 @@ class Fans {
   }
   std::uint32_t count() const { return count_; }
   std::uint32_t corner(std::uint32_t c) const { return begin_[c]; }
-  std::uint32_t fan(std::uint32_t c) {  // the lowest corner of its fan
+  std::uint32_t fan(std::uint32_t c) {  // the lowest corner of the fan
     while (root_[c] != c) c = root_[c] = root_[root_[c]];
     return c;
   }
@@ -86,7 +86,7 @@ class Fans {
     root_[std::max(a, b)] = std::min(a, b);
   }
 
-  const std::uint32_t* begin_ = nullptr;  // corners ascend, so a triangle's is found by halving
+  const std::uint32_t* begin_ = nullptr;  // ascending, so a triangle's corner is found by bisection
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> root_;
 };
@@ -110,8 +110,8 @@ void find_creases(std::span<const Primitive> primitives, const mat4& to_object, 
   const double between = std::cos(kCreaseTurn);
   mesh.crease.assign(mesh.triangles.size(), 0);
   std::atomic<bool> any{false};
-  // Every edge is decided on both sides, so that no two threads write one byte; both come to the same answer because
-  // both look from the lower triangle.
+  // Each edge is decided on both sides, so that no two threads write the same byte. Both sides agree because both
+  // evaluate from the lower triangle.
   parallel_for(mesh.triangles.size(), kCreaseGrain, [&](std::size_t begin, std::size_t end) {
     bool found = false;
     for (std::size_t at = begin; at < end; ++at) {
@@ -147,7 +147,7 @@ void split_at_creases(const Corners& corners, Mesh& mesh) {
     for (std::size_t v = begin; v < end; ++v) creased[v] = at_crease(mesh, corners, static_cast<std::uint32_t>(v));
   });
 
-  // Every triangle at such a vertex gets a place, filled with the normals of its vertices.
+  // Each triangle at such a vertex gets an entry, filled with the normals of its vertices.
   mesh.split_normals.assign(mesh.triangles.size(), kNotSplit);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const uvec3 corner = mesh.triangles[t];

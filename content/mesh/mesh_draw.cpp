@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-// A unit vector, or `otherwise` where there is no direction in v.
+// Normalises v; `otherwise` if v has no direction.
 vec3 unit_or(dvec3 v, vec3 otherwise) {
   const double l = length(v);
   return std::isfinite(l) && l > 1e-30 ? vec3(v / l) : otherwise;
@@ -19,7 +19,7 @@ auto looks(const DrawVertex& v) {
                          v.tangent.w);
 }
 
-// What the file says of source vertex `v` of `p`. tangent.w 0: still to be made.
+// The file's data of source vertex `v` of `p`. tangent.w 0: tangent not yet computed.
 DrawVertex drawn(const Primitive& p, std::size_t v, std::uint32_t touch_vertex, const Mesh& mesh, const Directions& to,
                  bool turned) {
   DrawVertex d;
@@ -60,12 +60,12 @@ void group_by_material(DrawMesh& draw, const std::vector<uvec3>& triangles, cons
   }
 }
 
-// Where the file has no normals, those that were made are split at creases, so that what is drawn is what is touched.
+// If the file has no normals, computed normals are split at creases, so that rendering matches touch.
 class SplitNormals {
  public:
   SplitNormals(const Mesh& mesh, DrawMesh& draw) : mesh_(mesh), draw_(draw) {}
 
-  // `vertex`, or its copy with the normal of this corner.
+  // Returns `vertex`, or its copy with the normal of this corner.
   std::uint32_t of(std::uint32_t vertex, std::uint32_t triangle, int corner) {
     const vec3 normal = mesh_.normal(triangle, corner);
     if (normal == draw_.vertices[vertex].normal) return vertex;
@@ -82,7 +82,7 @@ class SplitNormals {
   }
 
  private:
-  // A unit vector in the tangent plane, along `wish` where it has a share in it.
+  // A unit vector in the tangent plane, along `wish` if possible.
   static vec3 across(vec3 normal, vec3 wish) {
     const vec3 x = std::abs(normal.x) < 0.9f ? vec3(1, 0, 0) : vec3(0, 1, 0);
     const vec3 any = normalize(x - normal * dot(x, normal));
@@ -98,7 +98,7 @@ class SplitNormals {
 
 DrawMesh build_draw_mesh(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered,
                          const Welded& welded, const Mesh& mesh, MeshReport& report) {
-  // Everything touched is drawn, and the far side of double-sided sheets.
+  // All touched triangles are drawn, and the back sides of double-sided sheets.
   std::vector<std::uint32_t> source_triangles(welded.source_triangle);
   source_triangles.insert(source_triangles.end(), welded.backs.begin(), welded.backs.end());
   std::vector<std::uint32_t> draw_vertex(gathered.position.size(), kNoVertex);
@@ -109,7 +109,7 @@ DrawMesh build_draw_mesh(std::span<const Primitive> primitives, const mat4& to_o
     primitive_shown[gathered.primitive[s]] = 1;
   }
 
-  // Around each touch vertex, copies that look alike become one draw vertex.
+  // Identical copies of a touch vertex are merged into one draw vertex.
   DrawMesh draw;
   const Directions directions(to_object);
   std::vector<std::pair<DrawVertex, std::uint32_t>> copies;
@@ -170,8 +170,8 @@ DrawMesh build_draw_mesh(std::span<const Primitive> primitives, const mat4& to_o
 void make_tangents(DrawMesh& draw) {
   const std::size_t original = draw.vertices.size();
   std::vector<dvec3> sum(original, dvec3(0));
-  std::vector<float> hand(original, 0.0f);               // of the triangles that first asked for this vertex
-  std::vector<std::uint32_t> twin(original, kNoVertex);  // the copy of other handedness
+  std::vector<float> hand(original, 0.0f);               // handedness of the triangles that first used this vertex
+  std::vector<std::uint32_t> twin(original, kNoVertex);  // the copy of opposite handedness
   for (std::size_t i = 0; i + 2 < draw.indices.size(); i += 3) {
     std::uint32_t* index = &draw.indices[i];
     const DrawVertex a = draw.vertices[index[0]], b = draw.vertices[index[1]], c = draw.vertices[index[2]];
@@ -185,7 +185,7 @@ void make_tangents(DrawMesh& draw) {
 
     for (int corner = 0; corner < 3; ++corner) {
       std::uint32_t v = index[corner];
-      if (draw.vertices[v].tangent.w != 0.0f) continue;  // the file's own
+      if (draw.vertices[v].tangent.w != 0.0f) continue;  // given in the file
       if (hand[v] == 0.0f) hand[v] = side;
       if (hand[v] != side) {
         if (twin[v] == kNoVertex) {

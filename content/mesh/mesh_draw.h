@@ -1,15 +1,15 @@
-// The draw mesh over a touch mesh: a touch vertex is split only where texture coordinates, shading normals or tangents
-// differ; what the file lacks is made.
+// The draw mesh over a touch mesh. A touch vertex is split only where texture coordinates, shading normals or tangents
+// differ. Missing attributes are computed.
 #pragma once
 
 #include "content/mesh/mesh_weld.h"
 
 namespace pliant {
 
-// How directions of the file's mesh frame arrive in the object frame.
+// Transforms directions from the file's mesh frame to the object frame.
 struct Directions {
   dmat3 tangent;  // the linear part itself
-  dmat3 normal;   // its cofactors, which point outward under a mirroring too
+  dmat3 normal;   // its cofactor matrix, which points outward under mirroring too
   float hand;     // -1: mirrors
   explicit Directions(const mat4& to_object) : tangent(dmat4(to_object)) {
     const double determinant = glm::determinant(tangent);
@@ -22,9 +22,8 @@ struct Directions {
 DrawMesh build_draw_mesh(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered,
                          const Welded& welded, const Mesh& mesh, MeshReport& report);
 
-// Per-vertex tangents from texture coordinates for the vertices whose tangent.w is 0: the surface's direction of
-// growing u, averaged by corner angle over triangles of one handedness (as MikkTSpace does); a vertex that sees both is
-// split.
+// Computes tangents from texture coordinates for vertices whose tangent.w is 0: the direction of increasing u. They are
+// averaged by corner angle over triangles of one handedness (as MikkTSpace does); a vertex with both is split.
 void make_tangents(DrawMesh& draw);
 
 }  // namespace pliant

@@ -13,10 +13,10 @@
 namespace pliant {
 namespace {
 
-constexpr int kMostFinerPasses = 20;  // places on a patch stay exact in single precision
+constexpr int kMostFinerPasses = 20;  // positions on a patch stay exact in single precision
 constexpr std::size_t kFinerGrain = 1 << 13;
 
-// [m2] between the middle of an edge's curve and that of its chord, squared: never less than the patch's own, which
+// [m2] Squared distance between the midpoints of an edge's curve and its chord. At least that of the patch, which
 // limits bad normals and follows creases.
 double most_bulge2(const Mesh& mesh, std::uint32_t t, int i, dvec3 along) {
   const int j = (i + 1) % 3;
@@ -30,7 +30,7 @@ double most_bulge2(const Mesh& mesh, std::uint32_t t, int i, dvec3 along) {
   return off * off;
 }
 
-// One corner of a piece of a touch triangle.
+// A corner of a piece of a touch triangle.
 struct Corner {
   std::uint32_t vertex;  // of the finer touch mesh
   std::uint32_t source;  // of the finer primitive
@@ -50,7 +50,7 @@ bool is_corner(vec2 at, int corner) {
   return at == (corner == 0 ? vec2(0, 0) : corner == 1 ? vec2(1, 0) : vec2(0, 1));
 }
 
-// The edge of its triangle that both places lie on, or -1.
+// The triangle edge that contains both points, or -1.
 int common_edge(vec2 a, vec2 b) {
   if (a.y == 0.0f && b.y == 0.0f) return 0;
   if (a.x + a.y == 1.0f && b.x + b.y == 1.0f) return 1;
@@ -97,7 +97,7 @@ class Finer {
 
   FinerMesh take() {
     FinerMesh out;
-    // Triangle by triangle of every primitive in turn, as they will be gathered.
+    // In the order of primitives and their triangles, as they will be gathered.
     std::stable_sort(pieces_.begin(), pieces_.end(), [&](const Piece& a, const Piece& b) {
       if (a.primitive != b.primitive || !place_) return a.primitive < b.primitive;
       return source_[a.triangle] < source_[b.triangle];
@@ -125,7 +125,7 @@ class Finer {
   }
 
  private:
-  // The primitives in the object frame, without triangles yet; of each vertex the touch vertex it lies on.
+  // The primitives in the object frame, still without triangles; and the touch vertex of each vertex.
   void begin(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered) {
     const Directions to(to_object);
     middles_.resize(primitives.size());
@@ -151,7 +151,7 @@ class Finer {
     }
   }
 
-  // One piece for every triangle that is touched, and behind them those that are only drawn, from behind.
+  // One piece for every touched triangle, followed by the back sides that are only drawn.
   void begin(const Gathered& gathered, const Welded& welded) {
     const auto add = [&](std::uint32_t source, std::uint32_t triangle) {
       Piece piece{triangle, gathered.primitive[source], {}};
@@ -178,7 +178,7 @@ class Finer {
     }
   }
 
-  // What becomes of an edge is decided once, by the first piece that asks: all around it cut it alike.
+  // The first piece that asks decides whether an edge is cut; all its triangles use this result.
   struct Cut {
     bool cut;
     std::uint32_t middle;
@@ -204,7 +204,7 @@ class Finer {
     const double length2 = dot(ab, ab), t = length2 > 0 ? std::clamp(-dot(a, ab) / length2, 0.0, 1.0) : 0.0;
     return std::sqrt(length2) > place_->edge + 0.5 * std::max(0.0, length(a + t * ab) - place_->radius);
   }
-  // What is added lies between vertices that are near.
+  // Added vertices lie between vertices marked as near.
   bool is_near(std::uint32_t vertex) const { return vertex >= mesh_.vertex_count || near_[vertex] != 0; }
 
   Corner middle(const Piece& piece, std::size_t k) {
@@ -218,7 +218,7 @@ class Finer {
     return {cut.middle, middle_source(piece.primitive, a.source, b.source, cut.middle), at};
   }
 
-  // On the patch, with its normal; on an edge that two smooth patches share, the mean of theirs.
+  // A point on the patch with its normal; on an edge shared by two smooth patches, the mean of both.
   void add_vertex(std::uint32_t triangle, vec2 at, int edge) {
     const CurvedPatch patch = curved_patch(mesh_, triangle);
     position_.push_back(vec3(patch.at(at.x, at.y).p) + vec3(0.0f));
@@ -235,7 +235,7 @@ class Finer {
     own_.push_back(own);
   }
 
-  // A place on an edge, in the barycentrics of the triangle across it.
+  // A point on an edge, in barycentric coordinates of the neighbour triangle.
   vec2 seen_from(std::uint32_t other, std::uint32_t triangle, int edge, vec2 at) const {
     const float weight[3] = {1.0f - at.x - at.y, at.x, at.y};
     vec2 out(0);
@@ -295,7 +295,7 @@ class Finer {
     std::array<bool, 3> cut{};
     int cuts = 0;
     for (std::size_t k = 0; k < 3; ++k) cuts += cut[k] = is_long(piece, k);
-    // Turned so that the odd one out of one or two cuts comes first.
+    // Rotate so that the distinct edge of one or two cuts comes first.
     while (cuts == 1 ? !cut[0] : cuts == 2 && cut[0]) {
       std::rotate(piece.corner.begin(), piece.corner.begin() + 1, piece.corner.end());
       std::rotate(cut.begin(), cut.begin() + 1, cut.end());
@@ -316,13 +316,13 @@ class Finer {
   const double longest_, most_bulge_;         // [m]
   const FinerPlace* const place_;             // nullptr: everywhere
   const std::vector<std::uint32_t>& source_;  // triangle of each touch triangle
-  std::vector<std::uint8_t> near_;            // of each touch vertex, with a place
+  std::vector<std::uint8_t> near_;            // per touch vertex, if a place is given
   bool complete_ = true;
   std::vector<Primitive> primitives_;
   std::vector<Piece> pieces_;
   std::vector<vec3> position_;                   // [m] of every vertex of the finer touch mesh
-  std::vector<vec3> normal_;                     // [1] of those added
-  std::vector<std::uint8_t> own_;                // of those added: on a crease, each side has its own normal
+  std::vector<vec3> normal_;                     // [1] of added vertices
+  std::vector<std::uint8_t> own_;                // per added vertex: on a crease, with one normal per side
   std::unordered_map<std::uint64_t, Cut> cuts_;  // by edge
   std::vector<std::unordered_map<std::uint64_t, std::uint32_t>> middles_;  // of each primitive, by edge
 };
@@ -336,7 +336,7 @@ bool is_coarse(const Mesh& mesh, double reach) {
     double coarse = 0.0, all = 0.0;
   };
   std::vector<Areas> runs((mesh.triangles.size() + kFinerGrain - 1) /
-                          kFinerGrain);  // summed in order, whatever the threads
+                          kFinerGrain);  // summed in a fixed order, whatever the number of threads
   parallel_for(mesh.triangles.size(), kFinerGrain, [&](std::size_t begin, std::size_t end) {
     Areas& run = runs[begin / kFinerGrain];
     for (std::size_t at = begin; at < end; ++at) {

@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kMostPasses = 40;  // an edge this often halved is below what single precision tells apart
+constexpr int kMostPasses = 40;  // an edge halved this often is below single precision
 
 using RefinedCorners = std::array<std::uint32_t, 3>;
 
@@ -15,7 +15,7 @@ class Pass {
   Pass(Primitive& primitive, const mat4& to_object, const LongestEdge& longest)
       : p_(primitive), to_object_(to_object), longest_(longest) {}
 
-  // Triangles that there will be.
+  // The resulting number of triangles.
   std::size_t count() const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < p_.index.size(); i += 3) {
@@ -35,7 +35,7 @@ class Pass {
       std::array<bool, 3> cut{};
       int cuts = 0;
       for (std::size_t k = 0; k < 3; ++k) cuts += cut[k] = is_long(c[k], c[(k + 1) % 3]);
-      // Turned so that the odd one out of one or two cuts comes first.
+      // Rotate so that the distinct edge of one or two cuts comes first.
       while (cuts == 1 ? !cut[0] : cuts == 2 && cut[0]) {
         c = {c[1], c[2], c[0]};
         cut = {cut[1], cut[2], cut[0]};

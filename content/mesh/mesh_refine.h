@@ -1,4 +1,4 @@
-// Triangles cut until no edge is long, for a surface that is to follow what it rides on.
+// Cuts triangles until no edge is too long, for a surface that is to follow its carrier.
 #pragma once
 
 #include <functional>
@@ -8,13 +8,14 @@
 
 namespace pliant {
 
-inline constexpr std::size_t kMostRefined = std::size_t{1} << 20;  // triangles: what would need more stays coarser
+inline constexpr std::size_t kMostRefined = std::size_t{1} << 20;  // triangles: the result stays coarser rather than
+                                                                   // exceed this
 
-// [m] How long an edge may be whose middle lies there, object frame.
+// [m] The longest allowed edge with its midpoint there, object frame.
 using LongestEdge = std::function<double(dvec3 middle)>;
-// Halves edges longer than that, measured after `to_object`, again and again; what vertices carry is the mean of both
-// ends. An edge is cut alike wherever it is shared, also across primitives and seams, so that nothing opens. Says
-// whether anything was cut.
+// Repeatedly bisects edges longer than that, measured after `to_object`. Vertex attributes are averaged over both ends.
+// A shared edge is cut identically everywhere, also across primitives and seams, so that no gap opens. Returns whether
+// anything was cut.
 bool refine(std::vector<Primitive>& primitives, const mat4& to_object, const LongestEdge& longest);
 
 }  // namespace pliant

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kGrain = 1 << 12;  // vertices
 
-// A triangle's side as seen from its lower end.
+// A triangle's edge as seen from its lower vertex.
 struct EdgeSide {
   std::uint32_t far;   // the higher vertex
   std::uint32_t edge;  // 3 * triangle + i, the side from corner i to corner i+1
@@ -45,8 +45,8 @@ void NormalSum::add(const Mesh& mesh, std::uint32_t corner) {
   const dvec3 e = dvec3(mesh.position(t[(i + 1) % 3])) - p, f = dvec3(mesh.position(t[(i + 2) % 3])) - p;
   const dvec3 n = cross(e, f);
   const double twice_area = length(n), angle = std::atan2(twice_area, dot(e, f));
-  // sin / (|e| |f|), which is exact on a sphere however it is cut into triangles (Max 1999, Weights for computing
-  // vertex normals from facet normals); a needle's short side counts no more than a fourth of its long one.
+  // sin / (|e| |f|), which is exact on a sphere however it is triangulated (Max 1999, Weights for computing vertex
+  // normals from facet normals). A needle's short side counts as at least a fourth of its long one.
   const double a = length(e), b = length(f), longest = std::max(a, b),
                shortest = std::max(std::min(a, b), 0.25 * longest);
   const double weight = std::sin(angle) / (longest * shortest);
@@ -85,7 +85,7 @@ std::vector<SideAgainst> connect_triangles(Mesh& mesh, const Corners& corners, M
     std::vector<EdgeSide> sides;
     std::uint32_t borders = 0, non_manifolds = 0;
     for (std::size_t v = begin; v < end; ++v) {
-      // The sides whose lower end is v: every edge of the mesh is seen from exactly one vertex.
+      // The edges whose lower vertex is v: every edge of the mesh is visited from exactly one vertex.
       sides.clear();
       for (std::uint32_t c = corners.first[v]; c < corners.first[v + 1]; ++c) {
         const std::uint32_t t = corners.corner[c] / 3, i = corners.corner[c] % 3, before = (i + 2) % 3;

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kWeldGrain = 1 << 14;
 constexpr std::size_t kMostVertices = std::size_t{1} << 28, kMostTriangles = std::size_t{1} << 29;
 
-constexpr float kFarthestCell = 1e9f;  // [m] beyond it, products of lengths leave single precision
+constexpr float kFarthestCell = 1e9f;  // [m] beyond it, products of lengths overflow single precision
 
 // False for NaN too.
 bool reasonable(vec3 p) {
@@ -31,7 +31,7 @@ bool before(uvec3 a, uvec3 b) {
   return a.z < b.z;
 }
 
-// Sorts every run of equal keys by `less` (given two indices); runs longer than one are rare.
+// Sorts each run of equal keys by `less` (given two indices); longer runs are rare.
 template <class Less>
 void sort_runs(std::vector<HilbertItem>& items, Less less) {
   for (std::size_t begin = 0; begin < items.size();) {
@@ -51,19 +51,19 @@ uvec3 sorted(uvec3 t) {
   return t;
 }
 
-// Whether the corners of t stand in the cyclic order of their ascending sort: rotations agree, a reversal differs.
+// The parity of the corners' order: equal for rotations, different for a reversal.
 bool even(uvec3 t) {
   return (t.x < t.y) + (t.y < t.z) + (t.z < t.x) == 2;
 }
 
-// Flat: its height over the longest side is below what single precision resolves at the object's scale.
+// Flat: its height over the longest side is below single precision at the object's scale.
 bool flat(dvec3 a, dvec3 b, dvec3 c, double resolution) {
   const dvec3 ab = b - a, bc = c - b, ca = a - c;
   const double longest = std::sqrt(std::max({dot(ab, ab), dot(bc, bc), dot(ca, ca)}));
   return length(cross(ab, -ca)) <= resolution * longest;
 }
 
-// Source vertices that triangles use, along the curve, copies of one position side by side.
+// Source vertices used by triangles, along the curve, with copies of a position next to each other.
 std::vector<std::uint32_t> order_vertices(const Gathered& gathered) {
   std::vector<std::uint8_t> used(gathered.position.size(), 0);
   for (const uvec3& t : gathered.triangle) used[t.x] = used[t.y] = used[t.z] = 1;
@@ -87,7 +87,7 @@ std::vector<std::uint32_t> order_vertices(const Gathered& gathered) {
 struct Kept {
   std::vector<uvec3> triangle;
   std::vector<std::uint32_t> source;
-  std::vector<vec3> centroid;  // [m] summed in the order of the sorted corners, so that duplicates agree to the bit
+  std::vector<vec3> centroid;  // [m] summed in the order of the sorted corners, so that duplicates agree bit for bit
 };
 Kept drop_degenerate(const Gathered& gathered, const Welded& welded, MeshReport& report) {
   float extent = 0.0f;
@@ -115,7 +115,7 @@ Kept drop_degenerate(const Gathered& gathered, const Welded& welded, MeshReport&
   return kept;
 }
 
-// Of triangles over the same corners the first in the file stays; one that lies reversed on it is still drawn.
+// Of triangles with the same corners, the first in the file is kept; a reversed one is still drawn.
 void order_triangles(const Kept& kept, Welded& welded, MeshReport& report) {
   std::vector<HilbertItem> items = hilbert_sort(kept.centroid);
   sort_runs(items, [&](std::uint32_t a, std::uint32_t b) {
@@ -143,7 +143,7 @@ void order_triangles(const Kept& kept, Welded& welded, MeshReport& report) {
   }
 }
 
-// Vertices that only dropped triangles used go; the rest keep their order.
+// Removes vertices that only dropped triangles used; the rest keep their order.
 void drop_unused(Welded& welded) {
   std::vector<std::uint32_t> moved(welded.position.size(), kNoVertex);
   for (const uvec3& t : welded.triangle) moved[t.x] = moved[t.y] = moved[t.z] = 0;

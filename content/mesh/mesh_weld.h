@@ -1,6 +1,6 @@
-// First half of mesh_build: one vertex for every position, no degenerate and no double triangles, both along the
-// Hilbert curve. Copies of a position share a key, so the same sort that orders the vertices also finds what to weld;
-// triangles over the same corners share a centroid, so the same sort that orders them also finds the duplicates.
+// First half of mesh_build: one vertex per position, no degenerate or duplicate triangles, both along the Hilbert
+// curve. Copies of a position share a key, so the sort that orders vertices also finds the copies. Triangles with the
+// same corners share a centroid, so the sort that orders them also finds duplicates.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace pliant {
 
 inline constexpr std::uint32_t kNoVertex = 0xffffffffu;
 
-// Every primitive of a mesh end to end, object frame. A "source" vertex or triangle is one of these.
+// All primitives of a mesh in sequence, object frame. A "source" vertex or triangle is one of these.
 struct Gathered {
-  std::vector<vec3> position;               // [m] -0 is +0
+  std::vector<vec3> position;               // [m] -0 is replaced by +0
   std::vector<uvec3> triangle;              // source vertices, winding already flipped where the frame mirrors
   std::vector<std::uint32_t> primitive;     // of each triangle
   std::vector<std::uint32_t> first_vertex;  // of each primitive, and one past the last
-  std::vector<std::uint8_t> turned_normal;  // by vertex: the file's normal points inward; empty: none does
+  std::vector<std::uint8_t> turned_normal;  // per vertex: the file's normal points inward; empty: none does
 };
 Result<Gathered> gather(const std::string& name, std::span<const Primitive> primitives, const mat4& to_object);
 
@@ -27,7 +27,7 @@ struct Welded {
   std::vector<vec3> position;                  // [m] touch vertices, Hilbert order
   std::vector<uvec3> triangle;                 // touch triangles, Hilbert order
   std::vector<std::uint32_t> source_triangle;  // of each touch triangle
-  std::vector<std::uint32_t> backs;  // source triangles that lie reversed on a touch triangle: drawn, not touched
+  std::vector<std::uint32_t> backs;         // source triangles that are a touch triangle reversed: drawn, not touched
   std::vector<std::uint32_t> touch_vertex;  // of each source vertex, kNoVertex: not used
   std::vector<std::uint32_t> sources;       // used source vertices, by touch vertex, then by source
 };

@@ -11,35 +11,36 @@ namespace pliant {
 namespace {
 
 constexpr std::uint32_t kNoPart = 0xffffffffu;
-constexpr double kFlatPart = 1e-7;  // [1] of area times extent: a volume below it is what single precision leaves
-constexpr double kOneVoice = 0.99;  // [1] share of an open part's area that must agree for the file's normals to count
-constexpr std::size_t kPoints = 5;  // of a part, each asked what lies around it
-constexpr double kNearEdge = 1e-9;  // [1] barycentric: a ray that meets a triangle there may count twice
-constexpr std::size_t kMostAsked = 4096;  // parts inside out: beyond it the rest counts as undecided
+constexpr double kFlatPart = 1e-7;  // [1] of area times extent: a smaller volume is rounding error
+constexpr double kOneVoice = 0.99;  // [1] share of an open part's area that must agree with the file's normals for
+                                    // these to count
+constexpr std::size_t kPoints = 5;  // of a part, each tested for enclosing parts
+constexpr double kNearEdge = 1e-9;  // [1] barycentric: a ray this close to a triangle's edge may hit twice
+constexpr std::size_t kMostAsked = 4096;  // inside-out parts; beyond it the rest counts as undecided
 
-// Triangles that edges of exactly two triangles connect.
+// Triangles connected by edges of exactly two triangles.
 struct Part {
-  dvec3 origin{0};                       // [m] of one of its vertices, against cancellation
-  double area[2] = {0, 0};               // [m2] of the triangles on either side: as its first one, and against it
-  double volume = 0.0;                   // [m3] signed, once its triangles agree
+  dvec3 origin{0};                       // [m] one of its vertices, to avoid cancellation
+  double area[2] = {0, 0};               // [m2] of triangles oriented as the first one, and of those opposite to it
+  double volume = 0.0;                   // [m3] signed, after its triangles agree
   double agrees = 0.0, disagrees = 0.0;  // [m2] with the file's normals
   std::vector<std::uint32_t> samples;    // triangles
   std::uint32_t count = 0;
   bool closed = true, orientable = true, turned = false, decided = true;
 };
 
-// Which other parts a point lies in, by counting what a ray meets.
+// Finds the parts that contain a point by counting ray intersections.
 class Around {
  public:
   Around(const Mesh& mesh, const std::vector<std::uint32_t>& part_of) : mesh_(mesh), part_of_(part_of) {
     tree_ = build_tree(mesh);
   }
 
-  // Ascending; nothing where no ray can be trusted.
+  // Ascending; empty if no ray is reliable.
   std::optional<std::vector<std::uint32_t>> parts_around(std::uint32_t triangle) {
     const uvec3 t = mesh_.triangles[triangle];
     const dvec3 from = (dvec3(mesh_.position(t.x)) + dvec3(mesh_.position(t.y)) + dvec3(mesh_.position(t.z))) / 3.0;
-    // Directions that no modelled surface lies along.
+    // Directions that no modelled surface is parallel to.
     for (const dvec3& along : {dvec3(0.1371, 0.9713, 0.1947), dvec3(-0.8377, 0.2411, 0.4901),
                                dvec3(0.3299, -0.4423, 0.8343), dvec3(0.6151, -0.7013, -0.3607)}) {
       hits_.clear();
@@ -69,7 +70,7 @@ class Around {
     return in <= out * (1 + 1e-12);
   }
 
-  // False: it comes too near to an edge, or starts on a surface.
+  // False: it passes too near to an edge, or starts on a surface.
   bool cast(dvec3 from, dvec3 along, std::uint32_t own) {
     const dvec3 over = 1.0 / along;
     const auto& levels = tree_.levels;
@@ -97,7 +98,7 @@ class Around {
     const dvec3 h = cross(along, f), s = from - a, q = cross(s, e);
     const double determinant = dot(e, h);
     const double size = length(e) * length(f);
-    if (std::abs(determinant) <= 1e-12 * size) return true;  // seen edge on; its neighbours' edges tell if it matters
+    if (std::abs(determinant) <= 1e-12 * size) return true;  // edge-on; its neighbours' edges decide whether it matters
     const double u = dot(s, h) / determinant, v = dot(along, q) / determinant, w = 1 - u - v;
     const double least = std::min({u, v, w});
     if (least < -kNearEdge) return true;
@@ -125,7 +126,7 @@ class Winding {
           const Gathered& gathered)
       : primitives_(primitives), to_(to_object), welded_(welded), mesh_(mesh), gathered_(gathered) {}
 
-  // Follows edges of two triangles; a triangle's side says whether it runs as the first of its part.
+  // Propagates over edges of two triangles; `side` tells whether a triangle is oriented as the first of its part.
   void find_parts(const std::vector<SideAgainst>& against) {
     part_of.assign(mesh_.triangles.size(), kNoPart);
     side.assign(mesh_.triangles.size(), 0);
@@ -166,7 +167,7 @@ class Winding {
     }
   }
 
-  // The side with the smaller area is wrong; of a part that has no sides, none is.
+  // The side with the smaller area is wrong; an unorientable part is left as it is.
   void agree_within_parts(MeshReport& report) {
     for (std::size_t t = 0; t < side.size(); ++t) {
       const Part& part = parts[part_of[t]];
@@ -190,8 +191,7 @@ class Winding {
     }
   }
 
-  // Of parts that are in question: what the file's normals say, and some triangles evenly spread, to ask what lies
-  // around them.
+  // For undecided parts: compares with the file's normals and samples triangles evenly for enclosure tests.
   void gather_voices() {
     std::vector<std::uint32_t> seen(parts.size(), 0);
     for (std::uint32_t t = 0; t < side.size(); ++t) {
@@ -211,7 +211,7 @@ class Winding {
     }
   }
 
-  // Larger parts first: what lies around a part has then been decided.
+  // Larger parts first, so that enclosing parts are already decided.
   void decide(MeshReport& report) {
     const double extent = length(glm::max(glm::abs(dvec3(mesh_.box.min)), glm::abs(dvec3(mesh_.box.max))));
     std::vector<std::uint32_t> order;
@@ -242,7 +242,7 @@ class Winding {
       if (!around) around.emplace(mesh_, part_of);
       const std::optional<int> depth = ++asked > kMostAsked ? std::nullopt : depth_of(part, *around);
       part.decided = depth.has_value();
-      part.turned = depth && *depth == 0;  // solid around it: the wall of a cavity
+      part.turned = depth && *depth == 0;  // inside a solid: the wall of a cavity
     }
     for (const Part& part : parts) {
       report.turned_parts += part.turned;
@@ -252,7 +252,7 @@ class Winding {
 
   std::vector<Part> parts;
   std::vector<std::uint32_t> part_of;  // of each triangle
-  std::vector<std::uint8_t> side;      // of each triangle: 1: runs against its part
+  std::vector<std::uint8_t> side;      // per triangle: 1: opposite to its part
 
  private:
   dvec3 twice_area(std::uint32_t triangle) const {
@@ -261,7 +261,7 @@ class Winding {
     return cross(dvec3(mesh_.position(t.y)) - a, dvec3(mesh_.position(t.z)) - a);
   }
 
-  // How often solid lies around the part; nothing where its points disagree or what is around it is undecided.
+  // Number of solids around the part; empty if its samples disagree or an enclosing part is undecided.
   std::optional<int> depth_of(const Part& part, Around& around) const {
     std::optional<std::vector<std::uint32_t>> all;
     for (const std::uint32_t triangle : part.samples) {
@@ -307,7 +307,7 @@ std::vector<std::uint8_t> find_wrong_winding(std::span<const Primitive> primitiv
     const Part& part = winding.parts[winding.part_of[t]];
     if (!part.turned) continue;
     turned[t] = static_cast<std::uint8_t>(1 - turned[t]);
-    // Normals that agreed with the wrong winding are as wrong.
+    // Normals that agreed with the wrong winding point inward too.
     if (part.agrees <= part.disagrees) continue;
     gathered.turned_normal.resize(gathered.position.size(), 0);
     for (int i = 0; i < 3; ++i) gathered.turned_normal[gathered.triangle[welded.source_triangle[t]][i]] = 1;

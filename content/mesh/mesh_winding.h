@@ -1,7 +1,6 @@
-// Which side of a surface is outside, where the file says it wrongly. Triangles that run against their neighbours are
-// turned to agree with the larger area. A closed part that is inside out is turned, unless it is the wall of a cavity
-// in another part. An open part is turned where the file's own normals all say so. What cannot be decided stays as it
-// is and is counted.
+// Corrects wrong winding. Triangles opposite to their neighbours are turned to agree with the larger area. A closed
+// part that is inside out is turned, unless it is the wall of a cavity in another part. An open part is turned if all
+// of the file's normals say so. Undecidable parts are kept and counted.
 #pragma once
 
 #include <span>
@@ -12,13 +11,13 @@
 
 namespace pliant {
 
-// The triangles of `mesh` to turn over, as a flag each; empty where there is none. `against`: from connect_triangles.
-// Marks in `gathered` whose normals point inward together with their winding.
+// Flags the triangles of `mesh` to turn; empty if there are none. `against`: from connect_triangles. Marks in
+// `gathered` the normals that point inward together with their winding.
 std::vector<std::uint8_t> find_wrong_winding(std::span<const Primitive> primitives, const mat4& to_object,
                                              const Welded& welded, const std::vector<SideAgainst>& against,
                                              const Mesh& mesh, Gathered& gathered, MeshReport& report);
 
-// Turns them in the touch mesh and in what is drawn. `across` must be found anew.
+// Turns them in the touch mesh and the drawn triangles. `across` must be recomputed.
 void turn_over(const std::vector<std::uint8_t>& turned, Mesh& mesh, Welded& welded, Gathered& gathered);
 
 }  // namespace pliant

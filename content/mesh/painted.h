@@ -1,5 +1,4 @@
-// The vertex attributes that paint a surface: their names in glTF, where they are kept, and what counts where nothing
-// is painted.
+// Painted vertex attributes: their glTF names, members and default values.
 #pragma once
 
 #include <array>

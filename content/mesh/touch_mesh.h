@@ -1,5 +1,5 @@
-// The touch mesh alone, and where its parts come from: what build_mesh begins with, for those who need neither zones
-// nor what is drawn (the editor's paint).
+// The touch mesh alone, with the origin of its parts: the first steps of build_mesh, for users that need neither zones
+// nor a draw mesh (the editor's paint).
 #pragma once
 
 #include <atomic>
@@ -17,8 +17,8 @@ struct TouchMesh {
   MeshReport report;
 };
 
-// As build_mesh, and fails as it does; MeshOptions::dents is not looked at. Once `stop` is set it soon returns an
-// error, which nobody needs to read.
+// As build_mesh, with the same errors; ignores MeshOptions::dents. Once `stop` is set it soon returns an error, which
+// can be ignored.
 Result<TouchMesh> build_touch_mesh(const std::string& name, std::span<const Primitive> primitives,
                                    const mat4& to_object, const MeshOptions& options = {},
                                    const std::atomic<bool>* stop = nullptr);

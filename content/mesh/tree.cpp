@@ -1,6 +1,6 @@
-// Trees over triangles that already lie along the Hilbert curve: no sorting. One is implicit, a pass a level; the other
-// cuts the same row of triangles where the surface area heuristic says (MacDonald & Booth 1990). Cutting the row at
-// every eighth triangle instead costs a query twice the boxes, because the curve jumps.
+// Trees over triangles in Hilbert order, so without sorting. One is implicit, one pass per level. The other splits the
+// same sequence by the surface area heuristic (MacDonald & Booth 1990). Splitting it at every eighth triangle would
+// cost a query twice the boxes, because the curve jumps.
 #include <array>
 #include <cmath>
 
@@ -27,9 +27,9 @@ std::vector<std::vector<Box>> build_levels(const Mesh& mesh) {
   return levels;
 }
 
-// Adds the control points of the triangle's patch; returns how far they leave the triangle at most. [m]
-// curved_patch() itself, in double, would take half the time that a mesh takes to load. Away from creases its points
-// are these to rounding; where they might not be (creases, the limit on a patch's bulge) it is asked.
+// Adds the control points of the triangle's patch; returns their largest distance from the triangle. [m] curved_patch()
+// itself, in double, would double the loading time of a mesh. Away from creases these points equal its points within
+// rounding. Where they might not (creases, the limit on a patch's bulge), curved_patch() is called.
 float add_patch(const Mesh& mesh, std::uint32_t triangle, Box& box) {
   const uvec3 t = mesh.triangles[triangle];
   const bool crease = !mesh.crease.empty() && mesh.crease[triangle] != 0;
@@ -53,7 +53,7 @@ float add_patch(const Mesh& mesh, std::uint32_t triangle, Box& box) {
     off_sum += off_a + off_b;
   }
   if (!limited) {
-    // The middle control point: centroid + a quarter of what the six on the edges are off.
+    // The middle control point: centroid + a quarter of the summed offsets of the six on the edges.
     points.add((p[0] + p[1] + p[2]) / 3.0f + 0.25f * off_sum);
     box = points;
     return std::sqrt(std::max(far2, dot(off_sum, off_sum) / 16.0f));
@@ -63,7 +63,7 @@ float add_patch(const Mesh& mesh, std::uint32_t triangle, Box& box) {
   double far = 0.0;
   for (int k = 3; k < 10; ++k) {
     box.add(vec3(patch.b[k]));
-    const int i = (k - 3) / 2;  // the edge of the point, and where on it the flat triangle has its own
+    const int i = (k - 3) / 2;  // the point's edge, and its position on the flat triangle's edge
     const dvec3 flat = k == 9  ? (patch.b[0] + patch.b[1] + patch.b[2]) / 3.0
                        : k % 2 ? (2.0 * patch.b[i] + patch.b[(i + 1) % 3]) / 3.0
                                : (patch.b[i] + 2.0 * patch.b[(i + 1) % 3]) / 3.0;
@@ -83,7 +83,7 @@ float half_area(const Box& box) {
   return s.x * s.y + s.y * s.z + s.z * s.x;
 }
 
-// Cuts runs in two, at one of some hundred places: long ones are only cut between blocks of 4, 16, 64, ... triangles.
+// Splits runs in two at one of some hundred positions: long ones only between blocks of 4, 16, 64, ... triangles.
 class Cutter {
  public:
   explicit Cutter(std::vector<Box> triangles) {
@@ -102,7 +102,7 @@ class Cutter {
     return run;
   }
 
-  // `even`: into halves, whatever their boxes; so no tree gets deeper than a query's stack.
+  // `even`: split in halves, whatever the boxes; limits the depth to a query's stack.
   void cut(const Run& run, bool even, Run& left, Run& right) {
     std::uint32_t level = 0, scale = 1;
     for (; run.size() / scale > kMostPlaces; ++level) scale *= kStep;
@@ -112,7 +112,7 @@ class Cutter {
     if (!even) {
       std::array<float, kMostPlaces + 2> area;
       Box box;
-      for (std::uint32_t i = count; i-- > 1;) {  // what stands right of a cut before triangle (block) i
+      for (std::uint32_t i = count; i-- > 1;) {  // box of everything right of a split before triangle (block) i
         box.add(boxes[begin + i]);
         area[i] = half_area(box);
       }
@@ -135,7 +135,7 @@ class Cutter {
   std::vector<std::vector<Box>> blocks_;  // [n]: boxes over runs of 4^n triangles
 };
 
-// From this depth on runs are halved: 2^32 triangles then end after 11 more levels, within tree::kStack of
+// From this depth on runs are halved: 2^32 triangles then need 11 more levels, within tree::kStack of
 // systems/touch/triangle_tree.h.
 constexpr int kEvenFrom = 16;
 
@@ -165,8 +165,8 @@ std::vector<TreeNode> build_nodes(Cutter& cutter) {
   while (!open.empty()) {
     const Open at = open.back();
     open.pop_back();
-    // The largest box is cut until there are eight. Runs that one node above the leaves can hold stay whole at first:
-    // most nodes are at the bottom, and so they are fuller.
+    // Split the largest box until there are eight. Runs that fit one node above the leaves are split last: most nodes
+    // are at the bottom, and so they are fuller.
     parts.assign(1, at.run);
     const bool even = at.depth >= kEvenFrom;
     constexpr std::uint32_t kBottom = kTreeNodeWidth * kTreeNodeWidth;

@@ -7,11 +7,11 @@
 namespace pliant {
 namespace {
 
-constexpr int kRegionHalvings = 14;  // of the way to where a region ends that no triangle bounds
-constexpr double kSteepest = 0.9;    // [1] cosine: what lies further to the side of a sheet's rim is not behind it
+constexpr int kRegionHalvings = 14;  // bisection steps towards a region's end that no triangle bounds
+constexpr double kSteepest = 0.9;    // [1] cosine: a point farther to the side of a sheet's rim is not behind it
 constexpr double kOwn = 1e-6;        // [1] of the diagonal
 constexpr double kRim = 0.5;         // [1] of the thickest wall
-constexpr int kStretches = 64;       // of a way inward that are looked at
+constexpr int kStretches = 64;       // intervals of an inward ray that are tested
 
 }  // namespace
 
@@ -71,7 +71,7 @@ double FillRegion::crossing(dvec3 in, dvec3 out) const {
   const dvec3 along = out - in;
   double first = 0.0, last = 1.0;
   if (how_ == How::kHull) {
-    // The outermost triangle on the way, unless it leads out through an opening of the wall.
+    // The outermost triangle on the ray, unless it leads out through an opening of the wall.
     std::vector<double> hits;
     find_hits(surface_, in, along, hits);
     std::sort(hits.begin(), hits.end());
@@ -104,7 +104,7 @@ double FillRegion::thickness_at(const ThicknessSample& sample) const {
     const double middle = next.met() ? 0.5 * (reached + next.share) : reached + kOwn * diagonal;
     if (!(*this)(sample.place + middle * sample.inward)) break;
   }
-  // A rim of the wall around an opening is no ear: what is filled begins beside it.
+  // The wall's rim around an opening does not count as thin: the filled region begins beside it.
   return reached > kRim * thickest_ ? reached : diagonal;
 }
 

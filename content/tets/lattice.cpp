@@ -17,12 +17,13 @@
 namespace pliant {
 namespace {
 
-constexpr int kTries = 10;          // at the usual number of tetrahedra
-constexpr double kSamples = 20000;  // places in the box that tell about how much of it is enclosed
-constexpr double kSure = 1.1;       // [1] of the limit: what is estimated above it is beyond it
+constexpr int kTries = 10;          // attempts to reach the usual number of tetrahedra
+constexpr double kTetsPerCube = 12.0;
+constexpr double kSamples = 20000;  // sample points in the box that estimate its enclosed share
+constexpr double kSure = 1.1;       // [1] of the limit: estimates above it are rejected
 
-// [1] About how many tetrahedra a cell makes: twelve for each cube of it in the volume, by the share of a regular grid
-// of places that lie inside. Filling a box with millions only to find them too many takes half a minute.
+// [1] Estimated number of tetrahedra for a cell: twelve per cell cube of the volume, which is sampled on a regular
+// grid. Filling a box with millions before rejecting them would take half a minute.
 double estimated_tets(const FillRegion& region, double cell) {
   const Box box = region.box();
   const dvec3 low(box.min), size(box.size());
@@ -31,7 +32,7 @@ double estimated_tets(const FillRegion& region, double cell) {
   const glm::ivec3 count = glm::max(glm::ivec3(glm::ceil(glm::min(size / step, dvec3(kSamples)))), glm::ivec3(1));
   const std::size_t all =
       static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y) * static_cast<std::size_t>(count.z);
-  if (static_cast<double>(all) > 50 * kSamples) return 0.0;  // flat: counted as it is filled
+  if (static_cast<double>(all) > 50 * kSamples) return 0.0;  // flat: counted during filling
   std::vector<std::size_t> enclosed(static_cast<std::size_t>(count.z), 0);
   parallel_for(enclosed.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t z = begin; z < end; ++z)
@@ -41,7 +42,7 @@ double estimated_tets(const FillRegion& region, double cell) {
   });
   const std::size_t sum = std::accumulate(enclosed.begin(), enclosed.end(), std::size_t{0});
   const double share = static_cast<double>(sum) / static_cast<double>(all);
-  return 12.0 * share * size.x * size.y * size.z / (cell * cell * cell);
+  return kTetsPerCube * share * size.x * size.y * size.z / (cell * cell * cell);
 }
 
 struct Found {
@@ -49,9 +50,9 @@ struct Found {
   Stuffing stuffing;
 };
 
-// The cell whose stuffing has about kUsualTets tetrahedra: their number goes with the cube of the cell. Begins where a
-// box filled by a third would need no change. What is thinner than its cell makes numbers that jump about: the nearest
-// one of all tries then counts.
+// Finds the cell that gives about kUsualTets tetrahedra; their number scales with the cell's inverse cube. Starts at
+// the cell that is right for a box filled by a third. For objects thinner than their cell the number is erratic; the
+// nearest of all attempts is then used.
 Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, const LatticeWish& wish, LongWork& progress) {
   const Box box = region.box();
   const dvec3 size(box.size());
@@ -89,7 +90,11 @@ Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, const La
   };
   const double nodes = LatticeGrid::node_count(region.box(), cell, wish.focus);
   if (nodes > static_cast<double>(most(limits::kLatticeNodes))) return count(limits::kLatticeNodes, nodes);
-  const double tets = wish.focus ? 0.0 : estimated_tets(region, cell);
+  // Where a full box would not have too many there is nothing to estimate.
+  const dvec3 size(region.box().size());
+  const bool may_be_beyond =
+      kTetsPerCube * size.x * size.y * size.z / (cell * cell * cell) > static_cast<double>(most(limits::kTets));
+  const double tets = may_be_beyond && !wish.focus ? estimated_tets(region, cell) : 0.0;
   if (tets > kSure * static_cast<double>(most(limits::kTets))) return count(limits::kTets, tets);
   const LatticeGrid grid(region.box(), cell, wish.focus);
   Result<Stuffing> stuffing = stuff(surface, region, grid, most(limits::kTets), progress, wish.stop);
@@ -100,7 +105,7 @@ Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, const La
   return Found{cell, std::move(*stuffing)};
 }
 
-// Why nothing could be filled, and what to do.
+// Why nothing could be filled, and the remedy.
 Error nothing_held(const Mesh& surface, const SurfaceShape& shape, const LatticeWish& wish) {
   const std::string where = "mesh `" + surface.name + "`";
   const bool sheet = shape.kind == SurfaceKind::kSheet;

@@ -1,10 +1,10 @@
 // The tetrahedra of a soft body from its surface.
 //
 // Isosurface stuffing (Labelle & Shewchuk, "Isosurface stuffing: fast tetrahedral meshes with good dihedral angles",
-// 2007) on a body-centred cubic lattice: lattice tetrahedra inside stay as they are, those that the surface cuts are
-// warped and clipped to it. It won over an embedded lattice of whole cells, whose elements are better still (60 and 90
-// degrees) but whose steps on the surface put half a cell too much tissue all around: at four cells across a finger
-// that doubles its mass. Deterministic, and independent of the number of threads.
+// 2007) on a body-centred cubic lattice. Inner lattice tetrahedra are kept; those that the surface cuts are warped and
+// clipped to it. The alternative was an embedded lattice of whole cells. Its elements are better (60 and 90 degrees),
+// but its stepped boundary adds half a cell of tissue all around; with four cells across a finger this doubles the
+// mass. Deterministic, and independent of the number of threads.
 #pragma once
 
 #include <stop_token>
@@ -17,28 +17,28 @@
 
 namespace pliant {
 
-inline constexpr std::size_t kUsualTets = 2'000;  // aimed at where the level names no cell
-// ... and never more than this, however thin or bent the surface is: a step of some 30 ms (step_cost.h).
+inline constexpr std::size_t kUsualTets = 2'000;  // target if the level specifies no cell
+// The upper limit, however thin or bent the surface is: a step of some 30 ms (step_cost.h).
 inline constexpr std::size_t kMostUsualTets = 4 * kUsualTets;
-// Lattice nodes that the search for the usual cell looks at in one try: 0.1 s. Whatever fills so little
-// of its box that it would need more gets fewer tetrahedra.
+// Most lattice nodes per attempt in the search for the usual cell: 0.1 s. An object that fills too little of its box
+// for this gets fewer tetrahedra.
 inline constexpr double kMostUsualNodes = 100'000;
 
 struct LatticeWish {
-  double cell = 0.0;         // [m] 0: the one that makes about kUsualTets
-  Fill fill = Fill::kSolid;  // ... and `thickness` [m]: as SoftBodyParameters
+  double cell = 0.0;         // [m] 0: chosen to give about kUsualTets
+  Fill fill = Fill::kSolid;  // with `thickness` [m], as in SoftBodyParameters
   double thickness = 0.0;
-  std::stop_token stop;               // a filling that is no longer wanted ends with an error
-  std::optional<LatticeFocus> focus;  // where it is finer: `cell` is the one in its middle
+  std::stop_token stop;               // cancels the filling with an error
+  std::optional<LatticeFocus> focus;  // where the lattice is finer: `cell` is the size in its middle
 };
 
-// Fills a surface (small holes do not matter) with tetrahedra, without embedding it in them: a wall's cavity as `fill`
-// says, an open sheet with `thickness`. All nodes are free, in Hilbert order; parts are as they come (tet_parts.h).
-// TetMesh::report says what it found but what concerns parts. Errors: a cell or thickness that is not a finite length,
-// nothing enclosed, more than limits::kTets. Progress over a second goes to stderr.
+// Fills a surface (small holes do not matter) with tetrahedra, without embedding: a wall's cavity by `fill`, an open
+// sheet with `thickness`. All nodes are free, in Hilbert order; small parts are kept (tet_parts.h). Fills TetReport
+// except for the parts. Errors: a cell or thickness that is not a finite length, nothing enclosed, more than
+// limits::kTets. Progress messages go to stderr after a second.
 Result<TetMesh> fill_surface(const Mesh& surface, const LatticeWish& wish);
 
-// ... of a solid, with every vertex of the surface embedded.
+// The same for a solid, with every vertex of the surface embedded.
 Result<TetMesh> make_lattice(const Mesh& surface, double cell = 0.0);
 
 }  // namespace pliant

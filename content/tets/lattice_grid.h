@@ -1,11 +1,10 @@
-// A body-centred cubic lattice over a box: the corners and the centres of cubes of side `cell`. Places are in doubled
-// coordinates, half a cell apart: corners have three even ones, centres three odd ones. Its tetrahedra are all alike:
-// around each face of a cube, the two centres beside it and one of its four edges; dihedral angles of 60 and 90
-// degrees.
+// A body-centred cubic lattice over a box: the corners and centres of cubes of side `cell`. Positions are in doubled
+// coordinates, half a cell apart: corners have three even ones, centres three odd ones. All tetrahedra are congruent:
+// each joins the two centres beside a cube's face with one of its four edges; dihedral angles of 60 and 90 degrees.
 //
-// A lattice may be finer around a place: its own coordinates q are even, and a node at the distance q from that place
-// there lies at r = q w from it, w = 1 + (g - 1) q^2 / (q^2 + a^2). So cells are of the size `cell` around the place,
-// and grow to g times that; on the way they are at most 1.8 times as long as wide.
+// A lattice may be refined around a point. Its own coordinates q are uniform; a node at distance q from that point lies
+// in space at r = q w, w = 1 + (g - 1) q^2 / (q^2 + a^2). Cells have size `cell` around the point and grow to g times
+// that. In between they are at most 1.8 times as long as wide.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +19,8 @@ namespace pliant {
 
 using Place = glm::ivec3;  // half cells from the lattice's origin
 
-// Steps from a node to the nodes it shares an edge with: six long ones of a cell, eight short ones of sqrt(3)/2 cells.
-// Step i and step 13 - i are opposite.
+// Steps from a node to its edge neighbours: six long ones of a cell, eight short ones of sqrt(3)/2 cells. Step i and
+// step 13 - i are opposite.
 inline constexpr std::size_t kSteps = 14;
 inline const std::array<Place, kSteps> kStep{{{-2, 0, 0},
                                               {0, -2, 0},
@@ -44,16 +43,16 @@ inline bool is_long(std::size_t step) {
   return step < 3 || step >= kSteps - 3;
 }
 
-// Where a lattice is finer, and how it lies: the center is a corner of its cubes.
+// Where a lattice is refined, and its orientation. The center is a cube corner.
 struct LatticeFocus {
   dvec3 center{0};      // [m]
   double radius = 0.0;  // [m] a > 0
   dmat3 axes{1.0};      // [1] a rotation: the lattice's axes
 
   static constexpr double kGrowth = 6.0;  // [1] g
-  // [1] How wide cells are, by those in the middle: q [m] from it in the lattice's coordinates.
+  // [1] Cell width relative to the middle, at q [m] from it in lattice coordinates.
   double width(double q) const { return 1.0 + (kGrowth - 1.0) * q * q / (q * q + radius * radius); }
-  // [m] How far from the center in the lattice's coordinates lies what is this far [m] from it in space.
+  // [m] The distance from the center in lattice coordinates for a distance r [m] in space.
   double inward(double r) const {
     double low = r / kGrowth, high = r;
     for (int n = 0; n < kHalvings; ++n) {
@@ -62,7 +61,7 @@ struct LatticeFocus {
     }
     return high;
   }
-  // [1] The same at a place in space.
+  // [1] The same at a point in space.
   double width_at(dvec3 place) const { return width(inward(length(place - center))); }
   dvec3 outward(dvec3 q) const { return center + axes * (q * width(length(q))); }
 
@@ -72,8 +71,8 @@ struct LatticeFocus {
 
 class LatticeGrid {
  public:
-  // Covers the box with at least two cells to spare on every side: neighbours of neighbours exist. Without a focus it
-  // is centred on the box.
+  // Covers the box with a margin of at least two cells, so that neighbours of neighbours exist. Without a focus it is
+  // centred on the box.
   LatticeGrid(const Box& box, double cell, const std::optional<LatticeFocus>& focus = {}) : cell_(cell), focus_(focus) {
     const auto [low, high] = bounds(box, focus);
     for (int i = 0; i < 3; ++i) {
@@ -87,7 +86,7 @@ class LatticeGrid {
       origin_[i] = 0.5 * (low[i] + high[i]) - 0.5 * cell * cubes_[i];
     }
   }
-  // [1] for a box and a cell, before anything is built; a double, since it may be beyond any integer.
+  // [1] Number of nodes for a box and a cell, before construction; a double because it may exceed any integer.
   static double node_count(const Box& box, double cell, const std::optional<LatticeFocus>& focus = {}) {
     const auto [low, high] = bounds(box, focus);
     double count = 2.0;
@@ -98,7 +97,7 @@ class LatticeGrid {
   double cell() const { return cell_; }
   Place cubes() const { return cubes_; }
   std::uint32_t size() const { return 2u * static_cast<std::uint32_t>(rows() * (cubes_.z + 1)); }
-  // Nodes of a layer of corners and the centres above it lie together.
+  // A layer of corners and the centres above it are contiguous.
   std::uint32_t layer_size() const { return 2u * static_cast<std::uint32_t>(rows()); }
 
   std::uint32_t index(Place p) const {
@@ -116,8 +115,8 @@ class LatticeGrid {
   }
 
  private:
-  // What holds the box in the lattice's coordinates: no point of a face lies farther away there, along the face's axis,
-  // than the point right above the center.
+  // Bounds of the box in lattice coordinates. Along a face's axis no point of the face is farther away than the one
+  // directly above the center.
   static std::array<dvec3, 2> bounds(const Box& box, const std::optional<LatticeFocus>& focus) {
     if (!focus) return {dvec3(box.min), dvec3(box.max)};
     dvec3 low(0), high(0);

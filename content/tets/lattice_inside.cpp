@@ -9,21 +9,21 @@
 namespace pliant {
 namespace {
 
-constexpr double kFarRadii = 2.3;  // [1] a cluster is a dipole from this many of its radii on
-constexpr int kHalvings = 24;      // of the way through a hole
+constexpr double kFarRadii = 2.3;   // [1] a cluster is a dipole from this many of its radii on
+constexpr int kHalvings = 24;       // bisection steps across a hole
+constexpr double kGridBoxes = 2e5;  // 3 ms to make
+constexpr double kMostAlong = 256;  // boxes along an axis
 
 struct Visit {
   std::uint32_t level, box;
 };
-// Each level leaves at most kTreeWidth - 1 siblings waiting; 32 levels hold any index.
+// Each level leaves at most kTreeWidth - 1 siblings on the stack; 32 levels hold any index.
 constexpr std::size_t kDeepest = 32 * kTreeWidth;
 
 }  // namespace
 
 Inside::Inside(const Mesh& surface) : surface_(surface) {
-  closed_ = !surface.across.empty() && std::none_of(surface.across.begin(), surface.across.end(), [](const uvec3& t) {
-    return t.x == kBorder || t.y == kBorder || t.z == kBorder;
-  });
+  closed_ = is_closed();
   const auto& boxes = surface.tree.levels;
   const auto triangles = static_cast<std::uint32_t>(surface.triangles.size());
   std::vector<double> weight;  // [m2] of each cluster of the level below
@@ -60,6 +60,72 @@ Inside::Inside(const Mesh& surface) : surface_(surface) {
     }
     levels_.push_back(std::move(clusters));
     weight = std::move(weights);
+  }
+  if (closed_) make_grid();
+}
+
+bool Inside::is_closed() const {
+  const std::vector<uvec3>& triangles = surface_.triangles;
+  if (surface_.across.empty()) return false;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t other = surface_.across[t][i];
+      if (other == kBorder) return false;
+      const uvec3 &own = triangles[t], &its = triangles[other];
+      const std::uint32_t from = own[i], to = own[(i + 1) % 3];
+      if (!((its.x == to && its.y == from) || (its.y == to && its.z == from) || (its.z == to && its.x == from)))
+        return false;
+    }
+  return true;
+}
+
+void Inside::make_grid() {
+  const Box& box = surface_.box;
+  const dvec3 size(box.size());
+  const double step = std::cbrt(size.x * size.y * size.z / kGridBoxes);
+  if (!(step > 0.0)) return;
+  count_ = glm::ivec3(glm::clamp(glm::ceil(size / step), dvec3(1), dvec3(kMostAlong)));
+  low_ = dvec3(box.min);
+  over_ = dvec3(count_) / size;
+  count_ += 1;  // what lies on the far sides
+  std::vector<Side> sides(
+      static_cast<std::size_t>(count_.x) * static_cast<std::size_t>(count_.y) * static_cast<std::size_t>(count_.z),
+      Side::kFree);
+  for (const uvec3& t : surface_.triangles) {
+    const dvec3 p(surface_.position(t.x)), q(surface_.position(t.y)), r(surface_.position(t.z));
+    const glm::ivec3 first = box_of(glm::min(p, glm::min(q, r))), last = box_of(glm::max(p, glm::max(q, r)));
+    for (int z = first.z; z <= last.z; ++z)
+      for (int y = first.y; y <= last.y; ++y) {
+        const auto row = sides.begin() + number_of({0, y, z});
+        std::fill(row + first.x, row + last.x + 1, Side::kUnknown);
+      }
+  }
+  sides_ = std::move(sides);
+  std::vector<std::uint32_t> part;
+  for (std::uint32_t i = 0; i < sides_.size(); ++i)
+    if (sides_[i] == Side::kFree) join(i, part);
+}
+
+// All free boxes that are reached from one get its side.
+void Inside::join(std::uint32_t from, std::vector<std::uint32_t>& part) {
+  const auto x = static_cast<std::uint32_t>(count_.x), y = static_cast<std::uint32_t>(count_.y);
+  const auto place = [&](std::uint32_t i) { return glm::ivec3(i % x, i / x % y, i / x / y); };
+  const Side side = by_winding(low_ + (dvec3(place(from)) + 0.5) / over_) ? Side::kInside : Side::kOutside;
+  sides_[from] = side;
+  part.assign(1, from);
+  while (!part.empty()) {
+    const glm::ivec3 at = place(part.back());
+    part.pop_back();
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int step : {-1, 1}) {
+        glm::ivec3 next = at;
+        next[axis] += step;
+        if (next[axis] < 0 || next[axis] >= count_[axis]) continue;
+        const std::uint32_t number = number_of(next);
+        if (sides_[number] != Side::kFree) continue;
+        sides_[number] = side;
+        part.push_back(number);
+      }
   }
 }
 
@@ -130,7 +196,7 @@ double Inside::crossing(dvec3 inside, dvec3 outside) const {
     }
     return 0.5 * (in + out);
   }
-  // Between hits the side is the same: of the stretches before the first hit (inside) to behind the last (outside).
+  // The side is constant between hits: bisect the intervals from the first (inside) to the last (outside).
   std::size_t first = 0, last = hits.size();
   while (last - first > 1) {
     const std::size_t middle = (first + last) / 2;

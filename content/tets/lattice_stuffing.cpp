@@ -14,16 +14,16 @@ namespace pliant {
 namespace {
 
 // A cut closer to a lattice node than this share of its edge is moved into the node (Labelle & Shewchuk, table 1, the
-// pair that they prove bounds for).
+// pair with proven bounds).
 constexpr double kWarpLong = 0.24999, kWarpShort = 0.41189;
 
-constexpr std::size_t kRun = 8;  // nodes whose sides are looked for together
+constexpr std::size_t kRun = 8;  // nodes whose sides are determined together
 
 constexpr double kBridgeSmallest = 0.26, kBridgeLargest = 2.62;  // [rad] 15 and 150 degrees
 
 enum CellSide : std::int8_t { kOutside = -1, kOn = 0, kInside = 1 };
 
-// Where the surface cuts the edge from an inside node along a step.
+// A surface cut on the edge from an inside node along a step.
 struct Cut {
   std::uint32_t node;
   std::uint32_t step;
@@ -53,7 +53,7 @@ class Stuffer {
 
   Error stopped() const { return {"mesh `" + name_ + "`", "its filling was stopped; nothing is wrong with it"}; }
 
-  // The outermost nodes stay outside: the grid reaches two cells beyond the surface.
+  // The outermost nodes stay outside: the grid extends two cells beyond the surface.
   Status find_sides() {
     side_.assign(grid_.size(), kOutside);
     for (std::uint32_t first = 0; first < grid_.size(); first += grid_.layer_size()) {
@@ -68,7 +68,7 @@ class Stuffer {
     return Done{};
   }
 
-  // Of a few neighbours in a row: where the surface is not near, one tells for all.
+  // A few neighbours in a row: away from the surface, one decides for all.
   void find_sides(std::uint32_t begin, std::uint32_t end) {
     const Place cubes = grid_.cubes();
     std::array<std::uint32_t, kRun> node;
@@ -121,7 +121,7 @@ class Stuffer {
     return glm::mix(grid_.position(p), grid_.position(p + kStep[c.step]), c.share);
   }
 
-  // Lattice nodes that the surface passes too closely move onto it; the cuts on their other edges are forgotten.
+  // Lattice nodes too close to the surface move onto it; the cuts on their other edges are discarded.
   void warp() {
     std::vector<std::uint32_t> near;
     for (const Cut& c : cuts_) {
@@ -151,7 +151,7 @@ class Stuffer {
     }
   }
 
-  // The twelve lattice tetrahedra of each cube: four around the face that it shares with the next along each axis.
+  // The twelve lattice tetrahedra of each cube: four around the face shared with the next cube along each axis.
   void fill() {
     output_.assign(grid_.size(), 0xffffffffu);
     const Place cubes = grid_.cubes();
@@ -174,7 +174,7 @@ class Stuffer {
           }
   }
 
-  // Output nodes, made when first used.
+  // Output nodes, created on first use.
   std::uint32_t node(Place p) {
     const std::uint32_t index = grid_.index(p);
     if (output_[index] == 0xffffffffu) {
@@ -200,9 +200,9 @@ class Stuffer {
     out_.tets.push_back(volume > 0.0 ? Tet{a, b, c, d} : Tet{a, b, d, c});
   }
 
-  // Of the face p, q, m with p and q inside and m outside, a quadrilateral is left; its diagonal runs from p to the cut
-  // of q (else from q to the cut of p). Both tetrahedra at the face must agree, so only the lattice decides: the
-  // diagonal leaves the end of the long edge; between two short ones, the end at an even place (parity rule).
+  // The face p, q, m with p and q inside and m outside is cut to a quadrilateral. Its diagonal runs from p to the cut
+  // of q, or from q to the cut of p. Both adjacent tetrahedra must agree, so only the lattice decides: the diagonal
+  // starts at the end of the long edge; between two short ones, at the even position (parity rule).
   static bool diagonal_from_first(Place p, Place q, Place m) {
     const auto is_long_edge = [](Place a, Place b) { return a.x % 2 == b.x % 2; };
     if (is_long_edge(p, m)) return true;
@@ -210,13 +210,13 @@ class Stuffer {
     return (((p.x >> 1) + (p.y >> 1) + (p.z >> 1)) & 1) == 0;
   }
 
-  // Three tetrahedra of a prism whose triangles a and b face each other; from_first[i]: the diagonal of the side over
-  // corners i and i+1 runs from a[i] to b[i+1], else from a[i+1] to b[i]. The three may not chase each other.
+  // Three tetrahedra of a prism with opposite triangles a and b. from_first[i]: the diagonal of the side over corners i
+  // and i+1 runs from a[i] to b[i+1], else from a[i+1] to b[i]. The three must not form a cycle.
   void prism(const std::uint32_t (&a)[3], const std::uint32_t (&b)[3], const bool (&from_first)[3]) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
       if (!from_first[i] || from_first[k]) continue;
-      // a[i] holds two diagonals: over against it lie the triangle b and the side over j and k.
+      // Two diagonals start at a[i]: opposite lie the triangle b and the side over j and k.
       emit(a[i], b[0], b[1], b[2]);
       if (from_first[j]) {
         emit(a[i], a[j], a[k], b[k]);
@@ -230,9 +230,8 @@ class Stuffer {
     ASSERT(false);
   }
 
-  // All four corners have moved onto the surface: where a finger is hardly thicker than a cell, such elements are all
-  // that joins it. The paper leaves them out; here they stay where they lie inside and are as well-shaped as the
-  // others.
+  // All four corners have moved onto the surface. Where a finger is hardly thicker than a cell, only such elements
+  // connect it. The paper discards them; here they are kept if they lie inside and are well-shaped.
   bool bridges(const std::array<Place, 4>& corners) {
     std::vector<dvec3> p;
     for (const Place place : corners) p.push_back(warped_.at(grid_.index(place)));
@@ -242,7 +241,7 @@ class Stuffer {
            region_(0.25 * (p[0] + p[1] + p[2] + p[3]));
   }
 
-  // What of a lattice tetrahedron lies inside.
+  // Keeps the inner part of a lattice tetrahedron.
   void clip(const std::array<Place, 4>& corners) {
     Place in[4], on[4], out[4];
     std::size_t ins = 0, ons = 0, outs = 0;
@@ -266,7 +265,7 @@ class Stuffer {
                                  diagonal_from_first(in[2], in[0], out[0])};
       prism({node(in[0]), node(in[1]), node(in[2])},
             {node_between(in[0], out[0]), node_between(in[1], out[0]), node_between(in[2], out[0])}, diagonals);
-    } else if (outs == 1) {  // a pyramid over the quadrilateral, its tip on the surface
+    } else if (outs == 1) {  // a pyramid over the quadrilateral, its apex on the surface
       const std::uint32_t a = node(in[0]), b = node(in[1]), tip = node(on[0]);
       const std::uint32_t c = node_between(in[0], out[0]), d = node_between(in[1], out[0]);
       const bool first = diagonal_from_first(in[0], in[1], out[0]);
@@ -277,8 +276,8 @@ class Stuffer {
     }
   }
 
-  // Two inside, two outside: a prism between triangles at the two inside nodes. Its third side lies on the surface,
-  // where no neighbour cares, and takes the shorter diagonal unless the three would chase each other.
+  // Two inside, two outside: a prism between triangles at the two inside nodes. Its third side lies on the surface
+  // without a neighbour and takes the shorter diagonal, unless the three would form a cycle.
   void wedge(const Place (&in)[4], const Place (&out)[4]) {
     const std::uint32_t a[3] = {node(in[0]), node_between(in[0], out[0]), node_between(in[0], out[1])};
     const std::uint32_t b[3] = {node(in[1]), node_between(in[1], out[0]), node_between(in[1], out[1])};

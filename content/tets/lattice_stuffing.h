@@ -1,4 +1,4 @@
-// One isosurface stuffing of one lattice: nodes and tetrahedra, in the order of the lattice.
+// Isosurface stuffing of one lattice: nodes and tetrahedra, in the order of the lattice.
 #pragma once
 
 #include <stop_token>
@@ -15,10 +15,10 @@ namespace pliant {
 struct Stuffing {
   std::vector<dvec3> nodes;  // [m]
   std::vector<Tet> tets;     // positive volume
-  bool beyond = false;       // there are more than were allowed: given up
+  bool beyond = false;       // the allowed number was exceeded: cancelled
 };
 
-// Empty where no lattice point lies in the region. Error: whoever waits wants no more of it.
+// Empty if no lattice point lies in the region. Error: cancelled by `stop`.
 Result<Stuffing> stuff(const Mesh& surface, const FillRegion& region, const LatticeGrid& grid, std::size_t most,
                        LongWork& progress, const std::stop_token& stop = {});
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kSize = 192;  // of the matrix that is factorised
 constexpr int kRuns = 8;
-constexpr double kReference = 0.30;  // [ms] the measured machine's own time for it
+constexpr double kReference = 0.30;  // [ms] its time on the reference machine
 
 double thread_ms() {
   timespec now{};
@@ -19,7 +19,7 @@ double thread_ms() {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-// Cholesky, column by column, as the panels of block_cholesky are.
+// Cholesky factorisation, column by column, like the panels of block_cholesky.
 double factorise(std::vector<double>& a) {
   for (std::size_t j = 0; j < kSize; ++j) {
     double* const column = &a[j * kSize];
@@ -43,7 +43,8 @@ double measure() {
     sum += factorise(a);
     least = std::min(least, thread_ms() - begin);
   }
-  return sum > 0.0 ? std::max(least, 1e-3) / kReference : 1.0;  // the sum keeps the arithmetic from being left out
+  return sum > 0.0 ? std::max(least, 1e-3) / kReference : 1.0;  // using the sum keeps the compiler from removing the
+                                                                // computation
 }
 
 }  // namespace

@@ -10,10 +10,10 @@ namespace {
 struct RayVisit {
   std::uint32_t level, box;
 };
-// Each level leaves at most kTreeWidth - 1 siblings waiting; 32 levels hold any index.
+// Each level leaves at most kTreeWidth - 1 siblings on the stack; 32 levels hold any index.
 constexpr std::size_t kDeepestRay = 32 * kTreeWidth;
 
-// Whether the way from + s along, s in [0, far], meets the box; `over` is 1 / along.
+// Whether the ray from + s along, s in [0, far], meets the box; `over` is 1 / along.
 bool meets(const Box& box, dvec3 from, dvec3 along, dvec3 over, double far) {
   double in = 0.0, out = far;
   for (int i = 0; i < 3; ++i) {
@@ -75,7 +75,7 @@ void find_closest(const Mesh& surface, dvec3 p, RayVisit at, RayPoint& best) {
     }
     return;
   }
-  // Nearest first, so that the distance falls early.
+  // Nearest first, so that the distance decreases early.
   std::array<std::pair<double, std::uint32_t>, kTreeWidth> near;
   std::size_t count = 0;
   const auto end = std::min<std::size_t>((at.box + 1) * kTreeWidth, boxes[at.level - 1].size());
@@ -109,9 +109,10 @@ RayHit first_hit(const Mesh& surface, dvec3 from, dvec3 along, double after) {
 
 namespace {
 
-// Evenly spread along a spiral, every run of them all around: unit vectors that no modelled surface lies along.
+// Spread evenly along a spiral; every run of them covers all sides. Unit vectors that no modelled surface is parallel
+// to.
 constexpr std::size_t kDirections = 40;
-constexpr std::size_t kAgree = 8;  // that need no more, where they say the same
+constexpr std::size_t kAgree = 8;  // if these agree, no more are tested
 const std::array<dvec3, kDirections>& directions() {
   static const std::array<dvec3, kDirections> all = [] {
     std::array<dvec3, kDirections> made;

@@ -8,12 +8,12 @@
 namespace pliant {
 namespace {
 
-constexpr double kOwnShape = 1e-6;       // [1] of the diagonal: nearer hits are those of the triangle one starts on
-constexpr double kJustOut = 1e-4;        // [1] of the diagonal: how far off the surface one looks around
-constexpr double kEnclosed = 0.6;        // [1] of all directions: above what a plate has on either side
-constexpr std::size_t kShapeGrain = 16;  // samples of one run
+constexpr double kOwnShape = 1e-6;       // [1] of the diagonal: nearer hits belong to the ray's own triangle
+constexpr double kJustOut = 1e-4;        // [1] of the diagonal: distance off the surface from which rays are cast
+constexpr double kEnclosed = 0.6;        // [1] of all directions: more than on either side of a plate
+constexpr std::size_t kShapeGrain = 16;  // samples per run
 
-// Centres of triangles, one for each equal part of the area in their order, which is Hilbert's.
+// Triangle centres, one for each equal part of the area in Hilbert order.
 std::vector<ThicknessSample> spread(const Mesh& surface, std::size_t samples) {
   double total = 0.0;
   std::vector<double> area;
@@ -31,7 +31,7 @@ std::vector<ThicknessSample> spread(const Mesh& surface, std::size_t samples) {
     if (passed < next || !(area[i] > 0.0)) continue;
     const uvec3 t = surface.triangles[i];
     const dvec3 a(surface.position(t.x)), b(surface.position(t.y)), c(surface.position(t.z));
-    // A large triangle stands for several parts: places along its medians.
+    // A large triangle represents several parts: points along its medians.
     for (std::size_t n = 0; passed >= next; ++n, next += step) {
       const double w = 1.0 / 3.0 + 0.5 * (static_cast<double>(n % 4)) / 4.0, rest = 0.5 * (1.0 - w);
       const dvec3 place = n % 3 == 0   ? w * a + rest * (b + c)

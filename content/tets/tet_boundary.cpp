@@ -5,7 +5,7 @@
 namespace pliant {
 namespace {
 
-// Outward faces of a tetrahedron of positive volume, each over against its corner.
+// Outward faces of a tetrahedron of positive volume, each opposite its corner.
 constexpr std::size_t kFace[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The surface of tetrahedra: their faces that no other shares.
+// The surface of tetrahedra: the unshared faces.
 #pragma once
 
 #include <span>
@@ -10,12 +10,12 @@ namespace pliant {
 
 struct TetFace {
   std::array<std::uint32_t, 3> nodes;  // ascending
-  std::uint32_t number;                // 4 * tetrahedron + the corner over against it
+  std::uint32_t number;                // 4 * tetrahedron + the opposite corner
 };
-// Every face of every tetrahedron; those that two share stand side by side.
+// All faces of all tetrahedra; the two copies of a shared face are adjacent.
 std::vector<TetFace> sorted_faces(std::span<const Tet> tets);
 
-// Nodes of each face that stands alone, counter-clockwise seen from outside, in the order of the tetrahedra.
+// Nodes of each unshared face, counter-clockwise from outside, in the order of the tetrahedra.
 std::vector<uvec3> boundary_triangles(std::span<const Tet> tets);
 
 }  // namespace pliant

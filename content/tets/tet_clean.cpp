@@ -12,8 +12,8 @@ namespace pliant {
 namespace {
 
 constexpr double kFarthestNode = 1e9;  // [m]
-// Six volumes over the cube of the longest edge from a corner: below it, an element has no volume worth the name (a
-// regular one has 0.7).
+// Six volumes over the cube of the longest edge from a corner (0.7 for a regular tetrahedron). Below it, an element
+// counts as flat.
 constexpr double kFlat = 1e-8;
 
 double longest_edge(std::span<const dvec3> nodes, const Tet& t) {

@@ -11,11 +11,11 @@ namespace pliant {
 namespace {
 
 constexpr std::uint32_t kNoTet = 0xffffffffu;
-// Of tetrahedra about equally near, the one that extrapolates least wins: a flat one next to the vertex would throw it
-// about.
+// Among tetrahedra at similar distance, the one with the least extrapolation is used: a flat one would amplify its
+// motion.
 constexpr double kAboutEqual = 1.5;
 
-// An implicit tree of boxes over tetrahedra that lie along the Hilbert curve.
+// An implicit tree of boxes over tetrahedra in Hilbert order.
 class Tree {
  public:
   Tree(const std::vector<dvec3>& nodes, const std::vector<Tet>& tets) : tets_(tets) {
@@ -61,7 +61,7 @@ class Tree {
       for (std::size_t t = begin; t < end; ++t) visit(static_cast<std::uint32_t>(t));
       return;
     }
-    // Nearest first, so that `reach` falls early.
+    // Nearest first, so that `reach` decreases early.
     std::array<std::pair<double, std::size_t>, kWidth> near;
     std::size_t count = 0;
     for (std::size_t c = begin; c < end; ++c) {
@@ -85,7 +85,7 @@ class Embedder {
   Embedding find(dvec3 p, dvec3 outward) const {
     Embedding found = best_near(p, 0.0, nullptr);
     if (found.tet == kNoTet) {
-      // Tissue behind the vertex's tangent plane is its own; what lies in front may be another finger's.
+      // Prefer tissue behind the vertex's tangent plane; tissue in front may belong to another finger.
       double distance = nearest(p, &outward);
       const bool own = distance < std::numeric_limits<double>::max();
       if (!own) distance = nearest(p, nullptr);
@@ -97,7 +97,7 @@ class Embedder {
   bool holds(dvec3 p) const { return best_near(p, 0.0, nullptr).tet != kNoTet; }
 
  private:
-  // Weights by Cramer's rule; the first is what the others leave, so that they sum to 1. False: the element is flat.
+  // Weights by Cramer's rule; the first is 1 minus the others, so that they sum to 1. False: the element is flat.
   bool weights(const Tet& t, dvec3 p, std::array<double, 4>& w) const {
     const dvec3 o = nodes_[t[0]], a = nodes_[t[1]] - o, b = nodes_[t[2]] - o, c = nodes_[t[3]] - o, x = p - o;
     const double det = dot(a, cross(b, c));
@@ -116,7 +116,7 @@ class Embedder {
     return dot(centre - p, *outward) < 0.0;
   }
 
-  // [m] from p, which no element holds, to the nearest one; the largest double: there is none.
+  // [m] Distance from p, which is in no element, to the nearest one; the largest double: there is none.
   double nearest(dvec3 p, const dvec3* outward) const {
     constexpr int kFace[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
     double reach = std::numeric_limits<double>::max();
@@ -132,8 +132,8 @@ class Embedder {
     return reach;
   }
 
-  // Of the elements with a box within `reach`, the one in which the smallest weight is largest; with a reach of 0 only
-  // one that holds p.
+  // Of the elements whose box is within `reach`, the one whose smallest weight is largest. With reach 0, only one that
+  // contains p.
   Embedding best_near(dvec3 p, double reach, const dvec3* outward) const {
     Embedding best{kNoTet, {}};
     double smallest = reach > 0.0 ? std::numeric_limits<double>::lowest() : -1e-12;

@@ -14,7 +14,7 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-// The file beside this one with the same name but for its extension, written as this one's is.
+// The file with the same name and the other extension, in the same letter case.
 fs::path partner(fs::path path, const char* lower, const char* upper) {
   const std::string extension = path.extension().string();
   const bool is_upper = extension.size() > 1 && std::isupper(static_cast<unsigned char>(extension[1]));
@@ -28,7 +28,7 @@ Result<TetFile> read_one(const fs::path& path, const fs::path&) {
   return parse(*bytes, path.string());
 }
 
-// TetGen writes two files; either may be named.
+// TetGen writes two files; either may be given.
 Result<TetFile> read_tetgen(const fs::path& path, const fs::path& within) {
   const bool is_node = lower_extension(path) == ".node";
   Result<Bytes> bytes = read_file(path, limits::kTetFile);
@@ -45,7 +45,7 @@ Result<TetFile> read_tetgen(const fs::path& path, const fs::path& within) {
   return is_node ? parse_tetgen(*bytes, *other, stem) : parse_tetgen(*other, *bytes, stem);
 }
 
-// A new format is a file with its parser and a line here. `within`: load_tets.
+// To add a format: write a parser and add a line here. `within`: see load_tets.
 struct Format {
   const char* extension;
   Result<TetFile> (*read)(const fs::path& path, const fs::path& within);

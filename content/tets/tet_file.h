@@ -13,22 +13,22 @@
 namespace pliant {
 
 struct TetFile {
-  std::vector<dvec3> nodes;        // finite, each named by a tetrahedron
+  std::vector<dvec3> nodes;        // finite, each used by a tetrahedron
   std::vector<Tet> tets;           // positive volume
-  std::vector<std::string> notes;  // what was skipped, turned or dropped
+  std::vector<std::string> notes;  // on skipped, turned or dropped elements
 };
 
 bool is_tet_file(const std::filesystem::path& path);  // by its extension
-// Of TetGen's pair the other file; empty for other formats.
+// The other file of TetGen's pair; empty for other formats.
 std::filesystem::path tetgen_partner(const std::filesystem::path& path);
 
-// Of TetGen's pair either file may be named; the other lies beside it, and not outside of `within` where that is said
+// Either file of TetGen's pair may be given. The other lies beside it, and inside `within` if that is set
 // (confined_file). Errors name the line or the byte.
 Result<TetFile> load_tets(const std::filesystem::path& path, const std::filesystem::path& within = {});
-// What a level in `folder` names, which lies there.
+// Loads a file that a level in `folder` names; it must lie there.
 Result<TetFile> load_named_tets(const std::filesystem::path& folder, const std::string& name);
 
-// From memory, for tests and fuzzers; `name` stands in errors.
+// From memory, for tests and fuzzers; `name` is used in errors.
 Result<TetFile> parse_msh(std::span<const std::uint8_t> bytes, const std::string& name);
 Result<TetFile> parse_vtk(std::span<const std::uint8_t> bytes, const std::string& name);
 Result<TetFile> parse_tetgen(std::span<const std::uint8_t> node, std::span<const std::uint8_t> ele,

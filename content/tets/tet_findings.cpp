@@ -11,7 +11,7 @@ namespace pliant {
 namespace {
 
 constexpr double kTetsPerCube = 12.0;  // of the lattice
-constexpr double kLeastCells = 1.2;    // [cells] across a wall that stays whole
+constexpr double kLeastCells = 1.2;    // [cells] thickness of a wall that stays connected
 
 }  // namespace
 
@@ -73,7 +73,7 @@ void report_thin_places(const SurfaceShape& shape, const FillRegion& region, con
   report.thin = static_cast<double>(thin.size()) / static_cast<double>(shape.samples.size());
   if (report.thin < kThinShare) return;
   std::sort(thin.begin(), thin.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  // Not the very thinnest, which is an edge's: half of what is thin is thinner.
+  // Not the thinnest of all, which is an edge: the median of the thin places.
   const auto& [least, at] = thin[thin.size() / 2];
   report.least_thickness = least;
   report.thinnest = vec3(at->place);

@@ -10,7 +10,7 @@ namespace pliant {
 namespace {
 
 constexpr float kPaintedShare = 0.5f;
-constexpr double kRounding = 1e-6;  // [1] of the diagonal: a box drawn through nodes holds them
+constexpr double kRounding = 1e-6;  // [1] of the diagonal: tolerance, so that a box includes nodes on its faces
 
 bool is_painted(const std::vector<float>& paint) {
   return std::any_of(paint.begin(), paint.end(), [](float value) { return value >= kPaintedShare; });
@@ -37,7 +37,7 @@ std::uint32_t nearest_vertex(const Mesh& mesh, dvec3 p) {
   return best;
 }
 
-// Puts the nodes of a box, or of the paint, into a group; says whether there were any.
+// Puts the nodes of a box, or of the paint, into a group; returns whether there were any.
 bool claim(const std::vector<dvec3>& nodes, const BuiltMesh& surface, const Box& box, const std::vector<float>& paint,
            NodeGroup which, std::vector<NodeGroup>& group) {
   const dvec3 slack(kRounding * static_cast<double>(surface.mesh.box.diagonal()));

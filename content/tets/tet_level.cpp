@@ -15,7 +15,7 @@ Result<Level> import_tets(const std::filesystem::path& path) {
   level.notes.push_back(
       fmt::format("the mesh is the boundary of {} tetrahedra; as tissue, name the file in PLIANT_soft_body/mesh",
                   file->tets.size()));
-  // Nodes on the boundary only, in their order.
+  // Only boundary nodes, in their order.
   constexpr std::uint32_t kInside = 0xffffffffu;
   const std::vector<uvec3> triangles = boundary_triangles(file->tets);
   std::vector<std::uint32_t> number(file->nodes.size(), kInside);

@@ -1,4 +1,4 @@
-// A file of tetrahedra as a Level: its boundary as one mesh, for those who only want to see, convert or touch it.
+// A tetrahedra file as a Level with its boundary as one mesh, for showing, converting or touching it.
 #pragma once
 
 #include "content/level/level.h"

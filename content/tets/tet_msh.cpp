@@ -1,5 +1,5 @@
 // Gmsh's .msh, versions 2 and 4.1, ASCII and binary in either byte order ("MSH file format", gmsh.info/doc). Sections
-// stand between $Name and $EndName; of them $Nodes and $Elements are read. Nodes have tags, in any order.
+// are between $Name and $EndName; only $Nodes and $Elements are read. Nodes have tags, in any order.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-// Nodes of an element by its type; 0: unknown. Tetrahedra begin with their four corners, whatever their order.
+// Number of nodes per element type; 0: unknown. Tetrahedra of any order begin with their four corners.
 constexpr std::uint8_t kNodesOf[] = {0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                      8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
 constexpr std::int64_t kTetTypes[] = {4, 11, 29, 30, 31};
@@ -77,7 +77,7 @@ class Msh {
                                              : text_.fault("ends inside $MeshFormat; it was cut short");
   }
 
-  // Binary values begin after the end of their header's line.
+  // Binary values begin after the end of the header line.
   void end_line() {
     std::string_view rest;
     text_.line(rest);
@@ -106,7 +106,7 @@ class Msh {
 
   Status begin_nodes(std::uint64_t count) {
     if (!raw_.nodes.empty()) return text_.fault("has $Nodes twice; save the mesh again");
-    // In either form a node takes at least eight bytes.
+    // In either encoding a node takes at least eight bytes.
     if (count > std::min<std::uint64_t>(most(limits::kTetFileNodes), text_.left() / 8 + 1))
       return text_.fault(
           fmt::format("claims {} nodes, more than it holds or than {}", count, most(limits::kTetFileNodes)));
@@ -114,7 +114,7 @@ class Msh {
     tags_.reserve(count);
     return Done{};
   }
-  // So that elements find nodes by tag.
+  // Sorts the tags, so that elements find nodes by tag.
   Status end_nodes() {
     std::sort(tags_.begin(), tags_.end(), [](const Tag& a, const Tag& b) { return a.tag < b.tag; });
     for (std::size_t i = 1; i < tags_.size(); ++i)
@@ -177,7 +177,7 @@ class Msh {
     return text_.fault(fmt::format("element {} is cut short or damaged; save the mesh again", number + 1));
   }
 
-  // Elements take at least two bytes in ASCII; a block's own size is met by what is really there.
+  // Elements take at least two bytes in ASCII; a block's claimed size is checked against the remaining bytes.
   Status begin_elements(std::uint64_t count) {
     if (raw_.nodes.empty()) return text_.fault("has $Elements before $Nodes; save the mesh again");
     if (count > std::min<std::uint64_t>(most(limits::kTetFileEntries), text_.left() / 2 + 1))
@@ -210,7 +210,7 @@ class Msh {
     return Done{};
   }
 
-  // A type that is not known: its line is skipped in ASCII; in binary there is no telling where it ends.
+  // An unknown type: in ASCII its line is skipped; in binary its size is unknown.
   Status skip_unknown(std::int64_t type) {
     if (text_.binary())
       return text_.fault(fmt::format("has elements of unknown type {}; save only the volume's tetrahedra", type));
@@ -231,7 +231,7 @@ class Msh {
       return true;
     };
     for (std::int64_t i = 0; i < count;) {
-      // ASCII: number, type, tags, nodes. Binary: type, how many follow, tags; then each number, tags, nodes.
+      // ASCII: number, type, tags, nodes. Binary: type, count, tags; then for each: number, tags, nodes.
       std::int64_t number = 0, type = 0, follow = 1, tags = 0, ignored = 0;
       const bool headed =
           text_.binary() ? integer(type) && integer(follow) && integer(tags) : integer(number) && integer(type);

@@ -17,7 +17,7 @@ DisjointSets parts_of(const TetMesh& mesh) {
   return sets;
 }
 
-// Keeps the tetrahedra that `keep` marks, and the nodes that they use.
+// Keeps the tetrahedra marked in `keep`, and their nodes.
 void keep_only(const std::vector<std::uint8_t>& keep, TetMesh& mesh, std::vector<NodeGroup>& group) {
   std::vector<std::uint32_t> moved(mesh.nodes.size(), 0);
   std::vector<Tet> tets;

@@ -1,5 +1,4 @@
-// In how many separate pieces tissue and collision mesh are: tissue that falls into more than its collision mesh has
-// lost a thin bridge.
+// Connected parts of tissue and collision mesh. Tissue with more parts than its collision mesh has lost a thin bridge.
 #pragma once
 
 #include <vector>
@@ -10,17 +9,17 @@
 
 namespace pliant {
 
-// Joined by faces: a hinge of shared nodes alone holds nothing.
+// Connected by faces: shared nodes alone are a hinge.
 std::uint32_t count_parts(const TetMesh& mesh);
 std::uint32_t count_parts(const Mesh& mesh);
 
-// Which parts of a lattice are kept: the largest one; each that has at least kSmallPart of the volume; and each with a
-// node that is pinned or on the handle, which stays where it is. Others are crumbs of what is thinner than a cell, and
-// would fall out of the body or fly about in it: they are dropped, and the surface around them rides on what is
-// nearest. Parts that only share nodes or an edge are not joined anew: what is large enough hangs on as by a hinge.
+// Keeps the largest part of a lattice, each with at least kSmallPart of the volume, and each with a node that is pinned
+// or on the handle. Other parts come from places thinner than a cell and would fall or fly about; they are dropped. The
+// surface around them is embedded in the nearest tissue. Parts that share only nodes or an edge are not connected;
+// large ones stay hinged.
 inline constexpr double kSmallPart = 0.01;  // [1] of the volume of all parts
-// `group`: of each node; loses those of dropped parts. Writes TetReport's numbers; before embedding, nodes keep their
-// order. Returns how many parts are left.
+// `group`: per node; entries of dropped parts are removed. Sets TetReport's numbers. Call before embedding; nodes keep
+// their order. Returns the number of parts left.
 std::uint32_t drop_small_parts(TetMesh& mesh, std::vector<NodeGroup>& group);
 
 }  // namespace pliant

@@ -12,7 +12,7 @@ struct TetShape {
   double ratio = 0.0;                    // [1] 3 r/R
 };
 
-// Faces are numbered by the corner over against them; `normal` points inward and its length is twice the area.
+// Faces are numbered by the opposite corner; `normal` points inward and its length is twice the area.
 TetShape shape_of(const dvec3 (&p)[4]) {
   constexpr int kFace[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
   dvec3 normal[4];
@@ -25,7 +25,7 @@ TetShape shape_of(const dvec3 (&p)[4]) {
   TetShape shape{std::numbers::pi, 0.0, 0.0};
   for (int i = 0; i < 4; ++i)
     for (int j = i + 1; j < 4; ++j) {
-      // Between the outward normals lies pi less the angle inside; atan2 keeps small angles exact.
+      // The angle between outward normals is pi minus the dihedral angle; atan2 keeps small angles exact.
       const double angle = std::atan2(length(cross(normal[i], normal[j])), -dot(normal[i], normal[j]));
       shape.smallest = std::min(shape.smallest, angle);
       shape.largest = std::max(shape.largest, angle);

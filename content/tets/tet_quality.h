@@ -1,5 +1,5 @@
-// How well-shaped tetrahedra are. A regular one has dihedral angles of acos(1/3) = 70.5 degrees and a ratio of 1; where
-// angles come near 0 or 180 degrees, matrices become badly conditioned and steps dear.
+// Shape quality of tetrahedra. A regular one has dihedral angles of acos(1/3) = 70.5 degrees and a ratio of 1. Angles
+// near 0 or 180 degrees make matrices badly conditioned and steps slow.
 #pragma once
 
 #include <span>
@@ -8,9 +8,9 @@
 
 namespace pliant {
 
-// Of the elements; zeros where there are none.
+// Over all elements; zeros if there are none.
 TetQuality measure_quality(std::span<const dvec3> nodes, std::span<const Tet> tets);
-// [m3] signed: positive where the corners stand as Tet wants them.
+// [m3] signed: positive for the corner order that Tet requires.
 double tet_volume(std::span<const dvec3> nodes, const Tet& tet);
 double total_volume(const TetMesh& mesh);
 

@@ -1,5 +1,5 @@
-// TetGen's pair of files ("TetGen's file formats", wias-berlin.de/software/tetgen): counted rows of words, '#' begins a
-// comment; numbers begin at 0 or 1, whichever the first node has.
+// TetGen's pair of files ("TetGen's file formats", wias-berlin.de/software/tetgen): counted rows of words; '#' begins a
+// comment. Numbers begin at 0 or 1, as the first node's does.
 #include <fmt/format.h>
 
 #include <array>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kMostColumns = 1000;  // of attributes in a row
 
-// The counts at the head: all on the first line that says something; those left out are 0.
+// The counts in the header, all on the first line that is not empty; missing ones are 0.
 template <std::size_t N>
 bool read_head(TetText& text, std::array<std::int64_t, N>& head) {
   std::string_view line;

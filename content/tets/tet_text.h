@@ -1,4 +1,4 @@
-// Bytes of an untrusted file, taken as lines, words, numbers or raw values; knows where it stands, for errors.
+// Reads the bytes of an untrusted file as lines, words, numbers or raw values; tracks the position for errors.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ class TetText {
  public:
   TetText(std::span<const std::uint8_t> bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {}
 
-  // Binary values are turned where `swapped`, and errors then name a byte instead of a line.
+  // Binary values are byte-swapped if `swapped`; errors then name a byte instead of a line.
   void set_binary(bool binary, bool swapped) {
     binary_ = binary;
     swapped_ = swapped;
@@ -26,10 +26,9 @@ class TetText {
   std::size_t left() const { return bytes_.size() - at_; }
   // The rest of the line, without its end; false at the end of the file.
   bool line(std::string_view& out);
-  // The next run of what is not white space, across lines; false at the end. '#' begins a comment to the end of its
-  // line where `comments` says so.
+  // The next word, across lines; false at the end. `comments`: '#' begins a comment to the end of its line.
   bool word(std::string_view& out, bool comments = false);
-  // The next word as a number; false where there is none, or it is not finite. `comments` as above.
+  // The next word as a number; false if there is none, or it is not finite. `comments` as above.
   bool number(double& out, bool comments = false);
   bool integer(std::int64_t& out, bool comments = false);
   // A binary value.
@@ -44,7 +43,7 @@ class TetText {
     return true;
   }
   bool skip(std::uint64_t bytes);
-  bool skip_past(std::string_view mark);  // behind the next occurrence; false: there is none
+  bool skip_past(std::string_view mark);  // after the next occurrence; false: none
 
   Error fault(const std::string& what) const;  // at the last word or line, or this byte
 
@@ -58,7 +57,7 @@ class TetText {
   bool binary_ = false, swapped_ = false;
 };
 
-bool to_number(std::string_view word, double& out);  // finite ones
+bool to_number(std::string_view word, double& out);  // finite ones only
 bool to_integer(std::string_view word, std::int64_t& out);
 
 }  // namespace pliant

@@ -78,12 +78,12 @@ class Vtk {
     return Done{};
   }
 
-  // The count at the head of a section, not more than its values could fill.
+  // The count at the head of a section, at most as many as the remaining bytes could hold.
   bool count(std::int64_t& out) {
     return text_.integer(out) && out >= 0 && out <= static_cast<std::int64_t>(most(limits::kTetFileEntries)) &&
            static_cast<std::uint64_t>(out) <= text_.left();
   }
-  // Binary values begin after the end of their header's line.
+  // Binary values begin after the end of the header line.
   void end_header() {
     std::string_view rest;
     if (text_.binary()) text_.line(rest);
@@ -148,7 +148,7 @@ class Vtk {
     return Done{};
   }
 
-  // Both forms end as offsets_ (one more than there are cells) into connectivity_.
+  // Both encodings are converted to offsets_ (one more than cells) into connectivity_.
   Status cells() {
     std::int64_t first = 0, second = 0;
     if (cells_ != 0) return text_.fault("has CELLS twice; save it again");
@@ -223,7 +223,7 @@ class Vtk {
     return Done{};
   }
 
-  // Lines up to an empty one.
+  // Skips lines up to an empty one.
   void skip_metadata() {
     std::string_view line;
     text_.line(line);

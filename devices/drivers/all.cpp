@@ -17,7 +17,7 @@
 namespace pliant {
 namespace {
 
-// A name that is taken is a fault of this list, which a test finds.
+// A duplicate name is a bug in this list, which a test detects.
 template <class D>
 void add(const char* name, DeviceLister lister) {
   (void)register_driver(
@@ -29,7 +29,7 @@ void add(const char* name, DeviceLister lister) {
 void register_all_drivers() {
   static std::once_flag once;
   std::call_once(once, [] {
-    // One line a driver:
+    // One line per driver:
     register_simulated();
     (void)register_spacemouse();
     (void)register_dualsense();

@@ -1,5 +1,5 @@
-// The thread of a driver whose device has to be waited for: read() and write() exchange the newest with it and return
-// at once. A force that nobody renews for 20 ms is over, whatever the thread of the caller does.
+// The thread of a driver whose device must be waited for. read() and write() exchange the newest values with it and
+// return at once. Watchdog: a force that is not renewed within 20 ms becomes zero, whatever the caller's thread does.
 #pragma once
 
 #include <atomic>
@@ -17,10 +17,10 @@ class DeviceThread {
  public:
   ~DeviceThread() { stop(); }
 
-  // `run` is called once, on the new thread, and returns soon after stopping() has become true.
+  // `run` is called once, on the new thread, and must return soon after stopping() becomes true.
   void start(std::function<void()> run) {
     stop();
-    samples_.acquire();  // of an earlier time
+    samples_.acquire();  // discards an old sample
     stopping_ = off_ = false;
     thread_ = std::thread([work = std::move(run)] {
       request_realtime_priority();
@@ -32,7 +32,7 @@ class DeviceThread {
     if (thread_.joinable()) thread_.join();
   }
 
-  // The driver's callers.
+  // For the driver's callers.
   bool read(DeviceSample& sample) {
     if (!samples_.acquire()) return false;
     sample = samples_.read();
@@ -42,12 +42,12 @@ class DeviceThread {
     wrenches_.write() = {wrench, seconds()};
     wrenches_.publish();
   }
-  void switch_off() { off_ = true; }  // no force from now on, until start()
+  void switch_off() { off_ = true; }  // zero force from now on, until start()
 
-  // The thread.
+  // For the thread.
   bool stopping() const { return stopping_; }
   bool off() const { return off_; }
-  // What to render now: zero where nobody has asked for anything lately, at the end, and after switch_off().
+  // The force to render now: zero after the watchdog's time, at the end, and after switch_off().
   DeviceWrench wanted() {
     if (wrenches_.acquire()) newest_ = wrenches_.read();
     return stopping_ || off_ || seconds() - newest_.time > kDeadline ? DeviceWrench{} : newest_.wrench;

@@ -1,4 +1,4 @@
-// What stands behind "NAME:" where a device is named: `ID?KEY=VALUE&KEY=VALUE`, each part optional.
+// Parses the text after "NAME:" of a device: `ID?KEY=VALUE&KEY=VALUE`, each part optional.
 #pragma once
 
 #include <span>
@@ -18,13 +18,13 @@ struct DeviceWords {
   std::string text(const std::string& key, const std::string& otherwise) const;
 };
 
-// Fails on a part without '=', on a key that is not among `keys`, and on one that comes twice.
+// Error: a part without '=', a key not in `keys`, or a duplicate key.
 Result<DeviceWords> parse_device_words(const std::string& driver, const std::string& text,
                                        std::span<const char* const> keys);
-// A number within [least, most]; `otherwise` where the key is not given.
+// A number within [least, most]; `otherwise` if the key is absent.
 Result<double> number_of(const std::string& driver, const DeviceWords& words, const std::string& key, double least,
                          double most, double otherwise);
-// One of `values`; the first where the key is not given.
+// One of `values`; the first if the key is absent.
 Result<std::string> choice_of(const std::string& driver, const DeviceWords& words, const std::string& key,
                               std::span<const char* const> values);
 

@@ -14,13 +14,13 @@ namespace {
 
 constexpr std::uint16_t kVendor = 0x0403, kProduct = 0xcb48;
 constexpr double kFalconPeriod = 1e-3;  // [s] between two exchanges
-constexpr double kFalconRetry = 0.5;    // [s] between two tries to find it again
-constexpr int kSilentUntilLost = 50;    // exchanges without an answer
-constexpr int kTries = 10;              // to load its firmware, which often fails once
-constexpr std::size_t kBlock = 128;     // bytes of firmware that are sent, and come back, at a time
+constexpr double kFalconRetry = 0.5;    // [s] between two reconnection attempts
+constexpr int kSilentUntilLost = 50;    // exchanges without an answer, after which the device is lost
+constexpr int kTries = 10;              // attempts to load the firmware, which often fails the first time
+constexpr std::size_t kBlock = 128;     // bytes of firmware per block, sent and echoed
 constexpr std::size_t kMostFirmware = 1 << 20;
-constexpr double kCountsPerTorque = 10000.0;  // [1/(N m)] of a motor's number, which turns the other way
-constexpr int kMostTorque = 4095;             // of a motor's number
+constexpr double kCountsPerTorque = 10000.0;  // [1/(N m)] of a motor's command, which has the opposite sign
+constexpr int kMostTorque = 4095;             // limit of a motor's command
 constexpr dvec3 kMiddle{0.0, 0.0, 0.125};     // [m] of the workspace
 constexpr unsigned kRed = 2, kGreen = 4, kAllHomed = 7;
 
@@ -46,11 +46,11 @@ Status set(PacketPort& port, const Setting (&settings)[N]) {
   return Done{};
 }
 
-// When to stop waiting: time alone would count a busy machine's pauses as the device's.
+// Time-out that also counts empty packets: time alone would count a busy machine's pauses as the device's.
 class Patience {
  public:
   explicit Patience(double seconds) : end_(DeviceThread::seconds() + seconds) {}
-  // A packet without bytes has come, or none at all. False: enough of that.
+  // Called for a packet without bytes, or no packet. False: stop waiting.
   bool empty() { return ++empties_ < 8 || DeviceThread::seconds() < end_; }
 
  private:
@@ -59,7 +59,7 @@ class Patience {
 };
 constexpr double kPacket = 0.002;  // [s] the chip sends one a millisecond, with bytes or without
 
-// Everything that comes within `seconds`, at most `most` bytes, without the two of the modem's state in each packet.
+// All bytes received within `seconds`, at most `most`, without the two modem status bytes of each packet.
 std::vector<std::uint8_t> hear(PacketPort& port, std::size_t most, double seconds) {
   std::vector<std::uint8_t> all;
   for (Patience patience(seconds); all.size() < most;) {
@@ -93,7 +93,7 @@ bool load(PacketPort& port, std::span<const std::uint8_t> firmware) {
   return true;
 }
 
-// Of the id, or the user's own.
+// The given file, or the user's default.
 std::string firmware_path(const std::string& id) {
   if (!id.empty()) return id;
   const char* data = std::getenv("XDG_DATA_HOME");
@@ -109,7 +109,7 @@ FalconFrame falcon_command(const std::array<int, 3>& torque, bool homing, unsign
   frame.front() = '<';
   frame.back() = '>';
   for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t nibble = 0; nibble < 4; ++nibble)  // the lowest first
+    for (std::size_t nibble = 0; nibble < 4; ++nibble)  // lowest nibble first
       frame[1 + 4 * i + nibble] =
           static_cast<std::uint8_t>(0x41 + (static_cast<unsigned>(torque[i]) >> 4 * nibble & 15u));
   frame[13] = static_cast<std::uint8_t>(0x41 + ((lights & 14u) | (homing ? 1u : 0u)));
@@ -150,7 +150,7 @@ std::array<int, 3> falcon_motors(const dvec3& position, const dvec3& force) {
   const double largest = std::max({std::abs(number.x), std::abs(number.y), std::abs(number.z)});
   if (!std::isfinite(largest)) return {};
   if (largest > kMostTorque) number *= kMostTorque / largest;
-  // Towards zero, so that rounding adds no force.
+  // Truncates towards zero, so that rounding adds no force.
   return {static_cast<int>(number.x), static_cast<int>(number.y), static_cast<int>(number.z)};
 }
 
@@ -197,7 +197,7 @@ Falcon::Answer Falcon::exchange(PacketPort& port, const std::array<int, 3>& torq
   }
 }
 
-// A line to a device whose firmware runs; loads it where it does not.
+// Opens a connection to a device with running firmware; loads the firmware if needed.
 Result<std::unique_ptr<PacketPort>> Falcon::connect(const std::vector<std::uint8_t>& firmware) const {
   auto port = opener_("");
   if (!port) return port.error();
@@ -240,7 +240,7 @@ Status Falcon::open(const std::string& id) {
   return Done{};
 }
 
-// Until close(), or until the line is lost: then false.
+// Runs until close(); returns false if the connection is lost.
 bool Falcon::talk() {
   dvec3 position = kMiddle;
   bool known = false, homing = true;
@@ -255,7 +255,7 @@ bool Falcon::talk() {
     if (last) return true;
     if (answer == Answer::kGone) return false;
     if (answer == Answer::kNone) {
-      known = false;  // and so the next command is without force
+      known = false;  // so the next command has zero force
       if (++silent > kSilentUntilLost) return false;
       continue;
     }

@@ -1,9 +1,9 @@
-// Driver "falcon": Novint Falcon over libusb (an FTDI chip, 0403:cb48). Its firmware has to be loaded after each
-// power-up; the file is the maker's and comes from the user: "falcon:FILE", or falcon.bin in the user's folder of data
-// (see docs/devices/protocols.md). Facts from libnifalcon (BSD).
+// Driver "falcon": Novint Falcon over libusb (an FTDI chip, 0403:cb48). Its firmware must be loaded after each
+// power-up. The user provides the vendor's file: "falcon:FILE", or falcon.bin in the user's data folder (see
+// docs/devices/protocols.md). Protocol facts from libnifalcon (BSD).
 //
-// Axes are the world's: x right, y up, z towards the user; the origin is the middle of its workspace. Until someone has
-// pulled its handle all the way out and pushed it in again (homing) its pose is not known.
+// Axes are the world's: x right, y up, z towards the user; the origin is the middle of its workspace. Its pose is
+// unknown until homing: the user pulls its handle all the way out and pushes it in.
 #pragma once
 
 #include <array>
@@ -19,20 +19,20 @@
 
 namespace pliant {
 
-// What it tells.
+// An input report.
 struct FalconReport {
   std::array<int, 3> count{};  // of the encoders
-  unsigned homed = 0;          // one bit a leg
+  unsigned homed = 0;          // one bit per leg
   unsigned buttons = 0;        // of its grip
 };
 inline constexpr std::size_t kFalconFrame = 16;
 using FalconFrame = std::array<std::uint8_t, kFalconFrame>;
 // Sixteen letters: '<', three counts of four nibbles, status, reserve, '>'.
 FalconFrame falcon_command(const std::array<int, 3>& torque, bool homing, unsigned lights);
-// The last whole frame in a stream of bytes; none: there is no whole one.
+// The last complete frame in a stream of bytes; empty: none.
 std::optional<FalconReport> parse_falcon(std::span<const std::uint8_t> bytes);
-// The motors' numbers of a force [N] at a position [m] of falcon_delta.h: all of them scaled together where one would
-// be too large, so that the direction stays.
+// Motor commands for a force [N] at a position [m] of falcon_delta.h. If one exceeds the limit, all are scaled
+// together, which keeps the direction.
 std::array<int, 3> falcon_motors(const dvec3& position, const dvec3& force);
 
 class Falcon final : public Driver {

@@ -16,7 +16,7 @@ constexpr double kAngleAtZero = 35.0 * kPi / 180.0;                             
 }  // namespace
 
 double falcon_angle(int count) {
-  // Four counts a slot; the shaft drives the leg by a cable.
+  // Four counts per slot; the shaft drives the leg by a cable.
   return count / (4.0 * kSlots) * 2.0 * kPi * kShaft / kCapstan + kAngleAtZero;
 }
 
@@ -34,7 +34,7 @@ bool falcon_angles(const dvec3& position, FalconPose& pose) {
     // Of (1), halved: G_u du + G_v dv + G_w dw + G_t dt = 0.
     const double G_u = A - a * std::cos(t), G_w = B - a * std::sin(t), G_v = L * cosine3 / sine3;
     const double G_t = a * (A * std::sin(t) - B * std::cos(t));
-    if (!(std::abs(G_t) > 1e-6)) return false;  // stretched
+    if (!(std::abs(G_t) > 1e-6)) return false;  // singular pose
     pose.jacobian[0][i] = -(cosine * G_u - sine * G_v) / G_t;
     pose.jacobian[1][i] = -(sine * G_u + cosine * G_v) / G_t;
     pose.jacobian[2][i] = -G_w / G_t;
@@ -43,7 +43,7 @@ bool falcon_angles(const dvec3& position, FalconPose& pose) {
 }
 
 bool falcon_position(const dvec3& angle, dvec3& position) {
-  constexpr double kLargest = 0.01;  // [m] of a step: it never jumps to another solution
+  constexpr double kLargest = 0.01;  // [m] largest Newton step: prevents a jump to another solution
   dvec3 guess = position;
   for (int i = 0; i < 50; ++i) {
     FalconPose pose;

@@ -19,12 +19,12 @@ struct FalconPose {
 
 // Leg angles at a position. False: out of reach.
 bool falcon_angles(const dvec3& position, FalconPose& pose);
-// The position of three angles, from a guess that becomes it. False: there is none, or it was not found.
+// The position for three angles; `position` is the initial guess and the result. False: not found.
 bool falcon_position(const dvec3& angle, dvec3& position);
-// Torques of the legs [N m] that make a force [N] on the effector; false where the pose has none.
+// Leg torques [N m] for a force [N] on the effector; false in a singular pose.
 bool falcon_torques(const FalconPose& pose, const dvec3& force, dvec3& torque);
 
-// The leg's angle [rad] of an encoder's count.
+// The leg angle [rad] of an encoder count.
 double falcon_angle(int count);
 
 }  // namespace pliant

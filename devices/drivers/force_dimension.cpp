@@ -6,16 +6,16 @@
 namespace pliant {
 namespace {
 
-constexpr double kPeriod = 0.25e-3;   // [s] between two exchanges; the maker's guard of time may make it longer
-constexpr double kRetry = 0.5;        // [s] between two tries to find the device again
-constexpr int kErrorsUntilLost = 20;  // exchanges
+constexpr double kPeriod = 0.25e-3;   // [s] between two exchanges; the library's time guard may make it longer
+constexpr double kRetry = 0.5;        // [s] between two reconnection attempts
+constexpr int kErrorsUntilLost = 20;  // failed exchanges
 constexpr int kStatusEvery = 16;      // exchanges
 
 // dhdGetStatus
 enum DhdStatus : int { kReset = 3, kForceOn = 5, kBraked = 6, kFault = 9 };
 constexpr int kStatuses = 32;  // 17 are written; newer versions may write more
 
-// World axes of a vector in the maker's, and back.
+// World axes from the vendor's, and back.
 dvec3 to_world(const dvec3& v) {
   return {v.y, v.z, v.x};
 }
@@ -23,7 +23,7 @@ dvec3 to_device(const dvec3& v) {
   return {v.z, v.x, v.y};
 }
 
-// By dhdGetSystemType: families with the maker's published figures; of an unknown one less than any of them.
+// By dhdGetSystemType: the vendor's published figures per family; for unknown ones, less than any of them.
 DeviceCapabilities figures_of(int type) {
   DeviceCapabilities can{.max_force = 8.0, .max_stiffness = 3000.0, .rate = 4000.0};
   if (type >= 32 && type <= 37) can.max_force = 12.0, can.max_stiffness = 5000.0;                          // omega
@@ -36,8 +36,8 @@ DeviceCapabilities figures_of(int type) {
 
 }  // namespace
 
-// The part of libdhd that is used. `char` is signed here as on the machines that the maker builds for; device numbers
-// are small and positive.
+// The functions of libdhd in use. `char` is signed here, as on the vendor's platforms; device numbers are small and
+// positive.
 struct ForceDimension::Library {
   SharedLibrary file;
   int (*count)() = nullptr;

@@ -1,8 +1,8 @@
-// Driver "forcedimension": omega, delta, sigma and lambda by Force Dimension, through the maker's libdhd, opened at run
-// time. Declarations are our own. The maker's limits stay as they are: no expert mode, no other velocity threshold, no
-// other watchdog; a force that the device has switched off is switched on again by its own button.
+// Driver "forcedimension": omega, delta, sigma and lambda by Force Dimension, through the vendor's libdhd, opened at
+// run time with our own declarations. The vendor's safety limits are unchanged: no expert mode, no other velocity
+// threshold, no other watchdog. A force that the device has switched off is switched on again only by its own button.
 //
-// The maker's axes: x towards the operator, y to the right, z up; world axes are y, z, x of them. SI units.
+// The vendor's axes: x towards the operator, y to the right, z up; world axes are their y, z, x. SI units.
 #pragma once
 
 #include <atomic>
@@ -16,18 +16,18 @@ namespace pliant {
 
 class ForceDimension final : public Driver {
  public:
-  // `libraries`: tried in this order; none: the maker's names.
+  // `libraries`: tried in this order; empty: the vendor's names.
   explicit ForceDimension(std::vector<std::string> libraries = {});
   ~ForceDimension() override;
-  // `id`: its number, as the maker's library counts them; empty: 0.
+  // `id`: device number of the vendor's library; empty: 0.
   Status open(const std::string& id) override;
   DeviceCapabilities capabilities() const override { return can_; }
   bool read(DeviceSample& sample) override { return thread_.read(sample); }
   void write(const DeviceWrench& wrench) override { thread_.write(wrench); }
   void close() override;
-  void make_safe() noexcept override { thread_.switch_off(); }  // the thread brakes within one exchange
+  void make_safe() noexcept override { thread_.switch_off(); }  // the thread engages the brakes within one exchange
 
-  // What the library finds.
+  // The devices that the library finds.
   std::vector<DeviceInfo> list();
 
  private:

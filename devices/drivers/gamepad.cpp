@@ -12,10 +12,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kFullForce = 3.0;      // [N] rendered as all that the device can; what that is, no device says
+constexpr double kFullForce = 3.0;      // [N] rendered at full strength; the device's actual force is unknown
 constexpr double kRumbleEvery = 0.005;  // [s]
-constexpr double kRenewAfter = 0.2;     // [s] an effect ends by itself, lest a dead program pushes on
-constexpr int kMostEvents = 256;        // in one tick
+constexpr double kRenewAfter = 0.2;     // [s] an effect ends by itself, so that a crashed program does not keep pushing
+constexpr int kMostEvents = 256;        // per tick
 constexpr const char* kName = "gamepad";
 
 DeviceCapabilities what_it_can(const GamepadTraits& traits) {
@@ -66,7 +66,7 @@ class Gamepad final : public Driver {
     return can;
   }
 
-  // evdev tells changes alone: the pose is known as long as the line is there.
+  // evdev reports only changes: the pose is known as long as the connection exists.
   bool read(DeviceSample& sample) override {
     if (!line_ || gone_) return false;
     std::array<GamepadEvent, 64> events;
@@ -86,7 +86,7 @@ class Gamepad final : public Driver {
     }
     const double now = clock_();
     const bool pad =
-        line_->traits().axes[ABS_RX].there;  // else a joystick: ABS_RZ is its twist, ABS_THROTTLE its height
+        line_->traits().axes[ABS_RX].there;  // otherwise a joystick: ABS_RZ is its twist, ABS_THROTTLE its height
     const dvec3 move(parser_.axis(ABS_X), pad ? -parser_.axis(ABS_RY) : 0.0, parser_.axis(ABS_Y));
     const dvec3 turn(0.0, pad ? -parser_.axis(ABS_RX) : -parser_.axis(ABS_RZ), 0.0);
     control_.step(move, turn, parser_.button(pad ? BTN_TL : BTN_THUMB), now - stepped_at_);
@@ -119,6 +119,10 @@ class Gamepad final : public Driver {
     sent_ = output;
     sent_at_ = now;
   }
+  bool safe_line(SafeLine& line) const override {
+    return line_ && !gone_ && can_.renders_force && line_->safe_line(line);
+  }
+  std::string node() const override { return line_ ? line_->node() : std::string(); }
   bool gone() const override { return gone_; }
   void close() override {
     if (line_) write({});
@@ -180,7 +184,7 @@ GamepadOutput constant_effect(const dvec3& share) {
   const double size = std::hypot(share.x, share.z);
   if (!(size > 0.0) || !std::isfinite(size)) return output;
   output.level = static_cast<std::int16_t>(std::lround(0x7fff * std::min(size, 1.0)));
-  // From towards the user (+z) over left (-x): clockwise as seen from above.
+  // From towards the user (+z) over left (-x): clockwise seen from above.
   const double angle = std::atan2(-share.x, share.z);
   output.direction = static_cast<std::uint16_t>(std::lround(angle / (2.0 * std::numbers::pi) * 65536.0) & 0xffff);
   return output;

@@ -11,6 +11,7 @@
 #include <bit>
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <thread>
@@ -21,7 +22,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint16_t kShakesFor = 500;  // [ms] an effect plays: if we stop, so does it
+constexpr std::uint16_t kShakesFor = 500;  // [ms] duration of an effect: it ends if we stop renewing it
 
 std::string first_line(const std::string& path) {
   std::ifstream file(path);
@@ -30,7 +31,7 @@ std::string first_line(const std::string& path) {
   return line;
 }
 
-// sysfs writes a bitmap as words of hexadecimal, the highest first.
+// sysfs prints a bitmap as hexadecimal words, the highest first.
 class Bits {
  public:
   explicit Bits(const std::string& text) {
@@ -46,7 +47,7 @@ class Bits {
   std::vector<unsigned long> words_;
 };
 
-// Nothing where it is no gamepad.
+// Returns false if it is not a gamepad.
 bool read_traits(const std::string& folder, GamepadTraits& traits) {
   const Bits axes(first_line(folder + "/capabilities/abs")), keys(first_line(folder + "/capabilities/key")),
       effects(first_line(folder + "/capabilities/ff"));
@@ -63,7 +64,8 @@ bool read_traits(const std::string& folder, GamepadTraits& traits) {
 
 class EvdevLine final : public GamepadLine {
  public:
-  EvdevLine(int file, const GamepadTraits& traits) : file_(file), traits_(traits), thread_([this] { run(); }) {}
+  EvdevLine(int file, std::string path, const GamepadTraits& traits)
+      : file_(file), path_(std::move(path)), traits_(traits), thread_([this] { run(); }) {}
   ~EvdevLine() override {
     ended_.store(true, std::memory_order_release);
     wake();
@@ -104,6 +106,23 @@ class EvdevLine final : public GamepadLine {
     wake();
     return Done{};
   }
+  std::string node() const override { return path_; }
+  // The end of what plays. Where nothing ever has, an event without meaning: a file that a guard process holds is not
+  // closed with this program, which would end what plays as well.
+  bool safe_line(SafeLine& line) const override {
+    std::array<input_event, 2> events{};
+    std::size_t count = 0;
+    for (const std::atomic<int>* playing : {&rumbles_, &pushes_})
+      if (const int id = *playing; id >= 0) {
+        events[count].type = EV_FF;
+        events[count++].code = static_cast<std::uint16_t>(id);
+      }
+    if (count == 0) count = 1;  // EV_SYN, SYN_REPORT
+    line.descriptor = file_;
+    line.size = count * sizeof(input_event);
+    std::memcpy(line.bytes.data(), events.data(), line.size);
+    return true;
+  }
 
  private:
   void wake() {
@@ -120,18 +139,20 @@ class EvdevLine final : public GamepadLine {
     }
   }
 
-  // An effect with an id is changed while it plays.
+  // An effect with an id is updated while it plays.
   bool play(const GamepadOutput& output) {
     bool done = true;
     if (traits_.rumble && (output.strong || output.weak || rumble_.id >= 0)) {
       rumble_.u.rumble.strong_magnitude = output.strong;
       rumble_.u.rumble.weak_magnitude = output.weak;
       done = start(rumble_, output.strong || output.weak) && done;
+      rumbles_ = rumble_.id;
     }
     if (traits_.constant && (output.level || constant_.id >= 0)) {
       constant_.u.constant.level = output.level;
       constant_.direction = output.direction;
       done = start(constant_, output.level != 0) && done;
+      pushes_ = constant_.id;
     }
     return done;
   }
@@ -152,12 +173,14 @@ class EvdevLine final : public GamepadLine {
   }
 
   int file_;
+  std::string path_;
   GamepadTraits traits_;
   ff_effect rumble_ = effect_of(FF_RUMBLE), constant_ = effect_of(FF_CONSTANT);
   TripleBuffer<GamepadOutput> newest_;
   std::atomic<std::uint32_t> kept_{0};
   std::atomic<bool> ended_{false}, failed_{false};
-  std::thread thread_;  // last: it uses all of the above
+  std::atomic<int> rumbles_{-1}, pushes_{-1};  // the effects' ids, as the device has given them
+  std::thread thread_;                         // last: it uses all of the above
 };
 
 }  // namespace
@@ -207,7 +230,7 @@ Result<std::unique_ptr<GamepadLine>> open_gamepad(const std::string& id) {
       traits.axes[code].min = info.minimum;
       traits.axes[code].max = info.maximum;
     }
-    return std::unique_ptr<GamepadLine>(std::make_unique<EvdevLine>(file, traits));
+    return std::unique_ptr<GamepadLine>(std::make_unique<EvdevLine>(file, found.path, traits));
   }
   const std::string where = id.empty() ? "gamepad" : "gamepad `" + id + "`";
   if (!missing.empty()) return Error{where, missing};

@@ -13,11 +13,12 @@ namespace {
 using nlohmann::json;
 
 constexpr int kPort = 10001;
-constexpr std::size_t kLongestMessage = 256 * 1024;  // bytes of a message; an inventory of ten devices has 20 KiB
+constexpr std::size_t kLongestMessage = 256 * 1024;  // limit of a message in bytes; an inventory of ten devices has 20
+                                                     // KiB
 constexpr double kHaplyPeriod = 1e-3;                // [s] between two messages
-constexpr double kAnswerTimeout = 0.5;               // [s] without an answer: the service hangs
-constexpr double kHaplyRetry = 0.25;                 // [s] between two tries to find the service again
-constexpr double kMostReach = 2.0;                   // [m] of an arm of 30 cm
+constexpr double kAnswerTimeout = 0.5;               // [s] without an answer: the service is unresponsive
+constexpr double kHaplyRetry = 0.25;                 // [s] between two reconnection attempts
+constexpr double kMostReach = 2.0;                   // [m] position limit; the arm is 30 cm long
 
 const json* find(const json& object, const char* key) {
   if (!object.is_object()) return nullptr;
@@ -32,7 +33,7 @@ bool number(const json& object, const char* key, double most, double& value) {
   return std::isfinite(value) && std::abs(value) <= most;
 }
 
-// x, y, z of the service to world axes.
+// Converts x, y, z of the service to world axes.
 bool vector(const json* object, double most, dvec3& v) {
   dvec3 s;
   if (!object || !number(*object, "x", most, s.x) || !number(*object, "y", most, s.y) ||
@@ -57,7 +58,7 @@ std::string text(const json* value) {
   return value && value->is_string() ? value->get<std::string>() : std::string();
 }
 
-// The entry of this identifier in a list of devices; of "", the first.
+// The entry with this identifier in a list of devices; for "", the first.
 const json* entry(const json& message, const char* kind, const std::string& wanted) {
   const json* list = find(message, kind);
   if (!list || !list->is_array()) return nullptr;
@@ -114,7 +115,7 @@ Result<HaplyState> parse_haply(std::string_view message, const std::string& want
 }
 
 std::string haply_command(const std::string& device, const dvec3& force, bool first) {
-  // World axes to the service's.
+  // Converts world axes to the service's.
   return fmt::format(
       R"({{{}"inverse3":[{{"device_id":{},"commands":{{"set_cursor_force":{{"values":{{"x":{:.5f},"y":{:.5f},"z":{:.5f}}}}}}}}}]}})",
       first ? R"("session":{"configure":{"profile":{"name":"Pliant"}}},)" : "",
@@ -128,7 +129,7 @@ Haply::~Haply() {
 }
 
 DeviceCapabilities Haply::capabilities() const {
-  // The service says neither forces nor stiffness: less than the maker's figures, on purpose.
+  // The service reports neither force nor stiffness: these are deliberately below the vendor's figures.
   return {.senses_rotation = has_grip_,
           .max_force = 4.0,
           .max_stiffness = 1000.0,
@@ -141,7 +142,7 @@ Status Haply::open(const std::string& id) {
   auto port = opener_(id);
   if (!port) return port.error();
   std::vector<std::uint8_t> bytes(kLongestMessage);
-  const auto got = (*port)->receive(bytes, 2.0);  // the inventory, without being asked for
+  const auto got = (*port)->receive(bytes, 2.0);  // the inventory, which the service sends first
   if (!got) return got.error();
   const auto state = parse_haply({reinterpret_cast<const char*>(bytes.data()), *got}, id);
   if (!state) return state.error();
@@ -152,22 +153,23 @@ Status Haply::open(const std::string& id) {
   has_grip_ = state->has_grip;
   port_ = std::move(*port);
   refused_ = restarts_ = 0;
+  safe_file_.keep(port_->file());
   thread_.start([this] { run(); });
   return Done{};
 }
 
-// Asks and answers until close(), or until the line is lost: then false.
+// Exchanges messages until close(); returns false if the connection is lost.
 bool Haply::talk(PacketPort& port) {
   std::vector<std::uint8_t> bytes(kLongestMessage);
   bool first = true;
   double due = DeviceThread::seconds();
   for (;;) {
-    const bool last = thread_.stopping();  // the last message is of zero force
+    const bool last = thread_.stopping();  // the last message has zero force
     const std::string command = haply_command(wanted_, thread_.wanted().force, first);
     first = false;
     if (!port.send({reinterpret_cast<const std::uint8_t*>(command.data()), command.size()})) return false;
     const auto got = port.receive(bytes, kAnswerTimeout);
-    if (last) return true;  // its answer has come, so it has not been lost with the line
+    if (last) return true;  // answered, so it was received
     if (!got || *got == 0) return false;
     const auto state = parse_haply({reinterpret_cast<const char*>(bytes.data()), *got}, wanted_);
     if (!state) {
@@ -183,13 +185,15 @@ bool Haply::talk(PacketPort& port) {
 void Haply::run() {
   while (!talk(*port_)) {
     port_.reset();
+    safe_file_.lose();
     while (!port_ && !thread_.stopping()) {
       DeviceThread::sleep(kHaplyRetry);
       auto port = opener_(wanted_);
       if (!port) continue;
-      std::uint8_t inventory[64];  // is not needed again, and cut off
+      std::uint8_t inventory[64];  // discards the rest of an inventory
       if (const auto got = (*port)->receive(inventory, 1.0); !got || *got == 0) continue;
       port_ = std::move(*port);
+      safe_file_.keep(port_->file());
       ++restarts_;
     }
     if (!port_) return;
@@ -206,6 +210,15 @@ void Haply::write(const DeviceWrench& wrench) {
 void Haply::close() {
   thread_.stop();
   port_.reset();
+  safe_file_.close();
+}
+
+bool Haply::safe_line(SafeLine& line) const {
+  if (safe_file_.number() < 0) return false;
+  const std::string command = haply_command(wanted_, dvec3(0), false);
+  line.size = web_socket_frame({reinterpret_cast<const std::uint8_t*>(command.data()), command.size()}, line.bytes);
+  line.descriptor = safe_file_.number();
+  return line.size > 0;
 }
 
 std::vector<DeviceInfo> list_haply() {

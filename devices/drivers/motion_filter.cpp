@@ -9,12 +9,12 @@ namespace pliant {
 namespace {
 
 constexpr double kGravity = 9.80665;        // [m/s2]
-constexpr double kPull = 0.5;               // [1/s] how fast gravity wins over the gyroscope
-constexpr double kGravityWithin = 0.15;     // [1] of g: beyond, the device is shaken and says nothing of gravity
-constexpr double kStillTurn = 0.03;         // [rad/s] less is rest, once the bias is taken off
-constexpr double kStillFelt = 0.3;          // [m/s2] the same, of the change of what is felt
+constexpr double kPull = 0.5;               // [1/s] rate at which gravity corrects the gyroscope
+constexpr double kGravityWithin = 0.15;     // [1] of g: beyond, the acceleration is not used as gravity
+constexpr double kStillTurn = 0.03;         // [rad/s] less is rest, after bias correction
+constexpr double kStillFelt = 0.3;          // [m/s2] the same for the change of the measured acceleration
 constexpr double kStillFor = 0.5;           // [s] of rest before the bias is learned
-constexpr double kLearn = 0.5;              // [1/s] how fast
+constexpr double kLearn = 0.5;              // [1/s] learning rate
 constexpr double kMostBias = 0.1;           // [rad/s]
 constexpr double kLongestFilterStep = 0.1;  // [s]
 
@@ -26,7 +26,7 @@ void MotionFilter::step(const dvec3& turning, const dvec3& felt, double dt) {
   dt = std::clamp(dt, 0.0, kLongestFilterStep);
   const bool gravity = std::abs(weight / kGravity - 1.0) < kGravityWithin;
   const dvec3 up(0, 1, 0);
-  if (!placed_ && gravity) {  // the shortest turn that puts what is felt upright
+  if (!placed_ && gravity) {  // the shortest rotation that makes the measured gravity vertical
     const dvec3 now = felt / weight, axis = cross(now, up);
     const double sine = length(axis), angle = std::atan2(sine, dot(now, up));
     rotation_ = sine > 1e-9        ? rotation_by(axis * (angle / sine))

@@ -1,6 +1,6 @@
-// Rotation from a gyroscope and an accelerometer: the gyroscope is integrated, gravity pulls the tilt right (a
-// complementary filter: Mahony et al. 2008, without its integral term). What turns about the vertical drifts: nothing
-// senses it. At rest the gyroscope's bias is learned.
+// Rotation from a gyroscope and an accelerometer by a complementary filter (Mahony et al. 2008, without its integral
+// term): integrates the gyroscope, and corrects the tilt by gravity. Rotation about the vertical drifts, because no
+// sensor observes it. The gyroscope's bias is learned at rest.
 #pragma once
 
 #include "pliant/math.h"
@@ -9,8 +9,8 @@ namespace pliant {
 
 class MotionFilter {
  public:
-  // `turning` [rad/s] and `felt` [m/s2] in the device's axes (right, up, towards the user); `felt` is what an
-  // accelerometer says: +g upwards at rest. `dt` [s].
+  // `turning`: angular velocity [rad/s], and `felt`: specific force [m/s2], in the device's axes (right, up, towards
+  // the user). An accelerometer at rest reads +g upwards. `dt` [s].
   void step(const dvec3& turning, const dvec3& felt, double dt);
 
   const dquat& rotation() const { return rotation_; }  // device to world, unit
@@ -19,7 +19,7 @@ class MotionFilter {
  private:
   dquat rotation_{1, 0, 0, 0};
   dvec3 bias_{0}, last_felt_{0};
-  double still_ = 0.0;  // [s] for how long nothing has moved
+  double still_ = 0.0;  // [s] duration of rest so far
   bool placed_ = false;
 };
 

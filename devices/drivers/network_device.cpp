@@ -12,12 +12,12 @@
 namespace pliant {
 namespace {
 
-constexpr double kModelRadius = 0.010;  // [m] of a model without a limit: farther a tick cannot take a hand
-constexpr double kReopen = 0.1;         // [s] between two tries to open
-constexpr double kForgotten = 1.2;      // [s] a device that hears nothing for 1 s listens to others
-constexpr double kOpenFor = 2.0;        // [s] that open() waits: a device that was left alone listens anew after 1 s
-constexpr double kClockDrift = 2e-4;    // [1] two quartz clocks differ by less
-constexpr int kMostAtOnce = 64;         // frames that one read() takes
+constexpr double kModelRadius = 0.010;  // [m] radius of a model without a limit: larger than a hand's motion in a tick
+constexpr double kReopen = 0.1;         // [s] between two attempts to open
+constexpr double kForgotten = 1.2;      // [s] a device accepts another session after 1 s without frames
+constexpr double kOpenFor = 2.0;        // [s] that open() waits: an abandoned device accepts a new session after 1 s
+constexpr double kClockDrift = 2e-4;    // [1] largest drift between two quartz clocks
+constexpr int kMostAtOnce = 64;         // frames per read()
 
 Result<std::unique_ptr<PacketPort>> open_udp(const std::string& id) {
   const std::string before = id.substr(0, id.find(','));
@@ -47,7 +47,7 @@ Status NetworkDevice::open(const std::string& id) {
   port_ = std::move(*port);
   key_ = std::move(named->key);
   const double begin = clock_();
-  // One that is busy is asked for as long: an engine that has died is forgotten after a second.
+  // A busy device is asked repeatedly: it drops a crashed engine after a second.
   for (double now = begin; now - begin < kOpenFor && device_ == 0; now = clock_()) {
     const double asked = now;
     ask(now);
@@ -77,11 +77,11 @@ void NetworkDevice::send(NetworkFrame& frame, double now) {
   frame.time_us = static_cast<std::uint64_t>(now * 1e6);
   FrameBytes bytes;
   const std::size_t length = write_frame(frame, bytes, key());
-  (void)port_->send(std::span(bytes).first(length));  // a frame that cannot leave is lost, as on the way
+  (void)port_->send(std::span(bytes).first(length));  // a frame that cannot be sent counts as lost
 }
 
-// With a key the device's session is asked for first: it opens for who names the one that it has now, and never for a
-// frame that somebody has kept. Each question is of a session of its own, so that no answer from before fits.
+// With a key, first asks for the device's session. The device opens only for a frame with its current session, so
+// replayed frames fail. Each request uses a new session, so that old answers do not match.
 void NetworkDevice::ask(double now) {
   opened_at_ = now;
   if (key_ || own_ == 0) own_ = random_session();
@@ -90,7 +90,7 @@ void NetworkDevice::ask(double now) {
   send(frame, now);
 }
 
-// 0: nothing, or nothing that can be used.
+// 0: nothing, or nothing valid.
 Result<std::size_t> NetworkDevice::receive(NetworkFrame& frame, double seconds) {
   FrameBytes bytes;
   auto got = port_->receive(bytes, seconds);
@@ -100,7 +100,7 @@ Result<std::size_t> NetworkDevice::receive(NetworkFrame& frame, double seconds) 
   return fault == FrameFault::kNone ? *got : std::size_t{0};
 }
 
-// Of the device that was opened, and of nobody else.
+// Only frames of the opened device are accepted.
 bool NetworkDevice::accept(const NetworkFrame& frame, double now) {
   const bool answers = frame.kind == FrameKind::kDescription && frame.peer == own_ && frame.session != 0;
   if (frame.kind == FrameKind::kBusy && frame.peer == own_ && device_ == 0) {
@@ -110,7 +110,7 @@ bool NetworkDevice::accept(const NetworkFrame& frame, double now) {
   }
   const bool anew = frame.session != device_ || comes_after(frame.sequence, heard_sequence_);
   if (answers && (device_ == 0 || (silent(now) && anew))) {
-    device_ = frame.session;  // it has been started again, or its clock has been set
+    device_ = frame.session;  // the device has restarted, or its clock was reset
     can_ = frame.description.can;
     name_ = frame.description.name;
     heard_sequence_ = frame.sequence;
@@ -134,7 +134,7 @@ bool NetworkDevice::accept(const NetworkFrame& frame, double now) {
 }
 
 bool NetworkDevice::accept_state(const NetworkFrame& frame, double now) {
-  // A frame that was held up for longer than silence lasts is as good as lost: its time says so.
+  // A frame delayed longer than the watchdog's time counts as lost; its time stamp shows the delay.
   const double sensed = static_cast<double>(frame.time_us) * 1e-6;
   const double offset = clock_offset_ + kClockDrift * (heard_ ? now - heard_at_ : 0.0);
   if (!comes_after(frame.sequence, heard_sequence_) || frame.time_us < heard_time_us_ ||
@@ -142,7 +142,7 @@ bool NetworkDevice::accept_state(const NetworkFrame& frame, double now) {
     ++counts_.late;
     return false;
   }
-  // The least delay that was ever seen is taken for none; clocks that drift apart are followed.
+  // The smallest observed delay is the reference; clock drift is tracked.
   clock_offset_ = std::min(offset, now - sensed);
   counts_.lost += frame.sequence - heard_sequence_ - 1;
   ++counts_.accepted;
@@ -183,7 +183,8 @@ void NetworkDevice::send_force(ForceFrame& force) {
   const double now = clock_();
   const bool quiet = silent(now);
   NetworkFrame frame;
-  // One that still knows our session answers by itself; with a key it knows no other until it has forgotten ours.
+  // A device that still knows our session answers without a request. With a key it accepts no other session until ours
+  // has timed out.
   const double since = now - (key_ && heard_ ? std::max(heard_at_, opened_at_) : opened_at_);
   if (quiet && since >= (key_ ? kForgotten : kReopen)) ask(now);
   frame.kind = FrameKind::kForce;
@@ -222,7 +223,7 @@ void NetworkDevice::close() {
   port_.reset();
 }
 
-// A close frame of the session that is open: nothing that came before it is rendered after it.
+// A close frame of the open session: frames sent before it are not rendered after it.
 bool NetworkDevice::safe_line(SafeLine& line) const {
   if (!port_ || port_->file() < 0 || device_ == 0) return false;
   NetworkFrame frame;

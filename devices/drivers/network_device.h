@@ -1,9 +1,9 @@
-// Driver "network": a device at the other end of UDP, which senses its pose and renders the local model itself
-// (network_frame.h; docs/devices/protocols.md). Its id is the device's address: PORT, ADDRESS:PORT or nothing for port
-// 17716 of this machine; and behind it ,key=FILE or ,key-env=NAME where both have a key (network_key.h).
+// Driver "network": a device over UDP that senses its pose and renders the local model itself (network_frame.h;
+// docs/devices/protocols.md). Its id is the device's address: PORT, ADDRESS:PORT, or empty for port 17716 of this
+// machine. It may be followed by ,key=FILE or ,key-env=NAME if both sides have a key (network_key.h).
 //
-// Either side that hears nothing for 20 ms renders nothing: the wire may fall silent at any time. While the device is
-// silent it is opened anew ten times a second, so that one that was started again is found without anyone's help.
+// Watchdog on both sides: after 20 ms without a frame, the force is zero. While the device does not respond, it is
+// reopened ten times a second, so that a restarted one is found automatically.
 #pragma once
 
 #include <array>
@@ -30,9 +30,12 @@ class NetworkDevice final : public Driver, public CountsDropped {
   bool safe_line(SafeLine& line) const override;
   DroppedFrames dropped() const override { return counts_; }
 
-  // Of the thread that reads and writes.
+  // For the thread that reads and writes.
   const FrameCounts& counts() const { return counts_; }
-  double round_trip() const { return round_trip_; }  // [s] from a write to the sample that knows of it, newest; 0: none
+  double round_trip() const {
+    return round_trip_;
+  }  // [s] from a write to the newest sample that acknowledges it; 0:
+     // none
   const StateFrame& state() const { return state_; }
   std::string name() const { return name_.data(); }
 
@@ -55,18 +58,18 @@ class NetworkDevice final : public Driver, public CountsDropped {
   std::array<char, 32> name_{};
   StateFrame state_;
   FrameCounts counts_;
-  std::array<char, 64> busy_{};         // who has the device
-  std::uint32_t own_ = 0, device_ = 0;  // sessions; 0: not known
+  std::array<char, 64> busy_{};         // who currently uses the device
+  std::uint32_t own_ = 0, device_ = 0;  // sessions; 0: unknown
   std::uint32_t heard_sequence_ = 0;
   SentTimes sent_;
-  std::uint64_t heard_time_us_ = 0;  // of the device's clock
+  std::uint64_t heard_time_us_ = 0;  // on the device's clock
   bool heard_ = false, fresh_ = false;
   double heard_at_ = 0.0, opened_at_ = 0.0;  // [s]
   double clock_offset_ = 0.0;                // [s] our clock minus the device's
   double round_trip_ = 0.0;                  // [s]
 };
 
-// What answers on this machine's default port.
+// The device that answers on this machine's default port.
 std::vector<DeviceInfo> list_network_devices();
 
 }  // namespace pliant

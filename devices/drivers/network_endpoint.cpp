@@ -6,14 +6,14 @@
 namespace pliant {
 namespace {
 
-constexpr double kForget = 1.0;  // [s] without a frame: the engine has ended, and another one may come
+constexpr double kForget = 1.0;  // [s] without a frame: the engine has ended, and another one may connect
 
 dvec3 shortened(const dvec3& v, double most) {
   const double size = glm::length(v);
   return size > most ? v * (most / size) : v;
 }
 
-// The rotation vector of a unit quaternion, the short way round. [rad]
+// The shortest rotation vector of a unit quaternion. [rad]
 dvec3 rotation_vector(dquat q) {
   if (q.w < 0.0) q = -q;
   const dvec3 axis(q.x, q.y, q.z);
@@ -51,7 +51,7 @@ void NetworkEndpoint::send(NetworkFrame& frame, double now) {
   (void)port_->send(std::span(bytes).first(length));
 }
 
-// With a key each engine gets a session of its own, so that an open frame that somebody has kept opens nothing.
+// With a key each engine gets a new session, so that a replayed open frame has no effect.
 void NetworkEndpoint::forget() {
   engine_ = 0;
   has_force_ = false;
@@ -83,7 +83,7 @@ void NetworkEndpoint::tell_busy(const NetworkFrame& frame, bool stranger, double
     (void)port_->send(packet);
 }
 
-// Someone asks from another address while an engine has the device.
+// Answers a request from another address while an engine uses the device.
 void NetworkEndpoint::answer_stranger(double now) {
   FrameBytes bytes;
   const std::size_t size = port_->stranger(bytes);
@@ -94,11 +94,12 @@ void NetworkEndpoint::answer_stranger(double now) {
 
 void NetworkEndpoint::accept(const NetworkFrame& frame, double now) {
   if (frame.kind == FrameKind::kAsk) {
-    const bool other = key_ && engine_ != 0 && frame.session != engine_;  // with a key only who may open it asks
+    const bool other = key_ && engine_ != 0 && frame.session != engine_;  // with a key, only an engine allowed to open
+                                                                          // it may ask
     return other ? tell_busy(frame, false, now) : describe_to(frame, now);
   }
   if (frame.kind == FrameKind::kOpen) {
-    // A second engine waits until the first has closed or has been silent for a second.
+    // A second engine waits until the first has closed or timed out (one second).
     if (engine_ != 0 && frame.session != engine_) return tell_busy(frame, false, now);
     if (key_ && frame.peer != own_) {
       ++counts_.foreign;
@@ -113,7 +114,7 @@ void NetworkEndpoint::accept(const NetworkFrame& frame, double now) {
       has_force_ = false;
     } else if (comes_after(frame.sequence, heard_sequence_)) {
       heard_sequence_ = frame.sequence;
-    } else {  // kept by somebody, or sent twice on the way
+    } else {  // a replayed or duplicated frame
       ++counts_.late;
       return;
     }

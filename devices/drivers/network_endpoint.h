@@ -1,6 +1,5 @@
-// The device's side of driver "network": what a maker of such a device runs beside its motors (examples/network_device
-// is the same in one file, without Pliant). It answers one engine at a time; whoever comes while that one is heard is
-// told who has the device.
+// The device side of driver "network", for the program of such a device (examples/network_device is the same in one
+// file, without Pliant). It serves one engine at a time; another one is told who uses the device.
 #pragma once
 
 #include <functional>
@@ -18,12 +17,12 @@ class NetworkEndpoint {
   NetworkEndpoint(std::unique_ptr<ListeningPort> port, DeviceCapabilities can, const std::string& name,
                   std::function<double()> clock, std::optional<FrameKey> key = {});
 
-  // Once a period of the device's own servo: takes what came, says where the device is, and returns what to render.
-  // `now.sample` is in world axes; its time and `heard` are filled in here.
+  // Call once per period of the device's servo: receives frames, sends the device's state, and returns the force to
+  // render. `now.sample` is in world axes; its time and `heard` are set here.
   DeviceWrench tick(StateFrame now);
 
   bool opened() const { return engine_ != 0; }
-  bool closed() const { return closed_; }  // by the last engine itself, and not by its silence
+  bool closed() const { return closed_; }  // by the last engine explicitly, not by time-out
   const FrameCounts& counts() const { return counts_; }
 
  private:
@@ -42,9 +41,9 @@ class NetworkEndpoint {
   std::array<char, 32> name_{};
   std::function<double()> clock_;
   std::optional<FrameKey> key_;
-  std::uint32_t own_ = 0, engine_ = 0;  // sessions; 0: of nobody
+  std::uint32_t own_ = 0, engine_ = 0;  // sessions; 0: none
   std::uint32_t heard_sequence_ = 0;
-  std::uint64_t heard_time_us_ = 0;  // of the engine's clock
+  std::uint64_t heard_time_us_ = 0;  // on the engine's clock
   SentTimes sent_;
   ForceFrame force_;
   bool has_force_ = false, closed_ = false;
@@ -52,7 +51,7 @@ class NetworkEndpoint {
   FrameCounts counts_;
 };
 
-// What the model gives at a pose and its velocities; farther than `radius` away, as if it were at that distance.
+// The model's force at a pose and velocity; beyond `radius`, its value at that distance.
 DeviceWrench model_wrench(const DeviceModel& model, double radius, const StateFrame& at);
 
 }  // namespace pliant

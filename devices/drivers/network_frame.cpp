@@ -12,13 +12,13 @@
 namespace pliant {
 namespace {
 
-constexpr double kMostMetres = 100.0;                                  // [m] farther away is a fault of units
-constexpr double kMostNumber = 1e9;                                    // of everything else
-constexpr std::size_t kCheckAt = 8;                                    // where the check sum stands
+constexpr double kMostMetres = 100.0;                                  // [m] beyond it, the unit must be wrong
+constexpr double kMostNumber = 1e9;                                    // limit of all other numbers
+constexpr std::size_t kCheckAt = 8;                                    // position of the checksum
 constexpr std::uint32_t kReady = 1, kStopped = 2, kHot = 4, kLow = 8;  // StateFrame
 constexpr std::uint32_t kHasModel = 1;                                 // ForceFrame
 
-// DeviceCapabilities, one bit each.
+// DeviceCapabilities, one bit per capability.
 constexpr bool DeviceCapabilities::*kAbilities[] = {
     &DeviceCapabilities::senses_position, &DeviceCapabilities::senses_rotation,  &DeviceCapabilities::senses_grip,
     &DeviceCapabilities::renders_force,   &DeviceCapabilities::renders_torque,   &DeviceCapabilities::renders_grip,
@@ -42,7 +42,7 @@ void put(ByteWriter& out, const DeviceWrench& wrench) {
   out.put_real(wrench.grip);
 }
 
-// Reads numbers and remembers whether all of them could be.
+// Reads numbers and checks that all are valid.
 struct Numbers {
   ByteReader& in;
   bool good = true, turned = true;
@@ -73,7 +73,7 @@ struct Numbers {
     q.y = real(2.0);
     q.z = real(2.0);
     const double norm = glm::length(q);
-    turned = turned && std::abs(norm - 1.0) < 1e-3;  // written as unit, in single precision
+    turned = turned && std::abs(norm - 1.0) < 1e-3;  // sent as unit quaternion in single precision
     return good && turned ? q / norm : dquat(1, 0, 0, 0);
   }
   DeviceWrench wrench() {
@@ -90,7 +90,7 @@ void put_text(ByteWriter& out, const std::array<char, N>& text) {
   for (std::size_t i = 0; i < N; ++i) out.put(static_cast<std::uint8_t>(i + 1 < N ? text[i] : 0));
 }
 
-// Printed to terminals: nothing that steers them.
+// Printed to terminals: control characters are removed.
 template <std::size_t N>
 void get_text(ByteReader& in, std::array<char, N>& text) {
   for (char& letter : text) letter = static_cast<char>(in.get<std::uint8_t>());
@@ -133,7 +133,7 @@ void put_state(ByteWriter& out, const StateFrame& frame) {
   out.put_real(frame.sample.grip);
 }
 
-// A rotation that is not of unit length is told apart: who makes a device has often left it out.
+// A rotation that is not of unit length has its own fault, because it is a common error in new devices.
 FrameFault fault_of(const Numbers& numbers, bool good = true) {
   if (!numbers.good || !good) return FrameFault::kValue;
   return numbers.turned ? FrameFault::kNone : FrameFault::kRotation;
@@ -184,7 +184,7 @@ FrameFault get_force(ByteReader& in, ForceFrame& frame) {
   return fault_of(numbers);
 }
 
-// Of all bytes, with the check sum itself as zeros.
+// Over all bytes, with the checksum itself as zeros.
 std::uint32_t check_of(std::span<const std::uint8_t> bytes) {
   constexpr std::array<std::uint8_t, 4> kZeros{};
   std::uint32_t sum = crc32(bytes.first(kCheckAt));

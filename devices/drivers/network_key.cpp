@@ -1,4 +1,4 @@
-#define OPENSSL_API_COMPAT 0x10100000L  // the functions of SHA-256 that take no memory
+#define OPENSSL_API_COMPAT 0x10100000L  // enables SHA-256 functions that do not allocate
 #include "devices/drivers/network_key.h"
 
 #include <fcntl.h>
@@ -92,7 +92,7 @@ void FrameKey::tag(std::span<const std::uint8_t> bytes, std::span<std::uint8_t, 
 bool FrameKey::fits(std::span<const std::uint8_t> bytes, std::span<const std::uint8_t, kTag> its) const {
   std::array<std::uint8_t, kTag> right;
   tag(bytes, right);
-  return CRYPTO_memcmp(right.data(), its.data(), kTag) == 0;  // takes as long wherever they differ
+  return CRYPTO_memcmp(right.data(), its.data(), kTag) == 0;  // constant-time comparison
 }
 
 Result<KeyedAddress> parse_keyed_address(const std::string& id) {

@@ -1,6 +1,5 @@
-// The shared key of the network device: HMAC-SHA256 of each frame (RFC 2104, FIPS 180-4). Whoever has the key may move
-// the device and be its hand; it says nothing of who reads along. SHA-256 is libcrypto's. Nothing here allocates after
-// it was made.
+// The shared key of the network device: HMAC-SHA256 of each frame (RFC 2104, FIPS 180-4). It authenticates the engine
+// and the device to each other; it does not encrypt. SHA-256 is libcrypto's. No allocation after construction.
 #pragma once
 
 #include <array>
@@ -15,11 +14,11 @@ namespace pliant {
 
 class FrameKey {
  public:
-  static constexpr std::size_t kTag = 32;                        // bytes behind each frame
+  static constexpr std::size_t kTag = 32;                        // bytes appended to each frame
   static constexpr std::size_t kShortest = 16, kLongest = 4096;  // bytes of a key
 
   explicit FrameKey(std::span<const std::uint8_t> secret);
-  // From a file that not everyone may read; an end of line behind the key is not part of it.
+  // From a file that not everyone may read; a final end of line is not part of the key.
   static Result<FrameKey> from_file(const std::string& path);
   static Result<FrameKey> from_environment(const std::string& name);
 
@@ -27,11 +26,11 @@ class FrameKey {
   bool fits(std::span<const std::uint8_t> bytes, std::span<const std::uint8_t, kTag> tag) const;
 
  private:
-  // SHA-256 after the key's inner and outer block, which are the same for every frame.
+  // SHA-256 states after the key's inner and outer block, which are the same for every frame.
   alignas(8) std::array<std::uint8_t, 112> inner_{}, outer_{};
 };
 
-// "127.0.0.1:17716,key=FILE", ",key-env=NAME": the address, and the key where one is named.
+// "127.0.0.1:17716,key=FILE", ",key-env=NAME": the address, and the key if one is given.
 struct KeyedAddress {
   std::string address;
   std::optional<FrameKey> key;

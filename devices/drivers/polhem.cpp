@@ -13,9 +13,10 @@ namespace {
 
 constexpr const char* kKeys[] = {"mechanism", "home"};
 constexpr const char* kHomes[] = {"button", "here", "kept"};
-constexpr int kMostCounts = 400;  // a motor turns in a millisecond: 12,000 rpm at 2000 counts a turn
-constexpr int kNearHome = 100;    // counts that the arm may have been moved while its encoders were set
-constexpr int kAskAgain = 20;     // reports after which the encoders are set again
+constexpr int kMostCounts = 400;  // largest change of a motor's counts per millisecond: 12,000 rpm at 2000 counts per
+                                  // turn
+constexpr int kNearHome = 100;    // counts: tolerance for the arm's motion while its encoders were set
+constexpr int kAskAgain = 20;     // reports after which setting the encoders is repeated
 const HidMatch kPolhemMatches[] = {{0x16c0, {0x0486}}};
 
 std::string mechanisms() {
@@ -74,7 +75,7 @@ class Polhem final : public Driver {
     jumps_ = asked_ = 0;
     here_ = *home == "here";
     by_button_ = *home == "button";
-    drive(dvec3(0));  // the report that starts it
+    drive(dvec3(0));  // the first report starts the device
     if (gone_) return Error{where, "does not take a report; plug it in again"};
     return Done{};
   }
@@ -110,12 +111,12 @@ class Polhem final : public Driver {
   void make_safe() noexcept override {
     try {
       if (port_ && !gone_) drive(dvec3(0));
-    } catch (...) {  // the device's watchdog ends the force
+    } catch (...) {  // the device's own watchdog removes the force
     }
   }
-  // The report of no currents.
+  // The report with zero currents.
   bool safe_line(SafeLine& line) const override {
-    if (!port_ || gone_ || port_->file() < 0 || length_ > line.bytes.size()) return false;
+    if (!port_ || gone_ || port_->file() < 0) return false;
     std::array<std::uint8_t, kPolhemOutput> report;
     polhem_drive(dvec3(0), report);
     std::copy_n(report.begin(), length_, line.bytes.begin());
@@ -123,6 +124,7 @@ class Polhem final : public Driver {
     line.descriptor = port_->file();
     return true;
   }
+  std::string node() const override { return port_ ? port_->node() : std::string(); }
   // One that was said to be parked when it was opened, or whose encoders were said to be right, is not so any more.
   bool gone() const override { return gone_ && by_button_; }
   void close() override {
@@ -131,7 +133,7 @@ class Polhem final : public Driver {
   }
 
  private:
-  // One report, or none within `seconds`.
+  // Receives at most one report within `seconds`.
   bool receive(double seconds) {
     if (!port_ || gone_) return false;
     std::array<std::uint8_t, 64> packet;
@@ -161,7 +163,7 @@ class Polhem final : public Driver {
     return near;
   }
 
-  // A leap is a broken report. If it stays, the encoders have been set by someone else, and the pose is unknown.
+  // A jump is an invalid report. If it persists, the encoders were set by another program, and the pose is unknown.
   bool plausible(const PolhemInput& input, double now) {
     const double most = kMostCounts * std::max(1.0, 1000.0 * (now - sensed_at_));
     bool leaps = false;
@@ -193,9 +195,9 @@ class Polhem final : public Driver {
   std::size_t length_ = kPolhemOutput;
   PolhemInput input_;
   double asked_at_ = 0.0;   // when the last report was sent
-  double sensed_at_ = 0.0;  // when the arm answered with `input_`: on the report before
+  double sensed_at_ = 0.0;  // when the arm sampled `input_`: at the previous report
   int jumps_ = 0, asked_ = 0;
-  bool here_ = false;  // the arm was parked when it was opened
+  bool here_ = false;  // the arm was parked when opened
   bool gone_ = false, fresh_ = false, placed_ = false, set_ = false, calibrated_ = false;
   bool by_button_ = false;
 };
@@ -238,7 +240,7 @@ void polhem_set_encoders(const std::array<int, 6>& counts, std::span<std::uint8_
   std::fill(into.begin(), into.end(), std::uint8_t(0));
   for (std::size_t i = 0; i < 3; ++i) {
     put16(into, 9 + 2 * i, counts[i]);
-    put16(into, 1 + 2 * i, counts[i + 3]);  // the fields of the currents, which this command does not use
+    put16(into, 1 + 2 * i, counts[i + 3]);  // the current fields, unused by this command
   }
   put16(into, 7, 1);
 }

@@ -14,14 +14,14 @@ dvec3 world_of(const dvec3& v) {
   return {v.y, v.z, v.x};
 }
 
-// Body angle per radian of its motor, with its sign.
+// Body angle per radian of its motor, signed.
 dvec3 ratio(const PolhemConfig& config) {
   return config.sign * config.capstan / config.body;
 }
 
 }  // namespace
 
-// Constants: haptikfabrikenapi.h (its BSD-licensed header), max_current of the amplifiers' full signal.
+// Constants: haptikfabrikenapi.h (its BSD-licensed header); max_current at the amplifiers' full signal.
 const std::array<PolhemConfig, 4> kPolhemConfigs{{
     {"polhem_v1",
      {.010, .010, .010},
@@ -115,13 +115,13 @@ PolhemPose polhem_pose(const PolhemConfig& config, const std::array<std::int16_t
   PolhemPose pose;
   pose.position = polhem_position(config, q);
   if (config.turn_counts.x == 0.0) return pose;
-  // The gimbal turns about the forearm, across it, and about the pen; in device axes x, y, x, on body A and C.
+  // The gimbal rotates about the forearm, across it, and about the pen; in device axes x, y, x, on body A and C.
   const dvec3 gimbal = config.turn_sign * kTurn * dvec3(counts[3], counts[4], counts[5]) / config.turn_counts;
   const dquat turned = glm::angleAxis(q.x, dvec3(0, 0, 1)) *
                        glm::angleAxis(std::numbers::pi / 2 - q.z, dvec3(0, 1, 0)) *
                        glm::angleAxis(gimbal.x, dvec3(1, 0, 0)) * glm::angleAxis(gimbal.y, dvec3(0, 1, 0)) *
                        glm::angleAxis(gimbal.z, dvec3(1, 0, 0));
-  pose.rotation = glm::normalize(dquat(turned.w, turned.y, turned.z, turned.x));  // the same turn, in world axes
+  pose.rotation = glm::normalize(dquat(turned.w, turned.y, turned.z, turned.x));  // the same rotation in world axes
   return pose;
 }
 

@@ -20,8 +20,8 @@
 
 namespace pliant {
 
-// A build of the arm; its maker's published constants. Polhem v2 and v3 have another linkage, whose geometry is not
-// published: no driver here moves them.
+// A build of the arm, with its vendor's published constants. Polhem v2 and v3 have another linkage with unpublished
+// geometry; they are not supported.
 struct PolhemConfig {
   const char* name;
   dvec3 capstan;            // [m] diameters, of A, B, C
@@ -30,14 +30,14 @@ struct PolhemConfig {
   dvec3 origin;             // [m] of the workspace, device axes
   double radius;            // [m] of the workspace
   dvec3 torque_constant;    // [N m/A]
-  dvec3 counts;             // encoder counts a turn of the motor
-  dvec3 turn_counts;        // the same of the gimbal's encoders; 0: it has none
+  dvec3 counts;             // encoder counts per turn of the motor
+  dvec3 turn_counts;        // the same for the gimbal's encoders; 0: none
   double max_force;         // [N]
   double max_stiffness;     // [N/m]
-  double max_current;       // [A] a motor
-  std::array<int, 6> home;  // counts of all encoders where the arm is parked for calibration
-  dvec3 sign;               // +1 or -1: how a motor turns where its body's angle grows
-  dvec3 turn_sign;          // the same of the gimbal's encoders
+  double max_current;       // [A] per motor
+  std::array<int, 6> home;  // counts of all encoders in the parked pose for calibration
+  dvec3 sign;               // +1 or -1: sign of the motor's rotation for an increasing body angle
+  dvec3 turn_sign;          // the same for the gimbal's encoders
 };
 
 // polhem_v1, woodenhaptics_v2015, aluhaptics_v2, vintage.
@@ -50,16 +50,16 @@ struct PolhemPose {
 
 // Angles of the bodies [rad].
 dvec3 polhem_angles(const PolhemConfig& config, const std::array<std::int16_t, 6>& counts);
-// Where the tip is, world axes [m].
+// Position of the tip, world axes [m].
 dvec3 polhem_position(const PolhemConfig& config, const dvec3& angles);
-// How it moves: world velocity = J * angle rates. Columns: by a, by b, by c.
+// World velocity = J * angle rates. Columns: by a, by b, by c.
 dmat3 polhem_jacobian(const PolhemConfig& config, const dvec3& angles);
 PolhemPose polhem_pose(const PolhemConfig& config, const std::array<std::int16_t, 6>& counts);
 
-// Motor currents [A] that render `force` (world, on the hand). Where one would be above the limit, all are scaled
-// alike: the direction of the force stays. Zero where the force is not finite.
+// Motor currents [A] that render `force` (world, on the hand). If one exceeds the limit, all are scaled, which keeps
+// the direction. Zero if the force is not finite.
 dvec3 polhem_currents(const PolhemConfig& config, const dvec3& angles, const dvec3& force);
-// The force that currents render: the inverse of the above. For tests and emulations.
+// The force rendered by currents: the inverse of the above. For tests and emulation.
 dvec3 polhem_force(const PolhemConfig& config, const dvec3& angles, const dvec3& currents);
 
 }  // namespace pliant

@@ -12,11 +12,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kSerialPeriod = 1e-3;  // [s] between two exchanges; the line may make it longer
-constexpr double kSerialAnswer = 0.02;  // [s] that a pose is waited for before the next force
-constexpr double kSerialRetry = 0.5;    // [s] between two tries to find it again
+constexpr double kSerialPeriod = 1e-3;  // [s] between two exchanges; the connection may make it longer
+constexpr double kSerialAnswer = 0.02;  // [s] wait for a pose before the next force
+constexpr double kSerialRetry = 0.5;    // [s] between two reconnection attempts
 constexpr int kSerialSilentUntilLost = 100;
-constexpr double kBoot = 4.0;  // [s] an Arduino starts anew when its line is opened
+constexpr double kBoot = 4.0;  // [s] an Arduino resets when its port is opened
 
 Result<std::unique_ptr<PacketPort>> open_line(const std::string& id) {
   const std::size_t at = id.rfind('@');
@@ -36,7 +36,7 @@ Status send(PacketPort& port, std::string_view text) {
   return port.send({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-// What arrives within `seconds`. The error: the line is gone.
+// Receives for up to `seconds`. Error: the connection is lost.
 Status hear(PacketPort& port, SerialLines& lines, double seconds) {
   std::uint8_t bytes[256];
   const auto got = port.receive(bytes, seconds);
@@ -79,18 +79,18 @@ Status SerialDevice::open(const std::string& id) {
   identity_ = std::move(*who);
   can_ = {.renders_force = identity_.axes > 0,
           .max_force = identity_.max_force,
-          .max_stiffness = 500.0,  // that such boards bear at these rates
+          .max_stiffness = 500.0,  // stable on such boards at these rates
           .senses_grip = true,
           .rate = 1.0 / kSerialPeriod,
           .latency = 2e-3};
   port_ = std::move(*port);
   too_short_ = sums_ = forms_ = numbers_ = 0;
-  keep_line();
+  safe_file_.keep(port_->file());
   thread_.start([this] { run(); });
   return Done{};
 }
 
-// Until close(), or until the line is lost: then false.
+// Runs until close(); returns false if the connection is lost.
 bool SerialDevice::talk() {
   SerialLines lines;
   unsigned number = 0;
@@ -98,7 +98,7 @@ bool SerialDevice::talk() {
   double due = DeviceThread::seconds();
   for (;;) {
     const bool last = thread_.stopping();
-    dvec3 force = silent > 0 ? dvec3(0) : thread_.wanted().force;  // whoever does not answer gets none
+    dvec3 force = silent > 0 ? dvec3(0) : thread_.wanted().force;  // zero force without answers
     for (int i = identity_.axes; i < 3; ++i) force[i] = 0.0;
     SerialText text;
     const std::size_t length = serial_force(++number, force, text);
@@ -126,43 +126,29 @@ bool SerialDevice::talk() {
 void SerialDevice::run() {
   while (!talk()) {
     port_.reset();
-    // A lost line is not kept open: a device that is plugged in again would get another name.
-    if (const int none = safe_file_ >= 0 ? ::open("/dev/null", O_WRONLY | O_CLOEXEC) : -1; none >= 0) {
-      (void)::dup3(none, safe_file_, O_CLOEXEC);
-      ::close(none);
-    }
+    safe_file_.lose();
     while (!port_ && !thread_.stopping()) {
       DeviceThread::sleep(kSerialRetry);
       auto port = opener_(id_);
       if (port && ask(**port, [this] { return thread_.stopping(); })) port_ = std::move(*port);
     }
     if (!port_) return;
-    keep_line();
+    safe_file_.keep(port_->file());
   }
 }
 
 void SerialDevice::close() {
   thread_.stop();
   port_.reset();
-  if (safe_file_ >= 0) ::close(safe_file_);
-  safe_file_ = -1;
+  safe_file_.close();
 }
 
-void SerialDevice::keep_line() {
-  const int file = port_->file();
-  if (file < 0) return;
-  if (safe_file_ < 0)
-    safe_file_ = ::fcntl(file, F_DUPFD_CLOEXEC, 3);
-  else
-    (void)::dup3(file, safe_file_, O_CLOEXEC);
-}
-
-// A line of zero force; the end of line before it ends what was cut off.
+// A line of zero force; the leading end of line terminates a truncated line.
 bool SerialDevice::safe_line(SafeLine& line) const {
-  if (safe_file_ < 0) return false;
+  if (safe_file_.number() < 0) return false;
   SerialText text;
   const std::size_t length = serial_force(0, dvec3(0), text);
-  line.descriptor = safe_file_;
+  line.descriptor = safe_file_.number();
   line.size = length + 1;
   line.bytes[0] = '\n';
   std::copy_n(text.begin(), length, line.bytes.begin() + 1);

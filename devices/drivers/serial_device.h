@@ -1,9 +1,8 @@
-// Driver "serial": a device of one's own on a serial line, such as an Arduino that reads encoders and drives motors
-// (Hapkit, Haplink, ...). Those two publish no protocol between their board and a computer, only sketches that print
-// numbers; so this one is ours (serial_line.h). "serial:/dev/ttyACM0" or "serial:/dev/ttyACM0@1000000"; 115200 baud
-// where none is said.
+// Driver "serial": a custom device on a serial port, such as an Arduino that reads encoders and drives motors (Hapkit,
+// Haplink, ...). Those two publish no protocol, only sketches that print numbers, so this protocol is ours
+// (serial_line.h). "serial:/dev/ttyACM0" or "serial:/dev/ttyACM0@1000000"; default 115200 baud.
 //
-// Each force line is answered by one pose line. A board that hears no force line for 20 ms must render nothing.
+// Each force line is answered by one pose line. Watchdog: a board without a force line for 20 ms must render zero.
 #pragma once
 
 #include <atomic>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "devices/drivers/device_thread.h"
+#include "devices/drivers/safe_file.h"
 #include "devices/drivers/serial_line.h"
 #include "devices/ports/packet_port.h"
 #include "pliant/device_state.h"
@@ -38,21 +38,18 @@ class SerialDevice final : public Driver, public CountsDropped {
   void run();
   bool talk();
   void count(SerialFault fault);
-  void keep_line();
 
   PortOpener opener_;
   std::string id_;
   SerialIdentity identity_;
   DeviceCapabilities can_;
   std::unique_ptr<PacketPort> port_;
-  // A second name of the line, which keeps its number when the line is opened anew: a guard process is told of it from
-  // another thread. -1: none.
-  int safe_file_ = -1;
+  SafeFile safe_file_;
   std::atomic<std::uint64_t> too_short_{0}, sums_{0}, forms_{0}, numbers_{0};  // lines that were not used
   DeviceThread thread_;
 };
 
-// Serial lines of USB that are plugged in; they are not asked who they are, for a question may move a printer.
+// USB serial ports that are plugged in. They are not queried, because a query may move a printer.
 std::vector<DeviceInfo> list_serial(const std::string& folder = "/dev");
 
 }  // namespace pliant

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kLongest = 96;        // of a line
 constexpr long kMostMicrometres = 5000000;  // 5 m
 constexpr long kMostMillinewtons = 100000;
-constexpr int kPoseWords = 6;  // of a pose, after its P
+constexpr int kPoseWords = 6;  // words of a pose, after its P
 
 unsigned sum_of(std::string_view text) {
   unsigned sum = 0;
@@ -19,7 +19,7 @@ unsigned sum_of(std::string_view text) {
   return sum;
 }
 
-// The part before the sum, where that is right.
+// The part before the checksum, if that is correct.
 std::optional<std::string_view> checked(std::string_view line, SerialFault& why) {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   why = line.size() < 4 ? SerialFault::kTooShort : SerialFault::kForm;
@@ -35,7 +35,7 @@ std::optional<std::string_view> checked(std::string_view line, SerialFault& why)
   return line;
 }
 
-// Words of a line, one blank between two.
+// Words of a line, separated by single blanks.
 struct Words {
   std::string_view rest;
   bool good = true;
@@ -77,7 +77,7 @@ std::optional<SerialPose> parse_serial_pose(std::string_view line, SerialFault* 
   why = SerialFault::kForm;
   if (words.word() != "P") return {};
   const auto blanks = std::count(text->begin(), text->end(), ' ');
-  if (blanks == kPoseWords) why = SerialFault::kNumber;  // what else can be wrong
+  if (blanks == kPoseWords) why = SerialFault::kNumber;  // the only remaining fault
   SerialPose pose;
   pose.time_ms = static_cast<std::uint32_t>(words.number(0, 0xFFFFFFFFL));
   for (int i = 0; i < 3; ++i)
@@ -122,7 +122,7 @@ void SerialLines::add(std::string_view more) {
   size_ -= taken_;
   taken_ = 0;
   for (const char letter : more) {
-    if (size_ == bytes_.size()) {  // lines that nobody takes, or noise: begun anew at the next end of line
+    if (size_ == bytes_.size()) {  // unread lines or noise: discarded up to the next end of line
       size_ = 0;
       skipping_ = true;
     }

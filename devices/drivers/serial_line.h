@@ -1,9 +1,9 @@
-// The lines of the serial device, a protocol of our own (docs/devices/protocols.md): text, so that it can be watched
-// and typed, with a check sum at its end. A codec of pure functions.
+// The lines of the serial device, our protocol (docs/devices/protocols.md): text, for debugging by hand, with a
+// checksum at its end. A codec of pure functions.
 //
-//   device:  P <ms> <x> <y> <z> <buttons> <grip>*<sum>     where it is
-//   engine:  F <n> <x> <y> <z>*<sum>                       what to render; n counts lines
-//   engine:  ?*<sum>          device:  I <name> <axes> <newtons>*<sum>     who it is
+//   device:  P <ms> <x> <y> <z> <buttons> <grip>*<sum>     its pose
+//   engine:  F <n> <x> <y> <z>*<sum>                       the force to render; n counts lines
+//   engine:  ?*<sum>          device:  I <name> <axes> <newtons>*<sum>     its identity
 //
 // Numbers are integers: micrometres, millinewtons, milliseconds of the device's clock, thousandths of a grip. The sum
 // is the XOR of all characters before '*', two hexadecimal digits. Axes are the world's: right-handed, Y up.
@@ -28,20 +28,20 @@ struct SerialIdentity {
   double max_force = 0.0;  // [N]
 };
 
-// Why a line is none.
+// Why a line is rejected.
 enum class SerialFault : std::uint8_t { kNone, kTooShort, kSum, kForm, kNumber };
 std::optional<SerialPose> parse_serial_pose(std::string_view line, SerialFault* fault = nullptr);
 std::optional<SerialIdentity> parse_serial_identity(std::string_view line);
-// With its end of line, into `into`; its length. Of an axis that the device has not, zero.
+// Writes the line with its end into `into`; returns its length. Missing axes get zero.
 using SerialText = std::array<char, 64>;
 std::size_t serial_force(unsigned number, const dvec3& force, SerialText& into);
 std::string serial_question();
 
-// Cuts a stream into lines; of one that is longer than any can be, the rest is dropped to its end.
+// Splits a stream into lines; drops the rest of a line that is too long.
 class SerialLines {
  public:
   void add(std::string_view bytes);
-  // The next line without its end. False: there is no whole one.
+  // The next line without its end. False: no complete line.
   bool next(std::string_view& line);
 
  private:

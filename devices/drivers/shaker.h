@@ -1,5 +1,5 @@
-// A force as two shakings, for devices that vibrate and cannot push: how hard something is pressed (slow), and how it
-// changes: contact, texture, slip (fast).
+// Renders a force by two vibration motors, for devices that cannot push: the pressing force (slow part), and its
+// changes from contact, texture and slip (fast part).
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,11 @@ struct Shaking {
 
 class Shaker {
  public:
-  static constexpr double kFull = 3.0;     // [N] that shakes fully
-  static constexpr double kSlow = 0.05;    // [s] what changes slower counts as pressed
-  static constexpr double kPressed = 0.5;  // [1] most that pressing alone shakes: a steady touch does not drown texture
+  static constexpr double kFull = 3.0;     // [N] of full vibration
+  static constexpr double kSlow = 0.05;    // [s] slower changes count as pressing
+  static constexpr double kPressed = 0.5;  // [1] limit for the pressing part, so that it does not mask texture
 
-  // Without a force there is no shaking at all, at once; a force that is not finite is none.
+  // A zero or non-finite force stops the vibration at once.
   Shaking step(const dvec3& force, double dt) {
     const double size = length(force);
     if (!(size > 0.0) || !std::isfinite(size)) {

@@ -15,6 +15,7 @@ namespace {
 constexpr double kFullGrip = 4.0;    // [N] that makes the trigger resist fully; what it then renders is not published
 constexpr double kLostAfter = 0.05;  // [s] a controller reports every 1 to 15 ms, moved or not
 constexpr double kSendEvery = 0.01;  // [s] motors are slower
+constexpr double kSendAgain = 0.2;   // [s] what a guard process has ended shakes again
 constexpr int kMostReports = 64;     // in one tick
 constexpr std::uint16_t kNewRumble = 0x0215;  // firmware from which the motors have another flag
 
@@ -105,11 +106,11 @@ class SonyPad final : public Driver {
       output.resistance =
           static_cast<std::uint8_t>(std::ceil(kMostResistance * std::min(wrench.grip / kFullGrip, 1.0)));
     // Nothing leaves at once, everything else when its time has come.
-    if (output == sent_ || (output != SonyOutput{} && now - sent_at_ < kSendEvery)) return;
+    const bool nothing = output == SonyOutput{};
+    if (output == sent_ && (nothing || now - sent_at_ < kSendAgain)) return;
+    if (!nothing && now - sent_at_ < kSendEvery) return;
     std::array<std::uint8_t, kLongestSonyOutput> report;
-    const std::size_t length = model_ == SonyModel::kDualSense
-                                   ? dualsense_output(output, bluetooth_, new_rumble_, sequence_, report)
-                                   : dualshock_output(output, bluetooth_, report);
+    const std::size_t length = write_report(output, report);
     if (!port_->send({report.data(), length})) {
       gone_ = true;
       return;
@@ -119,6 +120,17 @@ class SonyPad final : public Driver {
     sent_at_ = now;
   }
 
+  // The report that lets both motors and the trigger rest.
+  bool safe_line(SafeLine& line) const override {
+    if (!port_ || gone_ || port_->file() < 0) return false;
+    std::array<std::uint8_t, kLongestSonyOutput> report;
+    line.size = write_report({}, report);
+    std::copy_n(report.begin(), line.size, line.bytes.begin());
+    line.descriptor = port_->file();
+    return true;
+  }
+  std::string node() const override { return port_ ? port_->node() : std::string(); }
+
   void close() override {
     if (port_) write({});
     port_.reset();
@@ -126,6 +138,11 @@ class SonyPad final : public Driver {
 
  private:
   const char* name() const { return model_ == SonyModel::kDualSense ? "dualsense" : "dualshock4"; }
+
+  std::size_t write_report(const SonyOutput& output, std::span<std::uint8_t, kLongestSonyOutput> report) const {
+    return model_ == SonyModel::kDualSense ? dualsense_output(output, bluetooth_, new_rumble_, sequence_, report)
+                                           : dualshock_output(output, bluetooth_, report);
+  }
 
   // Which line it is, how its sensors are calibrated, and how old its firmware is. By Bluetooth the first of these
   // feature reports makes the controller send its whole input.
@@ -153,7 +170,7 @@ class SonyPad final : public Driver {
 
   void take(const SonyInput& input, double now) {
     const bool sense = model_ == SonyModel::kDualSense;
-    if (heard_ && input.sequence == input_.sequence && input.time == input_.time) return;  // the same again
+    if (heard_ && input.sequence == input_.sequence && input.time == input_.time) return;  // a repeated report
     const std::uint32_t ticks = sense ? input.time - input_.time : (input.time - input_.time) & 0xffff;
     const double dt = heard_ ? ticks * (sense ? 1e-6 / 3.0 : 16e-6 / 3.0) : 0.0;
     dvec3 turning, felt;

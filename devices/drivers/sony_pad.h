@@ -1,8 +1,8 @@
-// Drivers `dualsense` (DualSense, DualSense Edge) and `dualshock4`: sticks and motion in; shaking out, and of a
-// DualSense the right trigger's resistance. They push nothing: a force is felt as how hard they shake.
+// Drivers `dualsense` (DualSense, DualSense Edge) and `dualshock4`. Input: sticks and motion; output: vibration, and
+// the resistance of a DualSense's right trigger. They cannot push: force is rendered as vibration strength.
 //
 // Pose. The left stick moves right and towards the user, the right stick up and down (stick_control.h: by rate or by
-// position); the rotation is the controller's own (motion_filter.h), world axes where it lies flat with its face up.
+// position). The rotation is the controller's own (motion_filter.h), in world axes if it lies flat with its face up.
 // The left shoulder is the clutch of the sticks. Grip: the right trigger. Buttons: SonyButton.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace pliant {
 
-// `id`: serial number or path, then stick_control.h's words.
+// `id`: serial number or path, followed by stick_control.h's options.
 std::unique_ptr<Driver> make_sony_pad(SonyModel model, PortOpener opener, SecondsClock clock = monotonic_seconds);
 Status register_dualsense();
 Status register_dualshock4();

@@ -40,7 +40,7 @@ double stick(std::uint8_t raw) {
   return std::clamp((raw - 128) / 127.0, -1.0, 1.0);
 }
 
-// Three bytes: hat and face; shoulders and the rest; home and touchpad.
+// Three bytes: hat and face buttons; shoulders and others; home and touchpad.
 std::uint32_t buttons_of(std::span<const std::uint8_t> bytes) {
   static constexpr std::uint32_t kHat[] = {kHatUp,   kHatUp | kHatRight,  kHatRight, kHatRight | kHatDown,
                                            kHatDown, kHatDown | kHatLeft, kHatLeft,  kHatLeft | kHatUp};
@@ -126,9 +126,9 @@ std::optional<SonyCalibration> parse_sony_calibration(SonyModel model, bool blue
   if (report.size() < size || report[0] != (shock_usb ? 0x02 : 0x05)) return std::nullopt;
   report = report.first(size);
   if (bluetooth && !sealed(kFeatureKind, report)) return std::nullopt;
-  // DualShock by Bluetooth: three positive ends, then three negative ones; else they alternate.
+  // DualShock by Bluetooth: three positive limits, then three negative ones; otherwise they alternate.
   const bool apart = model == SonyModel::kDualShock && bluetooth;
-  const double speed = s16(report, 19) + s16(report, 21);  // [deg/s] between the two ends
+  const double speed = s16(report, 19) + s16(report, 21);  // [deg/s] between the two limits
   SonyCalibration calibration;
   for (std::size_t i = 0; i < 3; ++i) {
     const int axis = static_cast<int>(i);
@@ -140,7 +140,7 @@ std::optional<SonyCalibration> parse_sony_calibration(SonyModel model, bool blue
     calibration.acceleration_bias[axis] = 0.5 * (up + down);
     calibration.acceleration_scale[axis] = 2.0 * kGravityOfReport / (up - down);
   }
-  // Within a factor of two of what the parts give: else the report is not believed.
+  // Rejects a calibration that differs from the nominal one by more than a factor of two.
   const SonyCalibration nominal = nominal_calibration();
   for (int axis = 0; axis < 3; ++axis) {
     const double gyro = calibration.gyro_scale[axis] / nominal.gyro_scale[axis];
@@ -166,7 +166,7 @@ std::size_t dualsense_output(const SonyOutput& output, bool bluetooth, bool new_
   common[38] = new_rumble ? 0x04 : 0x00;
   const std::uint8_t resistance = std::min(output.resistance, kMostResistance);
   common[10] = resistance == 0 ? 0x05 : 0x21;
-  if (resistance > 0) {  // all ten zones, each with three bits of strength
+  if (resistance > 0) {  // all ten zones, three bits of strength each
     common[11] = 0xff;
     common[12] = 0x03;
     std::uint32_t zones = 0;

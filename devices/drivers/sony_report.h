@@ -1,8 +1,8 @@
-// Reports of Sony's controllers: DualSense (and Edge) and DualShock 4, by USB and by Bluetooth. Pure functions between
-// bytes and numbers. Facts are those of public drivers; tested by emulation only.
+// Reports of Sony's controllers, DualSense (and Edge) and DualShock 4, by USB and Bluetooth. Pure functions between
+// bytes and numbers. Facts are from public drivers; tested by emulation only.
 //
-// By Bluetooth a report ends with a CRC32 (of zlib, little-endian) over a byte that says its kind and all before it:
-// 0xA1 what comes, 0xA2 what goes, 0xA3 feature reports.
+// A Bluetooth report ends with a CRC32 (of zlib, little-endian) over a byte for its kind and all preceding bytes. The
+// kind is 0xA1 for input, 0xA2 for output, 0xA3 for feature reports.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ namespace pliant {
 enum class SonyModel : std::uint8_t { kDualSense, kDualShock };
 
 std::uint32_t sony_crc(std::uint8_t kind, std::span<const std::uint8_t> bytes);
-// Writes it over the last four bytes.
+// Writes the CRC over the last four bytes.
 void seal_sony(std::uint8_t kind, std::span<std::uint8_t> report);
 
-// What an input report says.
+// The content of an input report.
 struct SonyInput {
   std::array<double, 4> sticks{};  // [1] LX LY RX RY in [-1, 1]; right and towards the user positive
   double left = 0.0, right = 0.0;  // [1] triggers, 0 to 1
@@ -55,25 +55,24 @@ enum SonyButton : std::uint32_t {
 
 enum class SonyParse : std::uint8_t { kSample, kOther, kShort, kCorrupt };
 
-// kOther: another report, such as the simple one that a controller sends by Bluetooth until it is asked for more.
-// kCorrupt: its CRC is wrong. `input` is written only of a kSample.
+// kOther: another report, such as the short one that a controller sends by Bluetooth initially. kCorrupt: wrong CRC.
+// `input` is set only for kSample.
 SonyParse parse_sony(SonyModel model, bool bluetooth, std::span<const std::uint8_t> report, SonyInput& input);
 
-// How raw motion becomes rad/s and m/s2.
+// Conversion of raw motion to rad/s and m/s2.
 struct SonyCalibration {
   dvec3 gyro_bias{0};           // raw
-  dvec3 gyro_scale{0};          // [rad/s] a count
+  dvec3 gyro_scale{0};          // [rad/s] per count
   dvec3 acceleration_bias{0};   // raw
-  dvec3 acceleration_scale{0};  // [m/s2] a count
+  dvec3 acceleration_scale{0};  // [m/s2] per count
 };
-// What the parts nominally give: 2000 deg/s at full scale, 8192 counts a g.
+// Nominal sensor scales: 2000 deg/s at full scale, 8192 counts per g.
 SonyCalibration nominal_calibration();
-// Of the feature report (0x05 of 41 bytes; DualShock by USB 0x02 of 37). Nothing: it is short, corrupt, or says what no
-// sensor is like.
+// From the feature report (0x05 of 41 bytes; DualShock by USB 0x02 of 37). Empty: it is short, corrupt, or implausible.
 std::optional<SonyCalibration> parse_sony_calibration(SonyModel model, bool bluetooth,
                                                       std::span<const std::uint8_t> report);
 
-// What a controller is to do.
+// Output of a controller.
 struct SonyOutput {
   std::uint8_t strong = 0, weak = 0;  // motors: low-pitched left, high-pitched right
   std::uint8_t resistance = 0;        // of the right trigger, 0 to 8; DualSense only
@@ -83,7 +82,7 @@ inline constexpr std::uint8_t kMostResistance = 8;
 inline constexpr std::size_t kLongestSonyOutput = 78;
 
 // Writes the report into `into`; returns its length. `sequence` counts reports (DualSense by Bluetooth). `new_rumble`:
-// firmware from 2.21 on, and every Edge, drives its motors by another flag.
+// firmware from 2.21 on, and every Edge, uses another flag for its motors.
 std::size_t dualsense_output(const SonyOutput& output, bool bluetooth, bool new_rumble, std::uint8_t sequence,
                              std::span<std::uint8_t, kLongestSonyOutput> into);
 std::size_t dualshock_output(const SonyOutput& output, bool bluetooth,

@@ -9,9 +9,10 @@ namespace pliant {
 namespace {
 
 constexpr double kUsualScale = 350.0;  // counts at full deflection, where the descriptor does not say
-constexpr double kQuiet = 0.25;        // [s] a deflected cap reports every 8 to 16 ms: silent so long, it is let go
+constexpr double kQuiet = 0.25;        // [s] watchdog: a deflected cap reports every 8 to 16 ms; without reports for
+                                       // this time it counts as released
 constexpr std::uint32_t kClutch = 2;   // the second button
-constexpr int kMostSpacemouseReports = 64;  // in one tick
+constexpr int kMostSpacemouseReports = 64;  // per tick
 
 const HidMatch kSpacemouseMatches[] = {
     {0x046d, {0xc603, 0xc605, 0xc606, 0xc621, 0xc623, 0xc625, 0xc626, 0xc627, 0xc628, 0xc629, 0xc62b}, 1, 8},
@@ -35,7 +36,7 @@ SpaceMouseLayout usual_layout() {
   return layout;
 }
 
-// Counts to [-1, 1]. Some descriptors say the whole int16 range, which no cap reaches.
+// Counts to [-1, 1]. Some descriptors declare the whole int16 range, which no cap reaches.
 double scaled(const HidField& field, std::int32_t value) {
   const double most = std::max(std::abs(double(field.min)), std::abs(double(field.max)));
   return std::clamp(value / (most >= 64.0 && most <= 4096.0 ? most : kUsualScale), -1.0, 1.0);
@@ -77,7 +78,7 @@ class SpaceMouse final : public Driver {
     return can;
   }
 
-  // A cap at rest sends nothing: the pose is known as long as the line is there.
+  // A cap at rest sends nothing: the pose is known as long as the connection exists.
   bool read(DeviceSample& sample) override {
     if (!port_ || gone_) return false;
     const double now = clock_();
@@ -156,7 +157,7 @@ SpaceMousePart parse_spacemouse(const SpaceMouseLayout& layout, std::span<const 
       (described && layout.hid.numbered && report.size() < layout.hid.bytes(HidKind::kInput, report[0])))
     return part;
   if (!described && report[0] <= 2 && report.size() < 7) return part;
-  // Without a descriptor, six axes in one report are told by its length.
+  // Without a descriptor, six axes in one report are recognised by its length.
   const bool six = !described && report.size() >= 13 && report[0] == 1;
   for (std::size_t i = 0; i < layout.axes.size(); ++i) {
     HidField field = layout.axes[i];

@@ -7,15 +7,15 @@
 namespace pliant {
 namespace {
 
-// Numbers of the maker's interface.
+// Constants of the vendor's interface.
 constexpr unsigned kInvalid = 0xFFFFFFFF;
 constexpr unsigned kForceOutput = 0x4000, kMaxForceClamp = 0x4001, kForceRamp = 0x4002, kSoftwareLimit = 0x4003;
 constexpr unsigned kButtons = 0x2000, kPosition = 0x2050, kTransform = 0x2052, kForce = 0x2700, kMaxForce = 0x2603;
 constexpr unsigned kCalibrated = 0x5000;
 constexpr unsigned kContinue = 1;
-constexpr unsigned short kPriority = 0xFFFF;  // the highest: as makers of forces have it
+constexpr unsigned short kPriority = 0xFFFF;  // the highest, as usual for force rendering
 
-constexpr double kDeadline = 0.020;  // [s] a force that nobody renews is over
+constexpr double kDeadline = 0.020;  // [s] watchdog: a force that is not renewed becomes zero
 constexpr double kMillimetre = 1e-3;
 
 double seconds_now() {
@@ -51,7 +51,7 @@ struct Touch::Library {
   unsigned long (*schedule)(unsigned (*)(void*), void*, unsigned short) = nullptr;
   void (*unschedule)(unsigned long) = nullptr;
   Fault (*fault)() = nullptr;
-  unsigned (*calibration)() = nullptr;  // older versions have none
+  unsigned (*calibration)() = nullptr;  // missing in older versions
 };
 
 Touch::Touch(std::vector<std::string> libraries) : names_(std::move(libraries)) {
@@ -94,7 +94,7 @@ Status Touch::open(const std::string& id) {
   if (!library) return library.error();
   library_ = std::move(*library);
   while (library_->fault().code != 0) {
-  }  // of an earlier time
+  }  // discards an old sample
   device_ = library_->init(id.empty() || id == "default" ? nullptr : id.c_str());
   if (const auto fault = library_->fault(); device_ == kInvalid || fault.code != 0) {
     if (device_ != kInvalid) library_->disable_device(device_);
@@ -108,12 +108,12 @@ Status Touch::open(const std::string& id) {
   library_->get_doubles(kMaxForce, &force);
   can_ = {.senses_rotation = true,
           .max_force = std::isfinite(force) && force > 0.0 && force < 40.0 ? force : 3.3,
-          .max_stiffness = 400.0,  // that is stable with a Touch; stiffer models of the maker bear more
+          .max_stiffness = 400.0,  // stable with a Touch; the vendor's stiffer models allow more
           .rate = 1000.0,
           .loop = DeviceLoop::kCallback};
   for (const unsigned safety : {kMaxForceClamp, kForceRamp, kSoftwareLimit}) library_->enable(safety);
   while (library_->fault().code != 0) {
-  }  // a model that lacks one of these says so
+  }  // a model without one of these reports it
   library_->enable(kForceOutput);
   off_ = was_off_ = failed_ = has_tick_ = false;
   sample_ = {};
@@ -132,7 +132,7 @@ unsigned Touch::on_frame(void* self) {
   return kContinue;
 }
 
-// On the maker's thread, once a period.
+// On the vendor's thread, once per period.
 void Touch::frame() {
   library_->make_current(device_);
   library_->begin(device_);
@@ -143,7 +143,7 @@ void Touch::frame() {
   library_->get_integers(kButtons, &buttons);
   bool known = finite(position, 3) && finite(transform, 16) && !failed_ && !off_;
   if (library_->calibration && library_->calibration() != kCalibrated) known = false;
-  // By columns; its fourth column is the position again.
+  // Column-major; its fourth column is the position again.
   const dmat3 turn(transform[0], transform[1], transform[2], transform[4], transform[5], transform[6], transform[8],
                    transform[9], transform[10]);
   known = known && std::abs(glm::determinant(turn) - 1.0) < 0.01;
@@ -167,8 +167,8 @@ void Touch::frame() {
     was_off_ = true;
   }
   library_->end(device_);
-  // Warm motors, too fast, too large a force, a lost line: no force in the frame that follows, and the pose counts as
-  // unknown until a frame is whole again.
+  // Overheated motors, too high a speed or force, a lost connection: zero force in the next frame, and an unknown pose
+  // until a frame without errors.
   failed_ = false;
   for (int i = 0; i < 16 && library_->fault().code != 0; ++i) failed_ = true;
 }
@@ -195,7 +195,8 @@ Status Touch::run(std::function<void()> tick) {
 void Touch::close() {
   if (!library_) return;
   off_ = true;
-  // The scheduler is stopped between two frames; what the last one set is zeroed by hand, then its output goes.
+  // The scheduler is stopped between two frames. The last force is set to zero here, then the force output is switched
+  // off.
   library_->stop();
   library_->unschedule(task_);
   library_->make_current(device_);
@@ -211,7 +212,7 @@ void Touch::close() {
 }
 
 std::vector<DeviceInfo> Touch::list() {
-  // To look for the device would be to open it: the library counts none.
+  // Listing the devices would require opening them: the library cannot count them.
   DeviceInfo info{.driver = "touch", .name = "3D Systems Touch, Touch X, Phantom"};
   info.can = {.senses_rotation = true, .max_force = 3.3, .max_stiffness = 400.0, .rate = 1000.0};
   if (const auto library = load(); !library)

@@ -1,8 +1,8 @@
-// Driver "touch": Touch, Touch X and Phantom by 3D Systems, through the maker's libHD (OpenHaptics), opened at run
-// time. Declarations are our own. The maker's scheduler calls us, at its own rate and on its own thread; its clamp,
-// ramp and software limit of force are switched on and never off.
+// Driver "touch": Touch, Touch X and Phantom by 3D Systems, through the vendor's libHD (OpenHaptics), opened at run
+// time with our own declarations. The vendor's scheduler calls us at its own rate and on its own thread. Its force
+// clamp, ramp and software limit are always on.
 //
-// The maker's axes are the world's (x right, y up, z towards the user), in millimetres.
+// The vendor's axes are the world's (x right, y up, z towards the user), in millimetres.
 #pragma once
 
 #include <atomic>
@@ -18,17 +18,17 @@ namespace pliant {
 
 class Touch final : public Driver {
  public:
-  // `libraries`: tried in this order; none: the maker's names.
+  // `libraries`: tried in this order; empty: the vendor's names.
   explicit Touch(std::vector<std::string> libraries = {});
   ~Touch() override;
-  // `id`: the name that the maker's set-up program gave it; empty or `default`: the default device.
+  // `id`: the name given in the vendor's set-up program; empty or `default`: the default device.
   Status open(const std::string& id) override;
   DeviceCapabilities capabilities() const override { return can_; }
   bool read(DeviceSample& sample) override;
   void write(const DeviceWrench& wrench) override;
   Status run(std::function<void()> tick) override;
   void close() override;
-  void make_safe() noexcept override { off_ = true; }  // the next frame switches the output of force off
+  void make_safe() noexcept override { off_ = true; }  // the next frame switches the force output off
 
   std::vector<DeviceInfo> list();
 

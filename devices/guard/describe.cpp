@@ -1,4 +1,4 @@
-// The states and causes of a device, in words for people.
+// States and causes of a device as text.
 #include <fmt/format.h>
 
 #include "pliant/device_state.h"

@@ -1,4 +1,4 @@
-// What a device sent and was not used, in words for people.
+// Counts of dropped frames as text.
 #include <fmt/format.h>
 
 #include "pliant/device_state.h"

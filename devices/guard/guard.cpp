@@ -10,9 +10,6 @@
 namespace pliant {
 namespace {
 
-constexpr double kUnitNear = 0.01;     // [1] how far from unit length a rotation may be
-constexpr double kFarthestPose = 1e6;  // [m] of a device that says no workspace
-
 bool finite(dvec3 v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -20,18 +17,18 @@ bool finite(const DeviceWrench& wrench) {
   return finite(wrench.force) && finite(wrench.torque) && std::isfinite(wrench.grip);
 }
 
-// The norm, never each axis: the direction must stay.
+// Clamps the norm, not each axis, so that the direction is kept.
 dvec3 clamp_norm(dvec3 v, double most) {
   const double size = length(v);
   return size > most ? v * (most / size) : v;
 }
 
-// Where 0 is: not said. A parameter lowers, and never raises.
+// 0: unspecified. A parameter can only lower a limit.
 double lowest(double device, double other) {
   return device > 0.0 && other > 0.0 ? std::min(device, other) : std::max(device, other);
 }
 
-// What comes in is slewed; what of the last force is no longer wanted is gone at once.
+// Rising force is slew-limited; the part of the last force that is no longer wanted is removed at once.
 dvec3 slewed(dvec3 last, dvec3 wanted, double most) {
   const double size = length(last);
   if (size > 0.0) last *= std::clamp(dot(wanted, last) / (size * size), 0.0, 1.0);
@@ -76,7 +73,7 @@ void Guard::trip(DeviceCause cause, double now) {
   if (running()) to(DeviceState::kTripped, cause, now);
 }
 
-// Once a loss at most: while it lasts, the state is armed already. What is lost while nothing leaves counts as well.
+// Called at most once per loss: afterwards the state is armed. A loss while no force is rendered counts too.
 void Guard::lose(DeviceCause cause, double now) {
   if (state() != DeviceState::kActive) return;
   losses_[loss_++ % kMostLosses] = now;
@@ -92,29 +89,29 @@ bool Guard::take_make_safe() {
 }
 
 bool Guard::fresh(double now) const {
-  const double holds = can_.rate > 0.0 ? std::max(kSampleHolds, 2.5 / can_.rate) : kSampleHolds;
+  const double holds = can_.rate > 0.0 ? std::max(kStaleAfter, 2.5 / can_.rate) : kStaleAfter;
   return placed_ && ready_ && now - sensed_at_ <= holds;
 }
 
-// Whether the sample's pose may be believed; where not, why is noted.
+// Whether the sample's pose is valid; otherwise records the cause.
 bool Guard::sound(const DeviceSample& sample, double now) {
   DeviceCause cause = DeviceCause::kNone;
   const double at = sample.time > 0.0 ? sample.time : now;
-  const double far = dot(can_.workspace, can_.workspace) > 0.0 ? kFarOut * length(can_.workspace) : kFarthestPose;
+  const double far = dot(can_.workspace, can_.workspace) > 0.0 ? kFarOut * length(can_.workspace) : kFarthest;
   const double unit = can_.senses_rotation ? glm::length(sample.rotation) : 1.0;
   if (!can_.senses_position) {
     cause = std::isfinite(sample.grip) && std::isfinite(at) ? DeviceCause::kNone : DeviceCause::kNotANumber;
-  } else if (!finite(sample.position) || !(std::abs(unit - 1.0) < kUnitNear) || !std::isfinite(at)) {
+  } else if (!finite(sample.position) || !(std::abs(unit - 1.0) < kUnitWithin) || !std::isfinite(at)) {
     cause = DeviceCause::kNotANumber;
-  } else if (at < sensed_at_ || at > now + kSampleHolds) {
+  } else if (at < sensed_at_ || at > now + kStaleAfter) {
     cause = DeviceCause::kTimeBack;
   } else if (length(sample.position) > far) {
     trip(DeviceCause::kOutside, now);
     return false;
   } else if (placed_) {
     const double since = std::max(at - sensed_at_, can_.rate > 0.0 ? 0.5 / can_.rate : 1e-4);
-    if (length(sample.position - position_) > kFastestSample * since) {
-      placed_ = false;  // the next one begins anew from where it is
+    if (length(sample.position - position_) > kFastestHand * since) {
+      placed_ = false;  // the next sample restarts from its pose
       cause = DeviceCause::kJumped;
     }
   }
@@ -150,13 +147,13 @@ void Guard::sense(const DeviceSample* sample, double now, const GuardOrders& ord
   dt_ = stepped_ ? now - now_ : 0.0;
   way_ = turn_ = dvec3(0);
   heard_ = false;
-  if (!(dt_ >= 0.0)) {  // the clock itself
+  if (!(dt_ >= 0.0)) {  // the clock itself failed
     lose(DeviceCause::kTimeBack, now);
     dt_ = 0.0;
     placed_ = false;
     sensed_at_ = std::min(sensed_at_, now);
   }
-  const double gap = can_.rate > 0.0 ? std::max(kSampleHolds, 2.5 / can_.rate) : kSampleHolds;
+  const double gap = can_.rate > 0.0 ? std::max(kStaleAfter, 2.5 / can_.rate) : kStaleAfter;
   if (orders.suspended)
     trip(DeviceCause::kSuspended, now);
   else if (dt_ > kLatchAfter)
@@ -179,7 +176,7 @@ void Guard::sense(const DeviceSample* sample, double now, const GuardOrders& ord
   watch(now);
 }
 
-// What the pose alone says.
+// Faults detected from the pose alone.
 void Guard::watch(double now) {
   if (!fresh(now)) {
     fresh_since_ = now;
@@ -192,12 +189,12 @@ void Guard::watch(double now) {
   double fastest = lowest(can_.max_velocity, parameters_.max_velocity);
   if (!(fastest > 0.0)) fastest = kDefaultVelocity;
   if (length(velocity_) > fastest) trip(DeviceCause::kTooFast, now);
-  // A hand that holds quite still looks the same, and is asked: its force fades, and whatever moves by that, if only by
-  // one count, has it back.
+  // A hand that is perfectly still looks the same. Therefore the force fades out; a motion of a single count restores
+  // it.
   const double still = now - changed_at_;
   if (still > kFrozenAfter + kFrozenFade && fade_ <= 0.0)
     lose(DeviceCause::kFrozen, now);
-  else if (still > kFrozenAfter && (fade_ < 1.0 || length(last_.force) > kGateForce))
+  else if (still > kFrozenAfter && (fade_ < 1.0 || length(last_.force) > kEngageForce))
     fade_ = std::max(0.0, fade_ - dt_ / kFrozenFade);
   else if (!(warnings_ & kDeviceBatteryLow))
     fade_ = parameters_.ramp > 0.0 ? std::min(1.0, fade_ + dt_ / parameters_.ramp) : 1.0;
@@ -220,7 +217,7 @@ void Guard::follow_orders(const GuardOrders& orders, double now) {
   }
 }
 
-// What is missing takes the force at once, and latches where it lasts.
+// A missing sample or model removes the force at once, and trips if it lasts.
 void Guard::decide(const GuardWish& wish, const GuardOrders& orders, double now) {
   if (orders.let_go) {
     missing_ = false;
@@ -250,7 +247,7 @@ void Guard::decide(const GuardWish& wish, const GuardOrders& orders, double now)
   if (state() != DeviceState::kArmed || !finite(wish.wrench) || (warnings_ & kDeviceBatteryLow)) return;
   if (parameters_.dead_man != 0) {
     if (held) to(DeviceState::kActive, DeviceCause::kDeadManHeld, now);
-  } else if (length(wish.wrench.force - wish.weight) < kGateForce && length(wish.wrench.torque) < kGateTorque) {
+  } else if (length(wish.wrench.force - wish.weight) < kEngageForce && length(wish.wrench.torque) < kGateTorque) {
     to(DeviceState::kActive, DeviceCause::kSmallForce, now);
   }
   if (state() == DeviceState::kActive) changed_at_ = now;
@@ -265,7 +262,7 @@ double Guard::torque_limit(const GuardWish& wish) const {
   return most > 0.0 ? most : std::numeric_limits<double>::infinity();
 }
 
-// Speed that grows against a large force, faster than a pushing hand makes it.
+// Speed increases against a large force, faster than a pushing hand could cause.
 bool Guard::runs_away(const GuardWish& wish, double dt) {
   const double size = length(last_.force), most = force_limit(wish);
   const double against = size > 0.0 ? -dot(velocity_ - wish.velocity, last_.force) / size : 0.0;
@@ -277,14 +274,14 @@ bool Guard::runs_away(const GuardWish& wish, double dt) {
   return against > kRunawayGain && against - slow_speed_ > kRunawayGain;
 }
 
-// A limit that is raised under a hand comes in as a force does.
+// A limit that is raised during contact rises with the same ramp as a force.
 double Guard::risen_slowly(double before, double most, double dt) const {
   const bool rises = before > 0.0 && most > before && std::isfinite(most) && parameters_.ramp > 0.0;
   return rises ? std::min(most, before + most * dt / parameters_.ramp) : most;
 }
 
-// Where a larger share of what is wanted may leave than in the last period, the hand has done the work on the smaller
-// one. Where the limit is raised, it has gone at least the energy over the limit under it.
+// If a larger share of the wanted force is released than in the last period, the hand has worked only against the
+// smaller one. If the limit is raised, the hand has stored at least the energy above it under the lower limit.
 void Guard::credit(const GuardWish& wish, double share, double most) {
   const dvec3 whole = wish.wrench.force - wish.weight;
   pushed_.follow(clamp_norm(whole, most), heard_ ? way_ - carried_ : dvec3(0), wish.stiffness);
@@ -306,7 +303,7 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
   DeviceWrench wrench = wish.wrench;
   double force_most = force_limit(wish), torque_most = torque_limit(wish);
 
-  // Heat: the mean square of the force over what the motors bear for ever.
+  // Thermal model: the mean square of the force relative to the continuous limit.
   const double bears = can_.continuous_force;
   if (bears > 0.0 && std::isfinite(force_most)) {
     const double square = dot(last_.force, last_.force) / (bears * bears);
@@ -334,7 +331,7 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
   if (can_.max_grip > 0.0) wrench.grip = std::min(wrench.grip, can_.max_grip);
   const dvec3 weight = clamp_norm(gain * wish.weight, length(wrench.force));
 
-  // A brake cannot push: nothing along the motion, and nothing that would start one the way it last went.
+  // A brake cannot push: no force along the motion, and none that would start a motion in its last direction.
   const double speed = length(velocity_ - wish.velocity);
   if (can_.resists_only) {
     if (speed > 0.0) {
@@ -344,7 +341,7 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
       wrench.force = dvec3(0);
     }
   }
-  // A period that comes late is none the longer for it: what it missed would be a step.
+  // A late period counts as a normal one: otherwise the missed time would allow a step.
   const double slew = parameters_.slew * (can_.rate > 0.0 ? std::min(dt, 1.0 / can_.rate) : dt);
   wrench.force = slewed(last_.force, wrench.force, slew);
   wrench.torque = slewed(last_.torque, wrench.torque, kGuardLever * slew);
@@ -353,9 +350,9 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
   if (heard_) carried_ = dvec3(0);
   const EnergyAccount before = energy_;
   wrench.force =
-      push_.damp(before, wrench.force, weight, way, force_most, kGuardSlowHand * dt, wish.stiffness, kGuardSpring);
-  wrench.torque = twist_.damp(before, wrench.torque, dvec3(0), turn_, torque_most, kGuardSlowTurn * dt,
-                              wish.turning_stiffness, kGuardTurnSpring);
+      push_.damp(before, wrench.force, weight, way, force_most, kSlowHand * dt, wish.stiffness, kUsualSpring);
+  wrench.torque = twist_.damp(before, wrench.torque, dvec3(0), turn_, torque_most, kSlowTurn * dt,
+                              wish.turning_stiffness, kUsualTurnSpring);
   if (can_.resists_only && speed > 0.0) {
     const dvec3 along = (velocity_ - wish.velocity) / speed;
     wrench.force -= std::max(0.0, dot(wrench.force, along)) * along;
@@ -376,11 +373,11 @@ DeviceWrench Guard::release(const GuardWish& wish, double now, const GuardOrders
     return {};
   }
   const DeviceWrench wrench = limited(wish, dt_);
-  if (energy_.work > kMostGiven + kGuardShare * energy_.stored) {
+  if (energy_.work > kMostGiven + kPassivityShare * energy_.stored) {
     trip(DeviceCause::kGaveEnergy, now);
     return {};
   }
-  if (!finite(wrench)) {  // cannot be, and must not leave
+  if (!finite(wrench)) {  // invalid, and must not be rendered
     trip(DeviceCause::kBadForce, now);
     return {};
   }

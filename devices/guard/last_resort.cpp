@@ -16,7 +16,7 @@ std::array<std::atomic<Driver*>, 64> open_drivers{};
 std::atomic<bool> ended{false};
 struct sigaction before[NSIG];
 
-// Lock-free atomics, make_safe(), and the handler from before.
+// Calls only lock-free atomics, make_safe(), and the previous handler.
 void on_signal(int signal) {
   make_devices_safe();
   sigaction(signal, &before[signal], nullptr);

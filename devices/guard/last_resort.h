@@ -1,10 +1,10 @@
-// When the program dies: every open device is made safe once more, from a signal handler where the program has asked
-// for one (pliant/process.h).
+// Makes every open device safe when the program dies; from a signal handler if the program has asked for it
+// (pliant/process.h).
 //
-// What holds then: SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT (a crash, std::terminate, an assertion), and SIGTERM,
-// SIGINT and SIGHUP where the program handles them not, go through Driver::make_safe() of every open device, and then
-// the way they would have gone. A normal exit() does so in any case. What cannot be caught (kill -9, power) is for what
-// stands outside: a guard process (watchman.h), the device's own watchdog, its silence.
+// SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT (a crash, std::terminate, an assertion), and SIGTERM, SIGINT and SIGHUP if
+// unhandled, first call Driver::make_safe() of every open device, then take their previous action. A normal exit() does
+// so in any case. Events that cannot be caught (kill -9, power loss) are covered from outside: by a guard process
+// (watchman.h) and the device's own watchdog.
 #pragma once
 
 #include "pliant/driver.h"
@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-// From any thread. At most 64 at once: more are not looked after, which is false.
+// From any thread. At most 64 devices; further ones are not covered, and it returns false.
 bool guard_to_the_last(Driver& driver);
 void let_go_of(Driver& driver);
 // True once make_devices_safe() ran.

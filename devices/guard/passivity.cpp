@@ -5,13 +5,13 @@
 
 namespace pliant {
 
-// [N] What a spring has left that holds so much.
+// [N] Force of a spring with this stored energy.
 static double force_of_spring(double energy, double spring) {
   return std::sqrt(2.0 * spring * std::max(0.0, energy));
 }
 
-// Outwards the force is at most the spring's. Inwards, or at rest, what was kept back comes back as the spring is
-// pressed; nothing is kept back of a force that has never been too large.
+// Outwards the force is at most the spring's. Inwards, or at rest, the withheld part returns as the spring is
+// compressed. A force that was never too large is not changed.
 dvec3 PassivityDamper::held_by_spring(dvec3 wanted, dvec3 moved, double budget, double spring) {
   const double size = length(wanted), way = length(moved);
   if (!(size > 0.0)) return held_ = 0.0, wanted;
@@ -27,21 +27,21 @@ dvec3 PassivityDamper::damp(const EnergyAccount& account, dvec3 wanted, dvec3 we
                             double slow, double stiffness, double spring) {
   const dvec3 change = wanted - weight - wanted_;
   wanted_ = wanted - weight;
-  // The last force was held over the way; what a law's own change over it is counted as is the trapezoid's. Of a force
-  // that damping switches, the trapezoid would count half of what the hand got.
+  // The last force was constant over the displacement; the law's own change over it is integrated by the trapezoidal
+  // rule. For a force switched by damping, the trapezoidal rule would count only half of the energy.
   work_ = dot(last_ + 0.5 * change, moved);
   const double way = length(moved);
-  // The trapezoid of a spring that the hand enters or leaves in the middle of a step is off by up to |df| way / 8.
+  // If the hand enters or leaves a spring within a step, the trapezoidal rule has an error of up to |df| way / 8.
   const double sampling = 0.25 * length(change) * way;
-  const double budget = kGuardShare * account.stored + kGuardFloor + sampling - account.work - work_;
-  if (stiffness > 0.0) spring = kGuardSpringShare * stiffness;
+  const double budget = kPassivityShare * account.stored + kGuardFloor + sampling - account.work - work_;
+  if (stiffness > 0.0) spring = kSpentSpring * stiffness;
   if (const dvec3 kept = held_by_spring(wanted_, moved, budget, spring); held_ > 0.0) wanted = weight + kept;
   if (!(way > 0.0)) return wanted;
   const dvec3 along = moved / way, beside = wanted - weight;
-  const double step = kGuardReserve * way, size = length(wanted), total = dot(wanted, along);
+  const double step = kPassivityReserve * way, size = length(wanted), total = dot(wanted, along);
   double allowed = budget / step;
   if (budget <= 0.0) allowed = -std::min(-budget / step, size * std::min(1.0, way / slow));
-  // What is added against the motion may not make the whole larger than it may be.
+  // The damping force must not raise the total above its limit.
   const double across = std::max(0.0, size * size - total * total);
   const double room = total + std::sqrt(std::max(0.0, most * most - across));
   const double reduction = std::min({dot(beside, along) - allowed, size, room});

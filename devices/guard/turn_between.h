@@ -1,4 +1,4 @@
-// The turn between two rotations.
+// The rotation between two rotations.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-// The rotation vector [rad], in world axes, that turns `from` to `to` by the shorter way.
+// The shortest rotation vector [rad], in world axes, from `from` to `to`.
 inline dvec3 turn_between(dquat from, dquat to) {
   dquat turn = to * glm::conjugate(from);
   if (turn.w < 0.0) turn = -turn;

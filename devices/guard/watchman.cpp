@@ -17,20 +17,24 @@
 namespace pliant {
 namespace {
 
+constexpr double kRenewEvery = 0.25;  // [s] of the line that a guard process holds
+constexpr const char* kNoSafeLine =
+    "nothing outside this program can switch its force off: if the program is killed (kill -9, out of memory), a force "
+    "stands until the device's own watchdog ends it; keep a hand on its switch";
 constexpr char kBeat = 'b', kEnd = 'e', kLine = 'l';
 
-// One datagram of the pipe: what it says, and for a line its bytes, with the line itself beside (SCM_RIGHTS).
+// One datagram of the pipe: a command, and for a line its bytes, with the file descriptor attached (SCM_RIGHTS).
 struct Word {
   char what = 0;
-  std::uint8_t size = 0;
+  std::uint16_t size = 0;
   std::array<std::uint8_t, std::tuple_size_v<decltype(SafeLine::bytes)>> bytes{};
 };
-union Passed {  // one descriptor, aligned as the kernel wants it
+union Passed {  // one file descriptor, aligned as the kernel requires
   cmsghdr head;
   char room[CMSG_SPACE(sizeof(int))];
 };
 
-// -1: nothing came; 0: the other end is gone; else the word, and `line` where it is one.
+// -1: nothing arrived; 0: the other end is closed; else the command, and `line` if it contains one.
 ssize_t hear(int pipe, Word& word, SafeLine& line) {
   iovec data{&word, sizeof word};
   Passed passed{};
@@ -52,12 +56,12 @@ ssize_t hear(int pipe, Word& word, SafeLine& line) {
   return size;
 }
 
-// All that it does from here on is safe in a process that was forked from one with threads: system calls alone.
+// Only system calls from here on: safe in a process forked from one with threads.
 [[noreturn]] void watch(int pipe, SafeLine line, int waits_ms) {
   for (int signal = 1; signal < NSIG; ++signal) ::signal(signal, SIG_IGN);  // it ends with its parent, not before
   ::setsid();
 #ifdef SYS_close_range
-  // The lines of everything else would stay open with it.
+  // Close all other descriptors, which would otherwise stay open with it.
   const auto low = static_cast<unsigned>(std::min(pipe, line.descriptor));
   const auto high = static_cast<unsigned>(std::max(pipe, line.descriptor));
   if (low > 0) ::syscall(SYS_close_range, 0u, low - 1, 0u);
@@ -66,9 +70,9 @@ ssize_t hear(int pipe, Word& word, SafeLine& line) {
 #endif
   const auto make_safe = [&] {
     for (int tries = 0; tries < 3; ++tries)
-      if (::write(line.descriptor, line.bytes.data(), line.size) == static_cast<ssize_t>(line.size)) return;
+      if (::syscall(SYS_write, line.descriptor, line.bytes.data(), line.size) == static_cast<long>(line.size)) return;
   };
-  bool silent = true;  // nothing to end before the first beat
+  bool silent = true;  // the watchdog starts with the first heartbeat
   for (;;) {
     pollfd watched{pipe, POLLIN, 0};
     const int got = ::poll(&watched, 1, silent ? -1 : waits_ms);
@@ -81,7 +85,7 @@ ssize_t hear(int pipe, Word& word, SafeLine& line) {
     Word word;
     const ssize_t size = hear(pipe, word, line);
     if (size < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-    if (size <= 0) {  // the other end is gone
+    if (size <= 0) {  // the other end is closed
       make_safe();
       ::_exit(0);
     }
@@ -116,13 +120,13 @@ Status Watchman::start(const SafeLine& line, double waits) {
 
 void Watchman::beat() noexcept {
   if (pipe_ < 0) return;
-  // A full one has beats enough in it.
+  // If the pipe is full, it already contains enough heartbeats.
   [[maybe_unused]] const ssize_t sent = ::send(pipe_, &kBeat, 1, MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
 void Watchman::renew(const SafeLine& line) noexcept {
   if (pipe_ < 0 || line.descriptor < 0 || line.size == 0 || line.size > line.bytes.size()) return;
-  Word word{kLine, static_cast<std::uint8_t>(line.size), line.bytes};
+  Word word{kLine, static_cast<std::uint16_t>(line.size), line.bytes};
   iovec data{&word, sizeof word};
   Passed passed{};
   msghdr message{};
@@ -145,6 +149,28 @@ void Watchman::end() noexcept {
   while (::waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
   }
   child_ = -1;
+}
+
+std::string LineWatch::start(const Driver& driver, const DeviceCapabilities& can) {
+  told_at_ = 0.0;
+  SafeLine line;
+  if (!driver.safe_line(line)) return renders(can) && !can.simulated ? kNoSafeLine : "";
+  const Status started = watchman_.start(line);
+  return started ? std::string() : started.error().message();
+}
+
+// A device that was opened anew has another line, or other words for zero.
+void LineWatch::beat(const Driver& driver, double now) noexcept {
+  if (!watchman_.watches()) return;
+  watchman_.beat();
+  if (now - told_at_ < kRenewEvery) return;
+  told_at_ = now;
+  SafeLine line;
+  if (driver.safe_line(line)) watchman_.renew(line);
+}
+
+bool renders(const DeviceCapabilities& can) {
+  return can.renders_force || can.renders_torque || can.renders_grip || can.renders_vibration;
 }
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// Little-endian numbers in a packet. Neither side leaves its span: what does not fit is not written, and reads as zero;
-// ok() says so.
+// Little-endian numbers in a packet, bounds-checked: beyond the span nothing is written, and reads return zero; see
+// ok().
 #pragma once
 
 #include <bit>

@@ -1,4 +1,4 @@
-// CRC-32 as in IEEE 802.3 (zlib, PNG): polynomial 0xEDB88320 reflected, begun with and inverted by all ones. The check
+// CRC-32 of IEEE 802.3 (zlib, PNG): polynomial 0xEDB88320 reflected, initial value and final XOR all ones. The check
 // value of "123456789" is 0xCBF43926.
 #pragma once
 
@@ -21,7 +21,7 @@ constexpr std::array<std::uint32_t, 256> make_table() {
 inline constexpr std::array<std::uint32_t, 256> kTable = make_table();
 }  // namespace crc32_detail
 
-// `before`: the sum of what stands in front of `bytes`, where they come in pieces.
+// `before`: the checksum of the preceding bytes, if they come in pieces.
 constexpr std::uint32_t crc32(std::span<const std::uint8_t> bytes, std::uint32_t before = 0) {
   std::uint32_t value = ~before;
   for (const std::uint8_t byte : bytes) value = (value >> 8) ^ crc32_detail::kTable[(value ^ byte) & 0xFF];

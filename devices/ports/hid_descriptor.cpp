@@ -31,7 +31,7 @@ enum Item : std::uint8_t {
 struct Globals {
   std::uint16_t page = 0;
   std::int32_t min = 0;
-  std::uint32_t max = 0;  // as it was written; its sign is that of the minimum
+  std::uint32_t max = 0;  // as written; its sign depends on that of the minimum
   std::uint32_t max_bytes = 0;
   std::uint32_t size = 0, count = 0;
   std::uint8_t report = 0;
@@ -60,7 +60,7 @@ std::uint32_t& bits_of(HidLayout& layout, HidKind kind, std::uint8_t report) {
   return layout.sizes.back().bits;
 }
 
-// Main item: `count` fields of `size` bits. Bit 0 of its flags: constant; bit 1: one field a number, no array.
+// Main item: `count` fields of `size` bits. Bit 0 of its flags: constant; bit 1: one field per number, no array.
 Status add_fields(HidLayout& layout, const Globals& global, const Locals& local, HidKind kind, std::uint32_t flags) {
   std::uint32_t& bits = bits_of(layout, kind, global.report);
   if (global.size > kMostBits || global.count > kMostBits ||
@@ -95,7 +95,7 @@ Result<HidLayout> parse_hid_descriptor(std::span<const std::uint8_t> descriptor)
   std::size_t depth = 0;
   for (std::size_t at = 0; at < descriptor.size();) {
     const std::uint8_t head = descriptor[at++];
-    if (head == 0xfe) {  // a long item: its size, its tag, its data
+    if (head == 0xfe) {  // a long item: its size, tag and data
       if (descriptor.size() - at < 2 || descriptor.size() - at - 2 < descriptor[at]) return broken("is cut");
       at += 2u + descriptor[at];
       continue;
@@ -170,7 +170,7 @@ Result<HidLayout> parse_hid_descriptor(std::span<const std::uint8_t> descriptor)
         local.has_first = false;
         break;
       default:
-        break;  // units, physical ranges, strings: not needed
+        break;  // units, physical ranges, strings: unused
     }
     if (!added) return added.error();
     if (is_main) local = {};

@@ -1,4 +1,4 @@
-// The HID report descriptor (USB HID 1.11, section 6.2.2): which bits of which report mean what.
+// The HID report descriptor (USB HID 1.11, section 6.2.2): the meaning of the bits of each report.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ enum class HidKind : std::uint8_t { kInput, kOutput, kFeature };
 struct HidField {
   HidKind kind = HidKind::kInput;
   std::uint8_t report = 0;        // its report's number; 0: reports have none
-  std::uint32_t bit = 0;          // where it begins, after the number
+  std::uint32_t bit = 0;          // start bit, after the number
   std::uint32_t bits = 0;         // 1 to 32
   std::uint16_t page = 0;         // usage page: 1 generic desktop, 9 buttons
   std::uint16_t usage = 0;        // on it: 0x30 X to 0x35 Rz; the number of a button
@@ -24,10 +24,10 @@ struct HidField {
 };
 
 struct HidLayout {
-  std::vector<HidField> fields;             // those with a usage of their own; padding and arrays are left out
+  std::vector<HidField> fields;             // those with a usage; padding and arrays are left out
   std::vector<std::uint16_t> applications;  // usages of the top collections, page 1 only: 5 game pad, 8 multi-axis
   bool numbered = false;                    // a report begins with its number
-  // Of a report, with its number where it has one; 0: it is not in the descriptor.
+  // Size of a report, including its number; 0: not in the descriptor.
   std::size_t bytes(HidKind kind, std::uint8_t report) const;
 
   struct Size {
@@ -38,11 +38,11 @@ struct HidLayout {
   std::vector<Size> sizes;
 };
 
-// Fails on a descriptor that is cut, nests too deep, or is larger than any device's (64 kB of report).
+// Error: a descriptor that is truncated, nests too deep, or is too large (64 kB of report).
 Result<HidLayout> parse_hid_descriptor(std::span<const std::uint8_t> descriptor);
 
-// The number that `field` has in `packet` (a whole report, with its number where reports have one), with its sign
-// where its range has negative numbers. False: it lies beyond the packet's end, or in another report.
+// The value of `field` in `packet` (a whole report, including its number if used), signed if its range has negative
+// numbers. False: it is beyond the packet's end, or in another report.
 bool hid_value(const HidLayout& layout, const HidField& field, std::span<const std::uint8_t> packet,
                std::int32_t& value);
 

@@ -21,7 +21,7 @@ struct Closer {
 };
 using Handle = std::unique_ptr<hid_device, Closer>;
 
-// hidapi keeps global state while it lists and opens.
+// hidapi has global state while it lists and opens.
 std::mutex& hidapi_mutex() {
   static std::mutex mutex;
   return mutex;
@@ -60,6 +60,7 @@ class HidPort final : public PacketPort {
     if (guard_ >= 0) ::close(guard_);
   }
   int file() const override { return guard_; }
+  std::string node() const override { return path_; }
 
   Status send(std::span<const std::uint8_t> packet) override {
     if (hid_write(out_.get(), packet.data(), packet.size()) < 0) return gone();
@@ -83,7 +84,7 @@ class HidPort final : public PacketPort {
       return refused(report.empty() ? 0 : report[0]);
     return Done{};
   }
-  // hidapi 0.13 cannot tell; the kernel shows it to everyone.
+  // hidapi 0.13 does not provide it; the kernel exposes it in sysfs.
   std::vector<std::uint8_t> descriptor() override {
     std::ifstream file("/sys/class/hidraw/" + path_.substr(path_.rfind('/') + 1) + "/device/report_descriptor",
                        std::ios::binary);
@@ -96,9 +97,9 @@ class HidPort final : public PacketPort {
     return Error{path_, fmt::format("refuses feature report {}; plug the device in again", number)};
   }
 
-  // One more for a guard process, as hidapi tells none of its own.
+  // Extra descriptor for a guard process, because hidapi does not expose its own.
   int guard_ = -1;
-  // One each way: hidapi keeps the last error in its handle, and what is sent may come from another thread.
+  // One per direction: hidapi keeps the last error in its handle, and sending may happen on another thread.
   Handle in_, out_;
   std::string path_;
 };

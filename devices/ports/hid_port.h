@@ -1,4 +1,4 @@
-// HID devices by hidapi over Linux's hidraw: what is there, and a line to one of them.
+// HID devices through hidapi on Linux's hidraw: listing, and connecting to one.
 #pragma once
 
 #include <cstdint>
@@ -11,32 +11,32 @@
 
 namespace pliant {
 
-// Where `devices/70-pliant.rules` lies once it is installed.
+// Installed location of `devices/70-pliant.rules`.
 inline constexpr const char* kUdevRules = "/usr/lib/udev/rules.d/70-pliant.rules";
 
-// A kind of device, by the numbers that its maker gave it.
+// A kind of device, by its vendor's ids.
 struct HidMatch {
   std::uint16_t vendor = 0;
   std::vector<std::uint16_t> products;  // empty: every one of the vendor
   std::uint16_t page = 0, usage = 0;    // of the interface; 0: any
 };
 
-// One that is there.
+// A connected device.
 struct HidFound {
   std::string path;  // /dev/hidraw3
-  std::string id;    // its serial number; without one, or where two have the same, its path
+  std::string id;    // serial number; its path if it has none or two have the same
   std::string name;
   std::uint16_t vendor = 0, product = 0;
   bool bluetooth = false;
-  std::string missing;   // why it cannot be opened and what to do; empty: it can
+  std::string missing;   // why it cannot be opened and the remedy; empty: it can
   std::string hardware;  // DeviceInfo::hardware
 };
 
-// What is there now, in the order of the paths. Opens each for an instant. From any thread.
+// The connected devices, ordered by path. Opens each one briefly. From any thread.
 std::vector<HidFound> find_hid(std::span<const HidMatch> matches);
 
-// The device of this id or path among those that match; an empty id: the first that can be opened. A device that was
-// unplugged is opened anew by another call: its line stays dead. Errors say what is missing.
+// Opens the matching device with this id or path; empty id: the first that can be opened. After unplugging, a port
+// stays dead; call again to reopen. Errors tell what is missing.
 Result<std::unique_ptr<PacketPort>> open_hid(std::span<const HidMatch> matches, const std::string& id);
 
 // One sentence for an open() that failed with this errno.

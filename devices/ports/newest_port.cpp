@@ -37,12 +37,14 @@ class NewestPort final : public PacketPort {
   Result<std::size_t> receive(std::span<std::uint8_t> into, double seconds) override {
     return line_->receive(into, seconds);
   }
-  // Before the first send: the thread waits then, and does not use the line.
+  // Only before the first send, while the thread is idle.
   Result<std::size_t> feature(std::uint8_t number, std::span<std::uint8_t> into) override {
     return line_->feature(number, into);
   }
   Status set_feature(std::span<const std::uint8_t> report) override { return line_->set_feature(report); }
   std::vector<std::uint8_t> descriptor() override { return line_->descriptor(); }
+  int file() const override { return line_->file(); }
+  std::string node() const override { return line_->node(); }
 
  private:
   void wake() {
@@ -67,7 +69,7 @@ class NewestPort final : public PacketPort {
   TripleBuffer<Packet> newest_;
   std::atomic<std::uint32_t> kept_{0};
   std::atomic<bool> ended_{false}, failed_{false};
-  std::thread thread_;  // last: it uses all of the above
+  std::thread thread_;  // last: it uses all members above
 };
 
 }  // namespace

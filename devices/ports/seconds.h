@@ -1,4 +1,4 @@
-// The clock that drivers read; tests put their own in its place.
+// The clock of drivers; tests use their own.
 #pragma once
 
 #include <functional>

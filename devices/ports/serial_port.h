@@ -1,4 +1,4 @@
-// A serial line (USB CDC, FTDI, RS-232), raw, 8N1. What comes is a stream: a packet here is what has arrived.
+// A serial port (USB CDC, FTDI, RS-232), raw, 8N1. Its input is a stream: a packet is whatever has arrived.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@ namespace pliant {
 
 class SerialPort final : public PacketPort {
  public:
-  // `baud`: 9600 to 4000000, of those that the system has.
+  // `baud`: 9600 to 4000000, if the system supports it.
   static Result<std::unique_ptr<SerialPort>> open(const std::string& path, int baud);
   ~SerialPort() override;
   Status send(std::span<const std::uint8_t> packet) override;

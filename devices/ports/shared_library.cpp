@@ -12,7 +12,7 @@ Result<SharedLibrary> SharedLibrary::open(const std::vector<std::string>& names,
     library.name_ = name;
     if (library.handle_) return library;
     const char* said = dlerror();
-    // A file that is there and cannot be loaded says more than those that are not.
+    // Prefer the error of a file that exists but cannot be loaded.
     const std::string reason = said ? said : "";
     if (reason.find("No such file") == std::string::npos) why = " (" + reason + ")";
     tried += (tried.empty() ? "" : ", ") + name;

@@ -1,4 +1,4 @@
-// A maker's library, opened at run time: Pliant is built without it and says by name what is missing.
+// A vendor's library, opened at run time. Pliant is built without it and reports missing functions by name.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace pliant {
 
 class SharedLibrary {
  public:
-  // The first of `names` that the system finds. The error names all of them, and `cure` says where they come from.
+  // Opens the first of `names` that the system finds. The error lists all of them; `cure` tells where to get them.
   static Result<SharedLibrary> open(const std::vector<std::string>& names, const std::string& cure);
   SharedLibrary() = default;
   SharedLibrary(SharedLibrary&& other) noexcept { swap(other); }
@@ -21,13 +21,13 @@ class SharedLibrary {
   ~SharedLibrary();
 
   const std::string& name() const { return name_; }
-  // The function of this name into `function`; false: the library has none.
+  // Looks up a function; false: the library does not have it.
   template <class F>
   bool find(const char* symbol, F*& function) const {
     function = reinterpret_cast<F*>(address(symbol));
     return function != nullptr;
   }
-  // Likewise, and remembers the first that is missing: see complete().
+  // The same, but records the first missing one: see complete().
   template <class F>
   void need(const char* symbol, F*& function) {
     if (!find(symbol, function) && missing_.empty()) missing_ = symbol;

@@ -40,7 +40,7 @@ std::string shown(const UdpAddress& address) {
   return (bracketed ? "[" + address.host + "]" : address.host) + ":" + address.port;
 }
 
-// A socket that is never waited for, bound or to be bound; the address that it was resolved to.
+// A non-blocking socket, bound or to be bound, and its resolved address.
 Result<int> make_socket(const UdpAddress& address, bool passive, sockaddr_storage& found, socklen_t& size) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
@@ -68,7 +68,7 @@ Result<UdpAddress> parse_udp_address(const std::string& text) {
     if (address.host.size() > 2 && address.host.front() == '[' && address.host.back() == ']')
       address.host = address.host.substr(1, address.host.size() - 2);
     else if (address.host.find(':') != std::string::npos)
-      address.host.clear();  // IPv6 without its brackets: where does the port begin?
+      address.host.clear();  // IPv6 without brackets: the port is ambiguous
   }
   address.port = colon == std::string::npos ? text : text.substr(colon + 1);
   int number = -1;
@@ -94,8 +94,8 @@ Result<std::unique_ptr<UdpPort>> UdpPort::connect(const UdpAddress& peer) {
   const auto socket = make_socket(peer, false, address.bytes, address.size);
   if (!socket) return socket.error();
   std::unique_ptr<UdpPort> port(new UdpPort(*socket, shown(peer)));
-  // Connected: bound to the interface that leads to the peer, so that of this machine's own loopback none outside can
-  // be heard; nobody else is; and a guard process may write to it, too.
+  // Connecting binds to the interface that leads to the peer. With a loopback peer nothing from outside is received;
+  // other senders are filtered; and a guard process may write to the socket.
   if (::connect(*socket, address.raw(), address.size) != 0)
     return Error{shown(peer), std::string("cannot be reached: ") + std::strerror(errno)};
   *port->peer_ = address;
@@ -116,8 +116,8 @@ Result<std::unique_ptr<UdpPort>> UdpPort::listen(const UdpAddress& own) {
 
 Status UdpPort::send(std::span<const std::uint8_t> packet) {
   Address& to = has_peer_ ? *peer_ : *last_;
-  if (to.bytes.ss_family == AF_UNSPEC) return Done{};  // nobody has spoken yet
-  for (int tries = 0; tries < 2; ++tries) {            // the first may be told of an earlier packet that nobody took
+  if (to.bytes.ss_family == AF_UNSPEC) return Done{};  // no peer yet
+  for (int tries = 0; tries < 2; ++tries) {            // the first may report the error of an earlier packet
     const ssize_t sent = connected_ ? ::send(socket_, packet.data(), packet.size(), MSG_NOSIGNAL)
                                     : ::sendto(socket_, packet.data(), packet.size(), MSG_NOSIGNAL, to.raw(), to.size);
     if (sent >= 0) return Done{};
@@ -153,13 +153,13 @@ Result<std::size_t> UdpPort::receive(std::span<std::uint8_t> into, double second
       *last_ = from;
       return static_cast<std::size_t>(got);
     }
-    if (got == 0 || errno == ECONNREFUSED || errno == EINTR) continue;  // empty, or its port was closed a while ago
+    if (got == 0 || errno == ECONNREFUSED || errno == EINTR) continue;  // empty, or its port was closed earlier
     if (errno != EAGAIN) return Error{name_, std::string("cannot be heard: ") + std::strerror(errno)};
     if (seconds <= 0.0) return std::size_t{0};
     pollfd wait{socket_, POLLIN, 0};
     const int ready = ::poll(&wait, 1, static_cast<int>(std::ceil(std::min(seconds, 1e6) * 1e3)));
     if (ready == 0) return std::size_t{0};
-    seconds = ready > 0 ? seconds : 0.0;  // a signal: look once more
+    seconds = ready > 0 ? seconds : 0.0;  // a signal: poll once more
   }
 }
 

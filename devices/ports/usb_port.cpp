@@ -12,7 +12,7 @@ struct UsbPort::Handles {
   UsbAddress address;
   libusb_context* context = nullptr;
   libusb_device_handle* device = nullptr;
-  std::array<std::uint8_t, 512> in{};  // whole USB packets: a shorter buffer loses what does not fit
+  std::array<std::uint8_t, 512> in{};  // whole USB packets: a shorter buffer would lose bytes
   ~Handles() {
     if (device) libusb_release_interface(device, 0);
     if (device) libusb_close(device);
@@ -27,7 +27,7 @@ struct UsbPort::Handles {
 
 namespace {
 
-// Calls `each` with the devices of this kind until it is true; how many it was called with.
+// Calls `each` with the devices of this kind until it returns true; returns the number of calls.
 template <class F>
 int visit(libusb_context* context, std::uint16_t vendor, std::uint16_t product, F&& each) {
   libusb_device** list = nullptr;
@@ -91,7 +91,7 @@ Status UsbPort::send(std::span<const std::uint8_t> packet) {
 
 Result<std::size_t> UsbPort::receive(std::span<std::uint8_t> into, double seconds) {
   int got = 0;
-  // libusb takes 0 for "for ever".
+  // libusb treats 0 as infinite.
   const auto milliseconds = static_cast<unsigned>(std::max(1.0, std::ceil(std::min(seconds, 1e6) * 1e3)));
   const int fault = libusb_bulk_transfer(handles_->device, handles_->address.in, handles_->in.data(),
                                          static_cast<int>(handles_->in.size()), &got, milliseconds);

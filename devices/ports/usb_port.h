@@ -1,4 +1,4 @@
-// Bulk transfers to a USB device that no driver of the system's own serves; libusb.
+// Bulk transfers to a USB device without a kernel driver, through libusb.
 #pragma once
 
 #include <memory>
@@ -17,9 +17,9 @@ struct UsbAddress {
 
 class UsbPort final : public PacketPort {
  public:
-  // The error says whether it is not there, not permitted, or in use.
+  // The error tells whether it is missing, not permitted, or in use.
   static Result<std::unique_ptr<UsbPort>> open(const UsbAddress& address);
-  // How many are plugged in.
+  // How many are connected.
   static int count(std::uint16_t vendor, std::uint16_t product);
   ~UsbPort() override;
   Status send(std::span<const std::uint8_t> packet) override;

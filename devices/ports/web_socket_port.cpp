@@ -1,5 +1,5 @@
-// Chosen from what Debian 12 keeps: libwebsockets is a C library that compiles in no time and is still released.
-// websocketpp has had no release since 2020; Boost's Beast takes half a minute and a gigabyte to compile.
+// Choice among Debian 12's libraries: libwebsockets is a C library that compiles quickly and is maintained. websocketpp
+// has had no release since 2020; Boost's Beast takes half a minute and a gigabyte to compile.
 #include "devices/ports/web_socket_port.h"
 
 #include <libwebsockets.h>
@@ -17,7 +17,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMostWaiting = 64;  // messages that nobody has taken; more, and the oldest are lost
+constexpr std::size_t kMostWaiting = 64;  // unread messages; beyond it the oldest are lost
 
 int on_event(lws* socket, lws_callback_reasons reason, void*, void* data, std::size_t size);
 const lws_protocols kProtocols[] = {{"", on_event, 0, 4096, 0, nullptr, 0}, {nullptr, nullptr, 0, 0, 0, nullptr, 0}};
@@ -42,10 +42,10 @@ struct WebSocketPort::Line {
     if (context) lws_context_destroy(context);
   }
 
-  // Lets the library work until `done`, the end of the line, or the end of the time.
+  // Runs the library until `done`, the end of the connection, or the time-out.
   template <class F>
   void work(double seconds, F&& done) {
-    lws_service(context, -1);  // what is there already
+    lws_service(context, -1);  // only pending work
     if (done() || ended || seconds <= 0.0) return;
     timer.rung = false;
     lws_sul_schedule(
@@ -125,8 +125,9 @@ Result<std::unique_ptr<WebSocketPort>> WebSocketPort::connect(const std::string&
   info.gid = static_cast<gid_t>(-1);
   info.uid = static_cast<uid_t>(-1);
   info.user = line.get();
-  info.fd_limit_per_thread = 16;  // else a table for as many files as the system would allow
-  struct sigaction pipe {};  // it ignores SIGPIPE from here on, which is the program's to decide; it sends without one
+  info.fd_limit_per_thread = 16;  // otherwise it allocates a table for as many files as the system allows
+  struct sigaction pipe {};       // the library ignores SIGPIPE from here on, which is the program's decision; it sends
+                                  // without the signal
   ::sigaction(SIGPIPE, nullptr, &pipe);
   line->context = lws_create_context(&info);
   ::sigaction(SIGPIPE, &pipe, nullptr);
@@ -142,6 +143,26 @@ Result<std::unique_ptr<WebSocketPort>> WebSocketPort::connect(const std::string&
   if (!line->connected && !line->ended) line->end("does not answer");
   if (line->ended) return line->error();
   return std::unique_ptr<WebSocketPort>(new WebSocketPort(std::move(line)));
+}
+
+int WebSocketPort::file() const {
+  return line_->ended ? -1 : lws_get_socket_fd(line_->socket);
+}
+
+std::size_t web_socket_frame(std::span<const std::uint8_t> text, std::span<std::uint8_t> into) {
+  constexpr std::size_t kShort = 125;
+  const bool is_short = text.size() <= kShort;
+  const std::size_t head = (is_short ? 2 : 4) + 4;
+  if (text.size() > 0xffff || head + text.size() > into.size()) return 0;
+  std::fill_n(into.begin(), head, std::uint8_t(0));
+  into[0] = 0x81;
+  into[1] = static_cast<std::uint8_t>(0x80 | (is_short ? text.size() : 126));
+  if (!is_short) {
+    into[2] = static_cast<std::uint8_t>(text.size() >> 8);
+    into[3] = static_cast<std::uint8_t>(text.size());
+  }
+  std::copy(text.begin(), text.end(), into.begin() + static_cast<std::ptrdiff_t>(head));
+  return head + text.size();
 }
 
 Status WebSocketPort::send(std::span<const std::uint8_t> text) {

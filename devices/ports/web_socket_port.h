@@ -17,12 +17,16 @@ class WebSocketPort final : public PacketPort {
   ~WebSocketPort() override;
   Status send(std::span<const std::uint8_t> text) override;
   Result<std::size_t> receive(std::span<std::uint8_t> into, double seconds) override;
+  int file() const override;  // for whole frames of another process (web_socket_frame)
 
-  struct Line;  // its half that libwebsockets calls
+  struct Line;  // the part that libwebsockets calls
 
  private:
   explicit WebSocketPort(std::unique_ptr<Line> line);
   std::unique_ptr<Line> line_;
 };
+
+// One text message of a client as it stands on the wire; its length, 0: `into` is too small. Masked by zeros.
+std::size_t web_socket_frame(std::span<const std::uint8_t> text, std::span<std::uint8_t> into);
 
 }  // namespace pliant

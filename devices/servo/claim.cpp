@@ -27,7 +27,7 @@ std::set<std::string>& claims() {
   return taken;
 }
 
-// Of an identity that is longer than a name may be, its beginning and a sum (FNV-1a) of all of it.
+// Shortens a long identity to its beginning and a hash (FNV-1a) of all of it.
 std::string lock_name(const std::string& identity) {
   constexpr std::size_t kMost = 64;
   std::uint64_t sum = 0xcbf29ce484222325ull;
@@ -47,7 +47,7 @@ struct LockAddress {
   const sockaddr* raw() const { return reinterpret_cast<const sockaddr*>(&address); }
 };
 
-// " (process 1234)", or "" where the kernel does not tell.
+// " (process 1234)", or "" if the kernel does not provide it.
 std::string holder(const LockAddress& lock) {
   const int asking = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (asking < 0) return {};
@@ -61,20 +61,28 @@ std::string holder(const LockAddress& lock) {
 
 }  // namespace
 
-DeviceClaim::DeviceClaim(DeviceClaim&& other) noexcept
-    : device_(std::exchange(other.device_, {})), lock_(std::exchange(other.lock_, -1)) {}
 DeviceClaim& DeviceClaim::operator=(DeviceClaim&& other) noexcept {
   if (this != &other) {
     release();
-    device_ = std::exchange(other.device_, {});
-    lock_ = std::exchange(other.lock_, -1);
+    held_ = std::exchange(other.held_, {});
   }
   return *this;
 }
 
 Status DeviceClaim::take(const std::string& device) {
   release();
-  const std::string identity = device_identity(device);  // may ask a name server: before the mutex
+  return add(device_identity(device), device);
+}
+
+Status DeviceClaim::take_opened(const std::string& device, const Driver& driver) {
+  const std::string node = driver.node();
+  const std::string identity = node.empty() ? std::string() : node_identity(node);
+  const auto is_it = [&](const Held& held) { return held.identity == identity; };
+  if (identity.empty() || std::any_of(held_.begin(), held_.end(), is_it)) return Done{};
+  return add(identity, device);
+}
+
+Status DeviceClaim::add(const std::string& identity, const std::string& device) {
   const std::string where = "device `" + device + "`";
   const std::lock_guard hold(claims_mutex());
   if (claims().contains(identity))
@@ -92,18 +100,18 @@ Status DeviceClaim::take(const std::string& device) {
                                     std::strerror(fault))};
   }
   claims().insert(identity);
-  lock_ = socket;
-  device_ = identity;
+  held_.push_back({identity, socket});
   return Done{};
 }
 
 void DeviceClaim::release() noexcept {
-  if (device_.empty()) return;
+  if (held_.empty()) return;
   const std::lock_guard hold(claims_mutex());
-  if (lock_ >= 0) ::close(lock_);
-  lock_ = -1;
-  claims().erase(device_);
-  device_.clear();
+  for (const Held& held : held_) {
+    ::close(held.lock);
+    claims().erase(held.identity);
+  }
+  held_.clear();
 }
 
 }  // namespace pliant

@@ -40,7 +40,7 @@ bool mapped(const Address& a) {
   return std::equal(kMapped.begin(), kMapped.begin() + 12, a.begin());
 }
 
-// A loopback address, none in particular, or one of this machine's own: all reach the same ports.
+// A loopback address, the unspecified one, or one of this machine's own: all reach the same ports.
 bool is_here(const Address& a) {
   Address one{};
   if (a == one) return true;
@@ -78,18 +78,24 @@ std::string network_identity(const std::string& id) {
   return fmt::format("network:{}:{}", numbers, port);
 }
 
-// Of a device file by what is behind it. False: it is none.
-bool node_identity(const std::string& path, std::string& out) {
-  struct stat file {};
-  if (::stat(path.c_str(), &file) != 0) return false;
-  out = S_ISCHR(file.st_mode) ? fmt::format("node:{}:{}", major(file.st_rdev), minor(file.st_rdev))
-                              : fmt::format("file:{}:{}", file.st_dev, file.st_ino);
-  return true;
+// "hardware:../../devices/...": the device that a hidraw or event node belongs to, of which it may have several; "":
+// `name` is no such node.
+std::string hardware_behind(const std::string& name) {
+  std::error_code none;
+  const fs::path raw = fs::read_symlink("/sys/class/hidraw/" + name, none);  // ../../devices/.../hidraw/hidraw3
+  if (!none) return "hardware:" + raw.parent_path().parent_path().string();
+  const fs::path event = fs::read_symlink("/sys/class/input/" + name, none);  // ../../devices/.../input/input12/event7
+  if (none) return {};
+  // One that a program made has no device behind it.
+  const fs::path input = event.parent_path(), device = input.parent_path().parent_path();
+  const bool known =
+      input.parent_path().filename() == "input" && fs::exists("/sys/class/input" / device / "subsystem", none);
+  return "hardware:" + (known ? device : input).string();
 }
 
 // A serial number: the device file of the only HID device that has it.
-bool hid_identity(const std::string& serial, std::string& out) {
-  if (serial.empty()) return false;
+std::string hid_identity(const std::string& serial) {
+  if (serial.empty()) return {};
   std::vector<fs::path> found;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator("/sys/class/hidraw", none)) {
@@ -97,10 +103,23 @@ bool hid_identity(const std::string& serial, std::string& out) {
     for (std::string line; std::getline(words, line);)
       if (line == "HID_UNIQ=" + serial) found.push_back("/dev" / entry.path().filename());
   }
-  return found.size() == 1 && node_identity(found.front(), out);
+  return found.size() == 1 ? node_identity(found.front().string()) : std::string();
 }
 
 }  // namespace
+
+std::string node_identity(const std::string& path) {
+  const fs::path node = fs::path(path).lexically_normal();
+  std::error_code none;
+  if (node.parent_path() == "/dev" || node.parent_path() == "/dev/input")
+    if (std::string behind = hardware_behind(node.filename().string()); !behind.empty()) return behind;
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0) return {};
+  if (!S_ISCHR(file.st_mode)) return fmt::format("file:{}:{}", file.st_dev, file.st_ino);
+  if (const fs::path linked = fs::read_symlink(node, none); !none)
+    if (std::string behind = hardware_behind(linked.filename().string()); !behind.empty()) return behind;
+  return fmt::format("node:{}:{}", major(file.st_rdev), minor(file.st_rdev));
+}
 
 std::string device_identity(const std::string& device) {
   const std::string words(trimmed(std::string_view(device).substr(0, device.find('|'))));
@@ -110,11 +129,11 @@ std::string device_identity(const std::string& device) {
                                                   : trimmed(std::string_view(words).substr(colon + 1)));
   if (driver == "network") return network_identity(id);
   if (driver == "falcon" || driver == "simulated") return driver;  // its id is a file, or what it is to be like
-  std::string identity;
   const std::size_t speed = driver == "serial" ? id.rfind('@') : std::string::npos;
   const std::string file = id.substr(0, std::min(speed, id.find_first_of(",?")));
-  if (file.find('/') != std::string::npos && node_identity(file, identity)) return identity;
-  if (hid_identity(file, identity)) return identity;
+  if (file.find('/') != std::string::npos)
+    if (std::string identity = node_identity(file); !identity.empty()) return identity;
+  if (std::string identity = hid_identity(file); !identity.empty()) return identity;
   return driver + ":" + (file.empty() ? "0" : file);  // the first, which libraries count from 0
 }
 

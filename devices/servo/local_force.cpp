@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-// The part of `v` against `direction` is left out.
+// Removes the part of `v` that is opposite to `direction`.
 dvec3 not_against(dvec3 v, dvec3 direction) {
   const double square = dot(direction, direction);
   return square > 0.0 ? v - std::min(0.0, dot(v, direction) / square) * direction : v;
@@ -19,10 +19,10 @@ double norm(const dmat3& m) {
   return std::sqrt(dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2]));
 }
 
-constexpr double kSinglePrecision = 1.0 - 1e-5;  // [1] of a limit: what is sent is rounded
+constexpr double kSinglePrecision = 1.0 - 1e-5;  // [1] of a limit: allows for rounding to single precision when sent
 
-// [N/m] The largest that a force by position changes along any way: of a symmetric matrix its largest eigenvalue, to
-// rounding and from above.
+// [N/m] The largest change of force per metre in any direction: for a symmetric matrix its largest eigenvalue, from
+// above within rounding.
 double steepest(const dmat3& m) {
   const double whole = norm(m);
   if (!(whole > 0.0)) return 0.0;
@@ -61,8 +61,7 @@ bool is_nothing(const DeviceModel& model) {
   return size == 0.0 && model.wrench.grip == 0.0;
 }
 
-// By its Frobenius norm over the square root of its rank's bound it would be too soft; by its largest row sum it is at
-// least as stiff as its largest eigenvalue.
+// The Frobenius norm would make it too soft. The largest row sum is an upper bound of the largest eigenvalue.
 DeviceModel softened(const DeviceModel& model, double most) {
   if (!(most > 0.0)) return model;
   double largest = 0.0;
@@ -100,8 +99,8 @@ DeviceModel told_elsewhere(const DeviceModel& model, const DeviceWrench& sent, d
   out.max_torque = model.max_torque;
   if (size > out.max_force) out.wrench.force *= out.max_force / size;
   if (moves || !(size > 0.0)) return out;
-  // About half of what may leave, so that it may both rise to that and fall to nothing, and does not turn round: from
-  // where the device is, as far along the force as the slope makes it.
+  // A working point at about half of the limit, so that the force can rise to the limit or fall to zero, but not
+  // reverse: as far along the force from the device's position as the slope requires.
   const dvec3 along = sent.force / size;
   const dmat3 slope = share * model.force_by_position;
   const double steep = -dot(along, slope * along);

@@ -15,13 +15,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kTellEvery = 0.05;   // [s] of reports for a person to read
-constexpr double kLateModel = 2e-3;   // [s] two ticks of the touch clock
-constexpr double kSlept = 0.020;      // [s] less is the two clocks' reading
-constexpr double kRenewEvery = 0.25;  // [s] of the line that a guard process holds
-constexpr const char* kNoSafeLine =
-    "nothing outside this program can switch its force off: if the program is killed (kill -9, out of memory), a force "
-    "stands until the device's own watchdog ends it; keep a hand on its switch";
+constexpr double kTellEvery = 0.05;    // [s] of reports for a person to read
+constexpr double kLateModel = 2e-3;    // [s] two ticks of the touch clock
+constexpr double kSlept = 0.020;       // [s] less is the two clocks' reading
 constexpr double kLongestWait = 5e-3;  // [s] for a reply: an order is heard at least so often
 
 double seconds(clockid_t which) {
@@ -35,10 +31,6 @@ std::uint64_t ns(double s) {
 }
 
 }  // namespace
-
-bool renders(const DeviceCapabilities& can) {
-  return can.renders_force || can.renders_torque || can.renders_grip || can.renders_vibration;
-}
 
 bool wants_servo(const DeviceCapabilities& can) {
   return can.rate > 0.0 && renders(can);
@@ -75,18 +67,12 @@ void Servo::adopt() {
   virtual_periods_ = 0;
   looped_ = failed_ = told_ = false;
   if (!guard_to_the_last(*inner_)) note_ = "more devices are open than a crash handler knows";
-  SafeLine line;
-  if (!inner_->safe_line(line)) {
-    if (!can_.simulated && renders(can_)) note_ = kNoSafeLine;
-  } else if (Status started = watchman_.start(line); !started) {
-    note_ = started.error().message();
-  }
-  line_at_ = 0.0;
+  if (const std::string sentence = watch_.start(*inner_, can_); !sentence.empty()) note_ = sentence;
   not_ready_ = 0;
   tell();
 }
 
-// [s] Real time while a thread runs, else where advance() has come to.
+// [s] Real time while a thread runs, else the virtual time of advance().
 double Servo::clock() const {
   return running_ ? seconds(CLOCK_MONOTONIC) : virtual_now_.load();
 }
@@ -130,11 +116,11 @@ void Servo::close() {
   state_ = guard_.state();
   try {
     inner_->write({});
-  } catch (...) {  // made safe all the same
+  } catch (...) {  // made safe anyway
   }
   inner_->make_safe();
   let_go_of(*inner_);
-  watchman_.end();
+  watch_.end();
   inner_->close();
   tell();
 }
@@ -157,7 +143,7 @@ void Servo::advance(double time) {
   }
 }
 
-// Whether the machine has slept since the last look: one clock goes on, the other does not.
+// Whether the machine was suspended since the last call: one clock continues, the other does not.
 bool Servo::slept() {
   if (!running_) return false;
   const double offset = seconds(CLOCK_BOOTTIME) - seconds(CLOCK_MONOTONIC);
@@ -199,8 +185,8 @@ GuardWish Servo::wish(double now) {
   return wish;
 }
 
-// After exit() or a crash nothing is written: the device has been made safe. A device that renders the model itself is
-// told one that keeps to what the guard lets leave now, however long it hears nothing more.
+// After exit() or a crash nothing is written: the device has been made safe. A device that renders the model itself
+// receives one that respects the guard's current limits even if no further frame arrives.
 void Servo::put(const GuardWish& wish, const DeviceWrench& wrench, bool make_safe) {
   if (all_made_safe()) return;
   try {
@@ -249,17 +235,8 @@ void Servo::period(double now) {
     if (sample.time > 0.0) reads_.add(ns(now - sample.time));
     if (!sample.ready) ++not_ready_;
   }
-  watchman_.beat();
-  renew_line(now);
+  watch_.beat(*inner_, now);
   measure(now, sampled);
-}
-
-// A device that was opened anew has another line, or other words for zero: the guard process is told what holds now.
-void Servo::renew_line(double now) {
-  if (!watchman_.watches() || now - line_at_ < kRenewEvery) return;
-  line_at_ = now;
-  SafeLine line;
-  if (inner_->safe_line(line)) watchman_.renew(line);
 }
 
 void Servo::measure(double now, bool sampled) {
@@ -315,7 +292,7 @@ Status Servo::start() {
   if (!open_) return Error{"servo", "is not open; call open() first"};
   if (running_) return Done{};
   looked_ = false;
-  guard_ = Guard(can_, parameters_);  // another clock: nothing from before is known
+  guard_ = Guard(can_, parameters_);  // another clock: previous state is invalid
   models_.write() = {};
   models_.publish();
   running_ = true;
@@ -345,7 +322,7 @@ Status Servo::start() {
   return looping;
 }
 
-// Last of all on the thread that writes.
+// The last call on the thread that writes.
 void Servo::end_thread() {
   guard_.close(seconds(CLOCK_MONOTONIC));
   state_ = guard_.state();
@@ -357,7 +334,7 @@ void Servo::halt() noexcept {
   if (!running_.exchange(false)) return;
   if (thread_.joinable()) {
     thread_.join();
-  } else {  // the library's thread ends it in its next call; one that calls no more has stopped the device itself
+  } else {  // the library's thread ends it in its next call; if it calls no more, it has stopped the device itself
     for (int i = 0; i < 100 && !ended_; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
@@ -380,13 +357,13 @@ void Servo::run() {
       } catch (...) {
         failed_ = true;
       }
-      // A device that is gone may answer at once and for ever.
+      // A device that is gone may answer at once, repeatedly: avoid a busy loop.
       const double now = seconds(CLOCK_MONOTONIC);
       if (now - before < 0.1 * dt && now - last_ < 0.5 * dt) sleep_until(last_ + dt);
     } else {
       due += dt;
       const double now = seconds(CLOCK_MONOTONIC);
-      if (due < now) due = now;  // late: the deadline is missed and counted, not made up for
+      if (due < now) due = now;  // late: the missed deadline is counted, not made up for
       sleep_until(due);
     }
     period(seconds(CLOCK_MONOTONIC));

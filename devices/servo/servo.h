@@ -1,11 +1,12 @@
-// A driver in front of a driver: the servo of a device, which runs at the device's rate on the newest force model
-// (DeviceModel) from the touch tick, and the guard (devices/guard/guard.h) that decides what leaves. A touch tick that
-// comes late is a short extrapolation with a deadline of its own, not a force that is held.
+// The servo of a device: a driver in front of a driver. It runs at the device's rate on the newest force model
+// (DeviceModel) from the touch tick; the guard (devices/guard/guard.h) limits the force. A late touch tick causes a
+// short extrapolation with a deadline, instead of a zero-order hold of the force.
 //
-// Threads. read(), write() and write_model() are the touch clock's and never wait: samples and models travel by
-// TripleBuffer. report() is one thread's, its owner's. arm(), disarm() and stop() are anybody's. The guard and the
-// driver inside belong to whoever runs the periods: the servo's thread, or the library that calls (DeviceLoop), from
-// start() to halt(); otherwise the caller of advance(), in virtual time and always the same.
+// Threads. read(), write() and write_model() are called by the touch clock and never wait; samples and models pass
+// through a TripleBuffer. report() is for one thread, the owner's. arm(), disarm() and stop() may be called from any
+// thread. The guard and the inner driver belong to the thread that runs the periods. From start() to halt() this is the
+// servo's thread, or that of the calling library (DeviceLoop). Otherwise it is the caller of advance(), in virtual time
+// and deterministic.
 #pragma once
 
 #include <atomic>
@@ -22,8 +23,6 @@
 
 namespace pliant {
 
-// Whether there is something to feel of a device.
-bool renders(const DeviceCapabilities& can);
 // Whether it is to be driven by a servo: it has a rate, too.
 bool wants_servo(const DeviceCapabilities& can);
 
@@ -32,43 +31,41 @@ class Servo final : public Driver {
   explicit Servo(std::unique_ptr<Driver> inner, const GuardParameters& parameters = {});
   ~Servo() override;
 
-  // --- Driver: before start() its owner's, then the touch clock's
+  // --- Driver: used by the owner before start(), then by the touch clock
   Status open(const std::string& id) override;
-  void adopt();  // in place of open(): the driver is open already
-  // The driver's, its stiffness limited by its rate.
+  void adopt();  // instead of open(), for a driver that is open already
+  // The driver's, with its stiffness limited by its rate.
   DeviceCapabilities capabilities() const override { return can_; }
   bool read(DeviceSample& sample) override;
-  // Zero: nothing is wanted, on purpose. Else a force that holds until the next, at most kModelHolds.
+  // Zero: intentionally no force. Otherwise a force that is kept until the next call, at most for kModelHolds.
   void write(const DeviceWrench& wrench) override;
   bool write_model(const DeviceModel& model, const DeviceWrench& wrench) override;
   void close() override;
   void make_safe() noexcept override;
 
   // --- Time
-  Status start();        // real time, on a thread of its own or the library's
-  void halt() noexcept;  // the device is written zero and made safe
+  Status start();        // real time, on a separate thread or the library's
+  void halt() noexcept;  // writes zero and makes the device safe
   bool runs() const { return running_; }
-  Status can_advance() const;  // why it cannot run in virtual time, if it cannot
-  void advance(double time);   // [s] every period until then, at the device's rate
-  void period(double now);     // one; what all of the above run
+  Status can_advance() const;  // the reason if it cannot run in virtual time
+  void advance(double time);   // [s] runs every period until then, at the device's rate
+  void period(double now);     // runs one period; used by all of the above
 
-  // --- Anybody's
+  // --- From any thread
   void arm() { orders_ |= kArm; }
   void disarm() { orders_ |= kDisarm; }
-  void stop() { orders_ |= kStop; }  // emergency: latched
+  void stop() { orders_ |= kStop; }  // emergency stop: latched
   DeviceState state() const { return state_; }
   bool felt() const { return state_ == DeviceState::kActive; }
 
   const DeviceReport& report();
-  const std::string& note() const {
-    return note_;
-  }  // what is not as it might be, after open() or start(); may be empty
+  const std::string& note() const { return note_; }  // warnings after open() or start(); may be empty
 
  private:
   enum Order : std::uint32_t { kArm = 1, kDisarm = 2, kStop = 4 };
   struct Message {
     DeviceModel model;
-    double at = 0.0;  // [s] of the servo's clock, when it was written
+    double at = 0.0;  // [s] on the servo's clock, when it was written
     bool known = false, let_go = false;
   };
   void send(const DeviceModel& model, bool let_go);
@@ -76,7 +73,6 @@ class Servo final : public Driver {
   GuardOrders take_orders(double now);
   GuardWish wish(double now);
   void put(const GuardWish& wish, const DeviceWrench& wrench, bool make_safe);
-  void renew_line(double now);
   void measure(double now, bool sampled);
   void tell();
   void run();
@@ -86,9 +82,9 @@ class Servo final : public Driver {
   std::unique_ptr<Driver> inner_;
   GuardParameters parameters_;
   DeviceCapabilities can_;
-  bool open_ = false, looped_ = false;  // looped_: the library has been handed its tick
+  bool open_ = false, looped_ = false;  // looped_: the library has received its callback
   std::string note_;
-  Watchman watchman_;
+  LineWatch watch_;
 
   // touch -> servo, servo -> touch, servo -> owner
   TripleBuffer<Message> models_;
@@ -99,10 +95,10 @@ class Servo final : public Driver {
   std::atomic<bool> running_{false}, ended_{true}, granted_{false};
   std::atomic<double> virtual_now_{0.0};
 
-  // Of whoever runs the periods.
+  // For the thread that runs the periods.
   Guard guard_;
   bool failed_ = false;      // the driver threw in this period or the last
-  double sleep_offset_ = 0;  // [s] how long the machine has slept, at the last look
+  double sleep_offset_ = 0;  // [s] total suspended time at the last check
   bool looked_ = false;
   ServoFigures figures_;
   Histogram periods_, jitter_, trips_, reads_;
@@ -112,7 +108,6 @@ class Servo final : public Driver {
   double last_ = 0.0, written_at_ = 0.0, told_at_ = 0.0;
   std::uint64_t told_periods_ = 0, told_transitions_ = 0;
   bool told_ = false;
-  double line_at_ = 0.0;         // [s] when the guard process was told of the line
   std::uint64_t not_ready_ = 0;  // samples
   double virtual_start_ = 0.0;
   std::uint64_t virtual_periods_ = 0;

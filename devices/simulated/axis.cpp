@@ -6,10 +6,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kLongestAxisStep = 1e-4;  // [s] events are looked for at its end: two halts within one are not seen
+constexpr double kLongestAxisStep = 1e-4;  // [s] events are detected at its end: two stops within one are missed
 constexpr double kEventTime = 1e-9;        // [s]
 constexpr int kTerms = 30;
-constexpr double kTiny = 1e-17;  // [1] of the state: smaller terms of the series are left out
+constexpr double kTiny = 1e-17;  // [1] of the state: smaller terms of the series are dropped
 
 }  // namespace
 
@@ -62,11 +62,11 @@ double Axis::pull(const State& s) const {
   return s[4] + stop + (hand.holds() ? hand.grip_stiffness * (s[2] - s[0]) + hand.grip_damping * s[3] : push_);
 }
 
-// A s + inputs; `constant`: 1 for the state itself, 0 for its derivatives, where constants have gone.
+// A s + inputs; `constant`: 1 for the state itself, 0 for its derivatives, where constants vanish.
 Axis::State Axis::slope(const State& s, double w, double w_speed, double push, double constant) const {
   const HandImpedance& hand = parameters_.hand;
   State d{};
-  double grip = push;  // what the device feels of the hand
+  double grip = push;  // the hand's force on the device
   if (hand.holds()) {
     grip = hand.grip_stiffness * (s[2] - s[0]) + hand.grip_damping * (s[3] - s[1]);
     d[2] = s[3];
@@ -106,7 +106,7 @@ double Axis::past(const State& s) const {
   return sliding_ != 0 ? -sliding_ * s[1] : std::abs(pull(s)) - parameters_.friction;
 }
 
-// The device stands still: it begins to slide where what pulls is stronger than friction.
+// The device is at rest: it starts to slide if the force on it exceeds friction.
 void Axis::settle_mode() {
   const double now = pull(state_);
   sliding_ = std::abs(now) > parameters_.friction ? side(now) : 0;
@@ -119,7 +119,7 @@ bool Axis::event(const State& s) const {
 void Axis::advance(double dt, const AxisWill& will) {
   push_ = will.push;
   Input input{will.from, dt > 0.0 ? (will.to - will.from) / dt : 0.0, will.push};
-  if (has_friction() && sliding_ == 0) settle_mode();  // the motor may have jumped
+  if (has_friction() && sliding_ == 0) settle_mode();  // the motor force may have jumped
   for (double left = dt; left > 0.0;) {
     double step = left > 1.5 * sub_step_ ? sub_step_ : left;
     State next = solve(state_, input, step);

@@ -1,12 +1,12 @@
 // One axis of a device in a hand, in continuous time:
-//   m x'' = F - b x' - c sign(x') + k_g (y - x) + b_g (y' - x')                the device; F what its motor gives
-//   m_h y'' = k_g (x - y) + b_g (x' - y') + k_a (w - y) + b_a (w' - y') + p    the hand; w, p what it wants
+//   m x'' = F - b x' - c sign(x') + k_g (y - x) + b_g (y' - x')                the device; F its motor's force
+//   m_h y'' = k_g (x - y) + b_g (x' - y') + k_a (w - y) + b_a (w' - y') + p    the hand; w, p: its intention
 //   tau F' = u - F                                                             the amplifier; u constant between calls
 // At an end stop, |x| > l, a spring and a damper push the device back, and never pull: k_s (|x| - l) + b_s |x|' > 0.
-// Between events this is linear. Its exact solution is summed as a Taylor series over sub-steps, to rounding. Coulomb
-// friction switches it: an event is where the device comes to a halt, or what pulls at a device that stands still
-// exceeds c, and where a stop begins or ceases to push. Events are found by bisection to a nanosecond, so that stiction
-// is exact and not a steep viscous law: a smoothed sign creeps where a device stands still, and hides limit cycles.
+// Between events this is linear; its exact solution is summed as a Taylor series over sub-steps, to rounding. Coulomb
+// friction switches it. Events are: the device stops; the force on a resting device exceeds c; a stop begins or ceases
+// to push. They are found by bisection to a nanosecond, so that stiction is exact. The alternative, a steep viscous law
+// with a smoothed sign, creeps where a device should rest, and hides limit cycles.
 #pragma once
 
 #include <array>
@@ -20,35 +20,35 @@ struct AxisParameters {
   double damping = 0.0;                             // [N s/m] its own
   double friction = 0.0;                            // [N] Coulomb's, kinetic = static
   double lag = 0.0;                                 // [s] time constant of the amplifier; 0: none
-  double reach = 0.0;                               // [m] l: it stops there on both sides of zero; 0: no stops
+  double reach = 0.0;                               // [m] l: end stops on both sides of zero; 0: none
   double stop_stiffness = 0.0, stop_damping = 0.0;  // [N/m], [N s/m]
   HandImpedance hand;
 };
 
-// What the hand wants while an axis advances.
+// The hand's intention while an axis advances.
 struct AxisWill {
-  double from = 0.0, to = 0.0;  // [m] of the arm's spring, at the beginning and end; linear between
-  double push = 0.0;            // [N] on the hand; where nobody holds it, on the device
+  double from = 0.0, to = 0.0;  // [m] target of the arm's spring at the start and end; linear in between
+  double push = 0.0;            // [N] on the hand; without a hand, on the device
 };
 
 class Axis {
  public:
   explicit Axis(const AxisParameters& parameters);
 
-  // At rest at `position`, hand and all; no force.
+  // At rest at `position`, including the hand; zero force.
   void place(double position);
   void kick(double velocity);
-  // `force` [N] is the motor's from now on, through the amplifier.
+  // `force` [N] is the motor command from now on, through the amplifier.
   void command(double force);
   void advance(double dt, const AxisWill& will = {});
 
   double position() const { return state_[0]; }
   double velocity() const { return state_[1]; }
   double hand_position() const { return state_[2]; }
-  double motor() const { return state_[4]; }   // [N] that it gives now
-  bool stopped() const { return stop_ != 0; }  // an end stop pushes it
+  double motor() const { return state_[4]; }   // [N] current motor force
+  bool stopped() const { return stop_ != 0; }  // in contact with an end stop
   bool sticks() const { return has_friction() && sliding_ == 0; }
-  double energy() const;  // [J] kinetic and of the grip's spring
+  double energy() const;  // [J] kinetic energy, and that of the grip's spring
 
  private:
   using State = std::array<double, 5>;  // x, x', y, y', F
@@ -60,20 +60,20 @@ class Axis {
   bool has_friction() const { return parameters_.friction > 0.0; }
   State slope(const State& s, double w, double w_speed, double push, double constant) const;
   State solve(const State& s, const Input& input, double dt) const;
-  double pull(const State& s) const;  // [N] on a device that stands still, beside friction
+  double pull(const State& s) const;  // [N] on a device at rest, without friction
   // > 0: the mode has ended before this state.
   double past(const State& s) const;
   void settle_mode();
-  int stop_of(const State& s) const;  // the side whose stop pushes; 0: none
+  int stop_of(const State& s) const;  // the side of the active stop; 0: none
   bool event(const State& s) const;   // a mode has ended before this state
 
   AxisParameters parameters_;
-  double sub_step_;  // [s] short against every time constant
+  double sub_step_;  // [s] short relative to every time constant
   State state_{};
   double command_ = 0.0;  // [N]
-  double push_ = 0.0;     // [N] while it advances
-  int stop_ = 0;          // the side whose stop pushes; 0: none
-  int sliding_ = 0;       // sign of the velocity; 0: it stands still, or nothing rubs
+  double push_ = 0.0;     // [N] during advance()
+  int stop_ = 0;          // the side of the active stop; 0: none
+  int sliding_ = 0;       // sign of the velocity; 0: at rest, or no friction
 };
 
 }  // namespace pliant

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kTooFar = 0.25;          // [m]
 constexpr double kTooMuch = 1000.0;       // [1] times the start
-constexpr double kAtRest = 1e-9;          // [m] less motion is none
+constexpr double kAtRest = 1e-9;          // [m] smaller motion counts as rest
 constexpr double kSettles = 0.98;         // [1] between quarters
 constexpr double kSameTime = 1e-9;        // [s]
 constexpr std::size_t kMostDelay = 4096;  // periods
@@ -24,7 +24,7 @@ struct Window {
   double amplitude() const { return high >= low ? 0.5 * (high - low) : 0.0; }
 };
 
-// The loop, one period a step.
+// The loop, one period per step.
 class Loop {
  public:
   Loop(const WallLoop& loop, const WallStart& start, const ForceGuard& guard)
@@ -49,7 +49,7 @@ class Loop {
     if (loop_.max_force > 0.0) force = std::clamp(force, -loop_.max_force, loop_.max_force);
     line_[next_] = in_counts(force, loop_.force_step);
     next_ = (next_ + 1) % line_.size();
-    advance(fraction_);  // still the command before
+    advance(fraction_);  // still the previous command
     axis_.command(line_[next_]);
     advance(T - fraction_);
     time_ += T;
@@ -67,7 +67,7 @@ class Loop {
             .lag = loop.lag,
             .hand = loop.hand};
   }
-  // Work of the motor: exact where its force is constant, trapezoidal where the amplifier lags.
+  // Work of the motor: exact for a constant force, trapezoidal with amplifier lag.
   void advance(double dt) {
     if (!(dt > kSameTime)) return;
     const double from = axis_.position(), force = axis_.motor();
@@ -78,7 +78,7 @@ class Loop {
   const WallLoop& loop_;
   const ForceGuard& guard_;
   Axis axis_;
-  std::vector<double> line_;  // commands on their way: a ring, the oldest after the newest
+  std::vector<double> line_;  // delayed commands: a ring, the oldest after the newest
   std::size_t next_ = 0, whole_ = 0;
   double fraction_ = 0.0, last_ = 0.0, time_ = 0.0, work_ = 0.0;
 };
@@ -96,7 +96,7 @@ WallResult run_wall(const WallLoop& loop, const WallStart& start, double seconds
                     std::vector<WallSample>* trace) {
   Loop run(loop, start, guard);
   WallResult result;
-  // A quarter holds two swings of the device on the wall.
+  // A quarter contains two oscillations of the device on the wall.
   const double swing = 6.283185307179586 * std::sqrt(loop.plant.mass / std::max(loop.wall.stiffness, 1.0));
   const auto quarter =
       std::max<std::size_t>(8, static_cast<std::size_t>(std::max(0.25 * seconds, 2.0 * swing) / loop.plant.period));

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kLongestDelay = 1.0;     // [s]
 constexpr double kFastest = 20000.0;      // [Hz]
-constexpr double kShortest = 10e-6;       // [s] a motion's or an amplifier's time constant: its steps are half of it
+constexpr double kShortest = 10e-6;       // [s] smallest time constant of a motion or an amplifier: its steps are half
+                                          // of it
 constexpr double kFarthestOption = 10.0;  // [m] of `at`
 constexpr double kHardest = 1000.0;       // [N] of `push`
 

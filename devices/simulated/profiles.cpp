@@ -2,10 +2,10 @@
 
 namespace pliant {
 
-// Peak force, stable stiffness and stable damping are CHAI3D's device table; Omni's mass, friction, resolution and
-// continuous force are its maker's sheet. What no maker publishes (reflected mass, damping and friction of the delta
-// mechanisms, amplifiers, transport) is assumed, so that the order of magnitude is right: such numbers say what a
-// device of this class does, not what yours does.
+// Peak force, stable stiffness and stable damping are from CHAI3D's device table; Omni's mass, friction, resolution and
+// continuous force from its vendor's data sheet. Unpublished values (reflected mass, damping and friction of the delta
+// mechanisms, amplifiers, transport) are assumptions of the right order of magnitude. They describe a class of devices,
+// not an individual one.
 const std::array<DeviceProfile, kDeviceProfiles>& device_profiles() {
   static const std::array<DeviceProfile, kDeviceProfiles> all{{
       // name, title, mass, damping, friction, encoder, force step, lag, delay, rate, peak, continuous, K, B, workspace,

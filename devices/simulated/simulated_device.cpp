@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kLongestCatchUp = 0.5;  // [s] of motion after a pause of whoever reads; more is left out
+constexpr double kLongestCatchUp = 0.5;  // [s] of motion simulated after a pause of the reader; the rest is skipped
 constexpr double kSameInstant = 1e-9;    // [s]
 
 double wall() {
@@ -22,7 +22,7 @@ dquat turned(dvec3 by) {
   return angle > 0.0 ? glm::angleAxis(angle, by / angle) : dquat(1, 0, 0, 0);
 }
 
-// Saturates as a whole, so that the direction stays. What is no number is what a real amplifier would make of it: none.
+// Saturates the norm, so that the direction is kept. A non-finite value gives zero.
 dvec3 saturated(dvec3 wanted, double most) {
   const double size = length(wanted);
   if (!std::isfinite(size)) return dvec3(0);
@@ -90,7 +90,7 @@ dvec3 SimulatedDevice::wants(double time, dquat& rotation) {
   return row.position;
 }
 
-// Motors get what the line has delivered until then.
+// Applies the commands that have arrived by then.
 void SimulatedDevice::apply_commands(double until) {
   while (waiting_ > 0 && line_[first_].from <= until + kSameInstant) {
     for (int i = 0; i < 3; ++i) axes_[static_cast<std::size_t>(i)].command(line_[first_].force[i]);
@@ -124,12 +124,12 @@ bool SimulatedDevice::read(DeviceSample& sample) {
     due = static_cast<std::uint64_t>(std::max(0.0, now) * rate) + 1;
     if (due <= index_) return false;
     const auto most = static_cast<std::uint64_t>(kLongestCatchUp * rate);
-    if (due > index_ + most) {  // time went by without motion
+    if (due > index_ + most) {  // skips time without motion
       began_ += static_cast<double>(due - index_ - most) / rate;
       due = index_ + most;
     }
   }
-  index_ = due;  // the first sample is of time 0
+  index_ = due;  // the first sample is at time 0
   advance_to(static_cast<double>(index_ - 1) / rate);
   sample = {};
   sample.position = in_counts(true_position(), options_.profile.encoder);

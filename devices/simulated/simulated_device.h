@@ -1,10 +1,10 @@
-// A simulated device in a simulated hand: a driver like any other, with what a real one does to a loop - mass,
-// friction, encoder and force counts, saturation, the amplifier's lag, transport delay, samples of its own clock.
+// A simulated device in a simulated hand: a driver with the effects of a real device on a loop: mass, friction,
+// quantisation of encoder and force, saturation, amplifier lag, transport delay, its own sample clock.
 //
-// World axes are its own; three axes that do not couple, each with its friction, as each joint of a real one has. The
-// workspace ends in stops. Where a profile renders torque, three more axes turn the grip beside where the hand wants to
-// turn it, by a rotation vector that the hand's own stiffness keeps small: they do not couple either, and the turn that
-// the hand wants costs nothing. Elsewhere the rotation of its sample is the will's.
+// Its axes are the world's. The three axes are uncoupled, each with its friction, like the joints of a real device. The
+// workspace has end stops. If a profile renders torque, three more axes rotate the grip relative to the hand's intended
+// rotation, by a rotation vector that the hand's own stiffness keeps small. They are uncoupled too, and the intended
+// rotation costs no work. Otherwise the rotation of its sample is the intended one.
 #pragma once
 
 #include <array>
@@ -19,9 +19,8 @@
 namespace pliant {
 
 enum class DeviceClock : std::uint8_t {
-  kWall,  // samples when their time has come, from the first that is asked for: another thread's clock, as of a real
-          // device
-  kTick   // a sample a read(): lockstep, the same bits every time
+  kWall,  // samples at their own times, from the first read on: a clock of another thread, like a real device
+  kTick   // one sample per read(): lockstep, deterministic
 };
 
 struct SimulatedOptions {
@@ -39,8 +38,8 @@ Result<SimulatedOptions> parse_simulated(const std::string& id);
 
 class SimulatedDevice : public Driver {
  public:
-  SimulatedDevice() = default;                         // open(id) says what it is
-  explicit SimulatedDevice(SimulatedOptions options);  // open() begins it, whatever the id
+  SimulatedDevice() = default;                         // open(id) configures it
+  explicit SimulatedDevice(SimulatedOptions options);  // open() starts it, whatever the id
   SimulatedDevice(const SimulatedDevice&) = delete;
   SimulatedDevice& operator=(const SimulatedDevice&) = delete;
   Status open(const std::string& id) override;
@@ -50,13 +49,13 @@ class SimulatedDevice : public Driver {
   void write(const DeviceWrench& wrench) override;
   void close() override { open_ = false; }
 
-  // What no encoder says, for tests and plots.
+  // True values, which no encoder measures; for tests and plots.
   dvec3 true_position() const;
   dvec3 true_velocity() const;
   dvec3 motor_force() const;
-  dvec3 true_turn() const;  // [rad] beside where the hand wants it
+  dvec3 true_turn() const;  // [rad] relative to the intended rotation
   dvec3 motor_torque() const;
-  double time() const { return time_; }  // [s] of its own clock
+  double time() const { return time_; }  // [s] on its own clock
   const SimulatedOptions& options() const { return options_; }
 
  private:
@@ -72,17 +71,17 @@ class SimulatedDevice : public Driver {
 
   SimulatedOptions options_;
   bool configured_ = false, open_ = false;
-  std::vector<Axis> axes_, turns_;  // turns_: none, or three
-  std::vector<Command> line_;       // a ring: transport
+  std::vector<Axis> axes_, turns_;  // turns_: empty, or three
+  std::vector<Command> line_;       // a ring: transport delay
   std::size_t first_ = 0, waiting_ = 0;
   std::optional<PathCursor> cursor_;
   dvec3 start_{0}, wanted_{0};
   dquat rotation_{1, 0, 0, 0};
-  double time_ = 0.0, began_ = 0.0;  // [s] of its clock; of the wall
+  double time_ = 0.0, began_ = 0.0;  // [s] on its clock; on the wall clock
   std::uint64_t index_ = 0;          // samples so far
 };
 
-// `simulated` into the registry (pliant/driver.h), with its profiles listed. Once, however often it is called.
+// Registers `simulated` (pliant/driver.h), with its profiles listed. Further calls have no effect.
 void register_simulated();
 
 }  // namespace pliant

@@ -22,7 +22,7 @@ Polynomial plus(Polynomial a, const Polynomial& b) {
   return a;
 }
 
-// All roots within the unit circle: the Schur-Cohn recursion, each degree from the one above it.
+// All roots within the unit circle: the Schur-Cohn recursion, each degree from the next higher one.
 bool within_unit_circle(Polynomial c) {
   while (c.size() > 1) {
     const std::size_t n = c.size() - 1;
@@ -35,7 +35,7 @@ bool within_unit_circle(Polynomial c) {
   return true;
 }
 
-// What a newton that begins now leaves behind after `t`: position [m] and velocity [m/s].
+// Response after `t` to a constant force of one newton: position [m] and velocity [m/s].
 dvec2 response(double m, double b, double t) {
   if (!(b > 0.0)) return {0.5 * t * t / m, t / m};
   const double rise = -std::expm1(-b * t / m);
@@ -53,7 +53,7 @@ bool linearly_stable(const WallPlant& plant, const Wall& wall, double radius) {
   const dvec2 after = response(m, b, T - fraction), all = response(m, b, T);
   const double g1 = after.x, h1 = after.y;
   const double g0 = fraction > 1e-12 * T ? all.x - g1 : 0.0, h0 = fraction > 1e-12 * T ? all.y - h1 : 0.0;
-  // Divided by z where nothing is delayed by a fraction: a root at zero says nothing.
+  // Divided by z if there is no fractional delay: a root at zero is irrelevant.
   Polynomial free = times({-1.0, 1.0}, {-a, 1.0});
   Polynomial shift(whole + 3, 0.0);
   shift[whole + 2] = T;

@@ -1,6 +1,5 @@
-// What is known in closed form of a virtual wall, stiffness K and damping B, sampled every T behind a device of mass m,
-// damping b and Coulomb friction c whose encoder counts in steps of D. The force is a zero-order hold and comes a
-// transport delay d late.
+// Closed-form results for a virtual wall, stiffness K and damping B, sampled with period T on a device of mass m,
+// damping b and Coulomb friction c, with encoder resolution D. The force has a zero-order hold and a transport delay d.
 #pragma once
 
 #include "pliant/math.h"
@@ -26,22 +25,23 @@ struct Wall {
 // leaves behind, of the part of a period before (0) and after (1) a command arrives; d = (k + fraction) T.
 bool linearly_stable(const WallPlant& plant, const Wall& wall, double radius = 1.0);
 
-// The smallest K at which it becomes unstable; 0: at no stiffness is it stable. [N/m]
+// The smallest unstable K; 0: no stiffness is stable. [N/m]
 double stability_limit(const WallPlant& plant, double wall_damping);
 
 // Passive for every hand: b > KT/2 + |B| (Colgate and Schenkel 1997); a delay d adds K d (Diolaiti et al. 2006).
 bool passive(const WallPlant& plant, const Wall& wall);
 double passivity_limit(const WallPlant& plant, double wall_damping);  // [N/m]; 0: none
 
-// Counts leak K D/2 |v| and friction takes c |v| (Abbott and Okamura 2005, Diolaiti et al. 2006): K <= 2c/D. [N/m]
+// Quantisation generates K D/2 |v| and friction dissipates c |v| (Abbott and Okamura 2005, Diolaiti et al. 2006): K <=
+// 2c/D. [N/m]
 double quantisation_limit(const WallPlant& plant);
 
-// Diolaiti's balance of power at speed v, for B = 0: what hold and delay leak, K(T/2 + d) v^2, and counts, K D/2 v,
-// against what the device takes, b v^2 + c v. With s = (K D/2 - c) / (b - K(T/2 + d)), a speed:
+// Diolaiti's power balance at speed v, for B = 0. Hold and delay generate K(T/2 + d) v^2, quantisation K D/2 v; the
+// device dissipates b v^2 + c v. With s = (K D/2 - c) / (b - K(T/2 + d)), a speed:
 enum class WallRegime {
   kDissipative,  // at every speed
-  kCycle,        // above s: it goes down to a limit cycle slower than s
-  kLocal,        // below s: small motion comes to rest, what is faster than s may grow
+  kCycle,        // above s: it decays to a limit cycle slower than s
+  kLocal,        // below s: small motion comes to rest, faster motion may grow
   kUnstable      // at no speed
 };
 struct WallBalance {

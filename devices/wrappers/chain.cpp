@@ -23,7 +23,7 @@ namespace {
 constexpr double kLargestGain = 1e3;
 constexpr std::size_t kMostWrappers = 12;
 
-// The words of one wrapper. Whoever asks for a value says what it must be; the first that is wrong is the error.
+// The options of one wrapper. Each query specifies the allowed values; the first invalid one is the error.
 struct Words {
   std::string name, value, where;
   std::map<std::string, std::string> keys;
@@ -75,7 +75,7 @@ Result<Driven> make_replay(Driven inner, Words& words, std::vector<std::string>&
   return checked(words, std::make_unique<Replay>(std::move(inner), std::move(rows).value()));
 }
 
-// A bare number counts samples, and both do.
+// A bare number counts samples; then both options do.
 Result<Driven> make_delay(Driven inner, Words& words, std::vector<std::string>&) {
   DelayParameters delay;
   delay.samples = plain_number(words.value).has_value();

@@ -26,12 +26,12 @@ namespace pliant {
 struct DeviceChain {
   std::unique_ptr<Driver> driver;  // not opened
   std::string id;                  // to open it with
-  std::vector<std::string> notes;  // what a person should know: a gain that does not keep power, say
+  std::vector<std::string> notes;  // notes for the user, for instance a gain that does not preserve power
 };
 
 // From the registry. The error is one sentence.
 Result<DeviceChain> make_device(const std::string& words);
-// Wrappers alone, in front of a driver that is there; `words` without its name: "delay=5ms|drop=10%".
+// Wrappers only, in front of an existing driver; `words` without its name: "delay=5ms|drop=10%".
 Result<DeviceChain> wrap(std::unique_ptr<Driver> driver, const std::string& words);
 
 }  // namespace pliant

@@ -22,7 +22,7 @@ Status Delay::begin() {
   return Done{};
 }
 
-// A read that found nothing is delayed too, so that gaps stay where they were.
+// A read without a sample is delayed too, so that gaps keep their position.
 bool Delay::read(DeviceSample& sample) {
   Kept& newest = sensed_[sensed_at_];
   newest.there = inner().read(newest.sample);

@@ -1,4 +1,4 @@
-// Samples, forces, or both, come later, by a whole number of samples.
+// Delays samples, forces, or both by a whole number of samples.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@ namespace pliant {
 struct DelayParameters {
   double sensed = 0.0;   // [s] or samples
   double written = 0.0;  // [s] or samples
-  bool samples = false;  // both are counts of samples, else seconds, rounded to the nearest count at the device's rate
+  bool samples = false;  // both are counts of samples, else seconds, rounded to whole samples at the device's rate
 };
 
-// A sample keeps the time at which it was sensed. Before the first delayed one there is none, and no force leaves.
+// A sample keeps its sensing time. Before the first delayed sample there is none, and no force is rendered.
 class Delay : public Wrapper {
  public:
   Delay(std::unique_ptr<Driver> inner, DelayParameters parameters)
@@ -36,7 +36,7 @@ class Delay : public Wrapper {
   };
   double in_samples(double delay) const;
   DelayParameters parameters_;
-  std::vector<Kept> sensed_;  // rings: what comes in takes the place of what goes out
+  std::vector<Kept> sensed_;  // rings: an incoming entry replaces the outgoing one
   std::vector<DeviceWrench> written_;
   std::size_t sensed_at_ = 0, written_at_ = 0;
 };

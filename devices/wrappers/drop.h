@@ -1,14 +1,14 @@
-// Samples, forces, or both, are lost by chance.
+// Drops samples, forces, or both at random.
 #pragma once
 
 #include "devices/wrappers/wrapper.h"
 
 namespace pliant {
 
-// A lost force leaves the device with the one before. Zero, on close and in make_safe, is never lost.
+// After a dropped force the device keeps the previous one. The zero force of close and make_safe is never dropped.
 class Drop : public Wrapper {
  public:
-  // Shares [1] of what is lost.
+  // Probabilities [1] of a drop.
   Drop(std::unique_ptr<Driver> inner, double sensed, double written, std::uint64_t seed)
       : Wrapper(std::move(inner)), sensed_(sensed), written_(written), seed_(seed), in_(seed), out_(~seed) {}
   bool read(DeviceSample& sample) override {

@@ -1,4 +1,4 @@
-// Positions and forces times a number: motion and force are scaled about the device's origin.
+// Scales positions and forces about the device's origin.
 #pragma once
 
 #include "devices/wrappers/wrapper.h"
@@ -6,8 +6,8 @@
 namespace pliant {
 
 // World position = motion * the device's; the device's force = force * the world's. The hand does force/motion times
-// the work that the world takes: power is kept where both are the same. A passive world stays passive by any gain,
-// since the share is constant, but is felt motion * force times as stiff. Turning is not scaled; torque is, by `force`.
+// the work on the world: power is preserved if both are equal. A passive world stays passive for any gain, since the
+// ratio is constant, but feels motion * force times as stiff. Rotation is not scaled; torque is, by `force`.
 class Gain : public Wrapper {
  public:
   Gain(std::unique_ptr<Driver> inner, double motion, double force)

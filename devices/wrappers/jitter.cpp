@@ -7,7 +7,7 @@ namespace pliant {
 
 DeviceCapabilities Jitter::capabilities() const {
   DeviceCapabilities can = Wrapper::capabilities();
-  can.latency += most_;  // the worst
+  can.latency += most_;  // the worst case
   return can;
 }
 
@@ -20,7 +20,7 @@ Status Jitter::begin() {
   return Done{};
 }
 
-// Of several that are due the newest is delivered: a reader asks for the newest.
+// Of several due samples the newest is delivered.
 bool Jitter::read(DeviceSample& sample) {
   DeviceSample now;
   if (inner().read(now)) {

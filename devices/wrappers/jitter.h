@@ -1,4 +1,4 @@
-// Each sample comes up to so much later, by chance, in the order in which it was sensed.
+// Delays each sample by a random time, and keeps the order of sensing.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Poses and forces in counts.
+// Quantises poses and forces.
 #pragma once
 
 #include "devices/wrappers/wrapper.h"
@@ -7,7 +7,7 @@ namespace pliant {
 
 class Quantise : public Wrapper {
  public:
-  // A count of position [m] and of force [N]; 0: as it is. Rounded to the nearest.
+  // Resolution of position [m] and of force [N]; 0: unchanged. Rounded to the nearest.
   Quantise(std::unique_ptr<Driver> inner, double position, double force)
       : Wrapper(std::move(inner)), position_(position), force_(force) {}
   bool read(DeviceSample& sample) override {

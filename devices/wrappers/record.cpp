@@ -16,7 +16,7 @@
 
 namespace pliant {
 
-// Before the device is: nothing has moved yet.
+// Called before the device is opened: nothing has moved yet.
 Status Record::open(const std::string& id) {
   if (const Status taken = take_file(); !taken) return taken;
   Status opened = Wrapper::open(id);
@@ -24,7 +24,7 @@ Status Record::open(const std::string& id) {
   return opened;
 }
 
-// An empty file that nobody has locked is what a killed process left of its own.
+// An empty unlocked file is left over from a killed process.
 Status Record::take_file() {
   leave_file();
   place_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
@@ -56,7 +56,7 @@ Status Record::begin() {
   return Done{};
 }
 
-// Times of a device that says none, or goes back, are by its rate.
+// If a device gives no times, or decreasing ones, they are computed from its rate.
 bool Record::read(DeviceSample& sample) {
   if (!inner().read(sample)) return false;
   if (samples_ == 0) first_ = sample.time;
@@ -87,7 +87,7 @@ void Record::close() {
   finish();
 }
 
-// Written aside: the file is whole or not there.
+// Written to a temporary file and renamed: the file is complete or absent.
 void Record::finish() noexcept {
   const bool recorded = std::exchange(open_, false) && !rows_.empty();
   try {

@@ -1,4 +1,4 @@
-// What a device says and is told, into a file (devices/pose_file.h) that `replay` and --probe NAME=script:FILE read.
+// Records samples and forces to a file (devices/pose_file.h) for `replay` and --probe NAME=script:FILE.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace pliant {
 
-// Keeps a row a sample, in memory taken by open(), and writes the file on close. What comes after `seconds` is counted,
-// and the file says how much it was.
+// Keeps a row per sample, in memory allocated by open(), and writes the file on close. Samples after `seconds` are
+// counted, and the file states their number.
 class Record : public Wrapper {
  public:
   Record(std::unique_ptr<Driver> inner, std::string file, double seconds)
@@ -20,7 +20,7 @@ class Record : public Wrapper {
   void write(const DeviceWrench& wrench) override;
   bool write_model(const DeviceModel& model, const DeviceWrench& wrench) override;
   void close() override;
-  // Why the file was not written, after close().
+  // After close(): why the file was not written.
   const Status& written() const { return written_; }
 
   static constexpr double kMost = 3600.0;  // [s]
@@ -38,7 +38,7 @@ class Record : public Wrapper {
   std::uint64_t samples_ = 0, lost_ = 0;
   double first_ = 0.0;  // [s] of the first sample
   bool open_ = false;
-  int place_ = -1;  // the file, empty and locked until it is written: nobody else records into it
+  int place_ = -1;  // the file, empty and locked until it is written, so that no other process records into it
   Status written_ = Done{};
 };
 

@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-// Another device in its place would be held to limits that are not its own.
+// A different device in its place would be used with the wrong limits.
 bool same(const DeviceCapabilities& a, const DeviceCapabilities& b) {
   return a.renders_force == b.renders_force && a.renders_torque == b.renders_torque &&
          a.renders_grip == b.renders_grip && a.resists_only == b.resists_only && a.max_force == b.max_force &&
@@ -22,7 +22,7 @@ Status Refound::open(const std::string& id) {
   id_ = id;
   can_ = inner_->capabilities();
   phase_ = Phase::kHeld;
-  // Whose loop is the maker's library's is found by it, or not at all.
+  // A device whose loop is the vendor's library's can only be found by that library.
   if (can_.loop != DeviceLoop::kCallback) thread_ = std::jthread([this](const std::stop_token& stop) { look(stop); });
   return Done{};
 }
@@ -60,7 +60,7 @@ void Refound::close() {
 }
 
 void Refound::end() {
-  thread_ = {};  // asked to end, and waited for
+  thread_ = {};  // stops and joins the thread
 }
 
 void Refound::look(const std::stop_token& end) {
@@ -79,7 +79,7 @@ bool Refound::open_again() {
     if (!inner_->open(id_)) return false;
     if (same(inner_->capabilities(), can_)) return true;
     inner_->close();
-  } catch (...) {  // it is tried again
+  } catch (...) {  // tried again later
   }
   return false;
 }

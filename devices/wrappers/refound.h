@@ -1,9 +1,9 @@
-// A device that was unplugged is found again: as soon as the driver inside says that its line is gone (Driver::gone), a
-// thread closes it and opens it anew, every kLookEvery, until it is there. Meanwhile nothing is read, and what is
-// written goes nowhere. Innermost of every device that was made by its words (chain.h).
+// Reconnects an unplugged device. When the inner driver reports a lost connection (Driver::gone), a thread closes and
+// reopens it every kLookEvery until it is found. Meanwhile reads return nothing, and writes are dropped. The innermost
+// wrapper of every device created from text (chain.h).
 //
-// The driver inside belongs to one side at a time, and the phase says to which: `kHeld`, whoever calls these functions;
-// `kGone`, the thread. Neither waits for the other, but close() waits until the thread has ended.
+// The inner driver belongs to one side at a time, given by the phase: `kHeld`, the caller of these functions; `kGone`,
+// the thread. Neither waits for the other, but close() waits until the thread has ended.
 #pragma once
 
 #include <atomic>
@@ -34,6 +34,7 @@ class Refound final : public Driver, public CountsDropped {
   bool write_model(const DeviceModel& model, const DeviceWrench& wrench) override;
   void make_safe() noexcept override;
   bool safe_line(SafeLine& line) const override { return held() && inner_->safe_line(line); }
+  std::string node() const override { return held() ? inner_->node() : std::string(); }
   DroppedFrames dropped() const override { return held() ? dropped_frames(*inner_) : DroppedFrames{}; }
   bool gone() const override { return phase_ == Phase::kGone; }
 
@@ -48,7 +49,7 @@ class Refound final : public Driver, public CountsDropped {
   std::string id_;
   DeviceCapabilities can_;
   std::atomic<Phase> phase_{Phase::kHeld};
-  std::condition_variable_any asked_;  // of the thread alone: it waits without allocating
+  std::condition_variable_any asked_;  // only for the thread: it waits without allocating
   std::jthread thread_;
 };
 

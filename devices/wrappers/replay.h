@@ -1,5 +1,5 @@
-// Poses from a file (devices/pose_file.h) in the place of the device's, in its time. The device inside is read, so that
-// it stays alive, and is written zero.
+// Replaces the device's poses by those of a file (devices/pose_file.h), with their timing. The inner device is still
+// read, so that it stays connected, and zero is written to it.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-// Row n comes with the sample of the device inside that is the first at or after its time; the last row stays.
+// Row n is returned with the inner device's first sample at or after its time; the last row is kept.
 class Replay : public Wrapper {
  public:
   Replay(std::unique_ptr<Driver> inner, std::vector<PoseFileRow> rows)

@@ -12,7 +12,7 @@ constexpr double kLongestStep = 0.02;  // [s] of drift between two samples
 DeviceCapabilities Workspace::capabilities() const {
   DeviceCapabilities can = Wrapper::capabilities();
   if (parameters_.border > 0.0 || parameters_.clutch >= 0) {
-    can.workspace = dvec3(0);  // without end
+    can.workspace = dvec3(0);  // unlimited
   } else {
     const dmat3 turn = glm::mat3_cast(parameters_.frame);
     dvec3 turned(0);

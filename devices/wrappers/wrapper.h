@@ -1,8 +1,8 @@
-// A driver around a driver. Whatever a wrapper does not change goes through unchanged: who owns the loop, how to wait,
-// how to switch the motors off. What leaves for the device inside is zero when it is closed.
+// A driver around a driver. Functions that a wrapper does not override are passed on unchanged: the loop's owner,
+// waiting, switching the motors off. When it is closed, zero is written to the inner device.
 //
-// Memory is taken in open() and after; read and write take none. Random wrappers draw from a seed, so that a run can be
-// repeated. A wrapper renders no model itself (write_model): it would have to do to it what it does to samples.
+// Memory is allocated from open() on, but not in read and write. Random wrappers use a seed, so that a run can be
+// repeated. A wrapper does not support write_model, because it would have to transform the model like samples.
 #pragma once
 
 #include <cstdint>
@@ -33,15 +33,16 @@ class Wrapper : public Driver, public CountsDropped {
   Status run(std::function<void()> tick) override { return inner_->run(std::move(tick)); }
   void make_safe() noexcept override { inner_->make_safe(); }
   bool safe_line(SafeLine& line) const override { return inner_->safe_line(line); }
+  std::string node() const override { return inner_->node(); }
   bool gone() const override { return inner_->gone(); }
   DroppedFrames dropped() const override { return dropped_frames(*inner_); }
 
  protected:
-  // The device inside is open: its capabilities are known.
+  // Called when the inner device is open: its capabilities are known.
   virtual Status begin() { return Done{}; }
   Driver& inner() { return *inner_; }
   const Driver& inner() const { return *inner_; }
-  // [Hz] of samples: the device's, or the touch clock's usual one.
+  // [Hz] of samples: the device's, or the touch clock's default.
   double rate() const {
     const double said = Wrapper::capabilities().rate;
     return said > 0.0 ? said : 1000.0;
@@ -49,10 +50,10 @@ class Wrapper : public Driver, public CountsDropped {
 
  private:
   std::unique_ptr<Driver> inner_;
-  std::optional<DeviceCapabilities> inside_;  // asked once: in a chain each wrapper would ask the next several times
+  std::optional<DeviceCapabilities> inside_;  // cached: in a chain each wrapper would query the next several times
 };
 
-// SplitMix64: small, and the same everywhere.
+// SplitMix64: small, and platform-independent.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

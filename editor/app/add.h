@@ -1,4 +1,4 @@
-// What the menu Add adds to the level; each is selected afterwards.
+// Actions of the menu Add; the added node becomes selected.
 #pragma once
 
 #include "editor/app/editor.h"
@@ -6,8 +6,8 @@
 namespace pliant {
 
 void add_empty(Editor& editor);
-void add_probe(Editor& editor);  // above what is selected, or above all; the mouse moves it
+void add_probe(Editor& editor);  // above the selected object, or above all; moved by the mouse
 void add_light(Editor& editor);
-void add_camera(Editor& editor);  // sees what the viewport shows
+void add_camera(Editor& editor);  // with the viewport's current view
 
 }  // namespace pliant

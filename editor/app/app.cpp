@@ -41,7 +41,7 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFla
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
                                     ImGuiWindowFlags_NoBringToFrontOnFocus;
 
-// [ms] that this thread has computed, without what it waited for other threads, programs and the display.
+// [ms] CPU time of this thread, without waiting for other threads, programs and the display.
 double computed_ms() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -82,7 +82,7 @@ void App::set_look() {
 }
 
 App::~App() {
-  play_.stop();  // devices are let go before anything else
+  play_.stop();  // devices are released first
   stage_.reset();
   host_.reset();
 }
@@ -97,13 +97,9 @@ Status App::run() {
     script_ = *std::move(script);
   }
   if (!options_.file.empty() && (find_recovery(options_.file, state_folder()) || lock_holder(options_.file))) {
-    files_->open(options_.file, options_.unit);  // asks which, or who has it
+    files_->open(options_.file, options_.unit);  // asks for a file, or reports who has it open
   } else if (!options_.file.empty()) {
-    auto document = Document::open(options_.file, options_.unit);
-    if (!document) return document.error();
-    editor.take(*std::move(document));
-    settings.used(options_.file);
-    (void)settings.save();  // the next start knows it, whatever becomes of this one
+    files_->load(options_.file, options_.unit, false, [this](const Error& why) { not_opened_ = why; });
   }
   window_.show("Pliant");
   std::uint64_t before = now_ns();
@@ -121,13 +117,14 @@ Status App::run() {
     const std::uint64_t now = now_ns();
     editor.now = static_cast<double>(now - began) * 1e-9;
     if (script_) {
-      // The script's hand alone is on mouse and keys: a pointer that rests where the window opens would take its place.
+      // Only the script controls mouse and keys: a pointer resting over the new window would interfere.
       std::erase_if(events, [](const InputEvent& event) { return event.kind != InputKind::kClose; });
       ui::Script::Surroundings at;
       at.under_way = under_way();
       at.now = editor.now;
       at.screenshot = [this](const std::string& name) { screenshot(fs::path(options_.out) / name); };
       at.figures = [this](const std::string& name) { say_figures(name); };
+      at.felt = [this](const std::string& name) { return write_felt(fs::path(options_.out) / name); };
       at.slow = [this](double seconds) { slow_ = std::clamp(seconds, 0.0, 2.0); };
       at.has_said = [this](const std::string& text) {
         return std::any_of(editor.said.begin(), editor.said.end(),
@@ -138,7 +135,15 @@ Status App::run() {
         take_screenshot(fs::path(options_.out) / "failed.png");
         return s;
       }
-      if (script_->done() && settled()) script_.reset();
+      if (script_->done() && settled()) {
+        if (wants_out_) {  // nobody is there to answer
+          take_screenshot(fs::path(options_.out) / "failed.png");
+          return script_->ended(
+              "closes a level with changes that are in no file, and answers no question; end with "
+              "`click Unsaved/Discard` or `click Unsaved/Save`");
+        }
+        script_.reset();
+      }
     }
     if (std::exchange(look_changed_, false)) {
       set_look();
@@ -146,6 +151,7 @@ Status App::run() {
     }
     frame(events, static_cast<double>(now - before) * 1e-9);
     before = now;
+    if (not_opened_) return *not_opened_;
     window_.present();
   }
   files_->close_in_order();
@@ -159,7 +165,7 @@ std::string App::under_way() const {
   }
   if (editor.painting->working()) return "a stroke";
   if (editor.camera.moving()) return "the camera's way";
-  if (play_.on()) return play_.ready() ? "" : "opening the level to play";  // its pictures go on for ever
+  if (play_.on()) return play_.ready() ? "" : "opening the level to play";  // playing redraws forever
   if (rendered_.waits()) return "the rendered picture";
   return stage_->busy() || picture_.order != order_ || dirty_picture_ ? "a picture" : "";
 }
@@ -228,6 +234,7 @@ bool App::save() {
 }
 
 void App::close() {
+  wants_out_ = true;
   leave_document([this] { closing_ = true; });
 }
 
@@ -266,8 +273,7 @@ void App::keys(std::span<const InputEvent> events) {
   }
 }
 
-// Keys belong to the field that is typed into first, then to the menu, the dialog or the widget that the keyboard has
-// reached, then to the program.
+// Keys go to the text field with focus, then to the menu, dialog or widget with keyboard focus, then to the program.
 bool App::shortcut_counts(const Action& action, const InputEvent& event) const {
   const ViewTool* const t = const_cast<App*>(this)->tool();
   if ((ImGui::GetIO().WantTextInput || (t && t->wants_keys())) && !action.while_typing) return false;
@@ -314,7 +320,7 @@ void App::frame(std::span<const InputEvent> arrived, double dt) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float rows = top_has_two_rows() ? kTop + kTopRow : kTop;
   const ImVec2 points(size.x / ui::scale(), size.y / ui::scale());
-  // What is wished for, and less of it in a small window: the viewport keeps its room.
+  // The wished size, reduced in a small window so that the viewport keeps its space.
   const auto shown = [](double wish, float least, float most) {
     return std::clamp(wish, static_cast<double>(least), static_cast<double>(std::max(most, least)));
   };
@@ -336,7 +342,7 @@ void App::frame(std::span<const InputEvent> arrived, double dt) {
   for (auto it = editor.said.rbegin(); it != editor.said.rend() && it - editor.said.rbegin() < 8; ++it)
     ui::draws(it->text);
   if (const std::string news = ui::take_undrawable(); !news.empty()) editor.say(news, Severity::kWarning);
-  editor.hovered = kNoNode;  // the tree and the viewport say what it is
+  editor.hovered = kNoNode;  // set again by the tree and the viewport
   draw_top(top);
   draw_side(Panel::Place::kLeft, {0, top}, {left - seam, bar});
   draw_side(Panel::Place::kRight, {right + seam, top}, {size.x, bar});
@@ -353,6 +359,7 @@ void App::frame(std::span<const InputEvent> arrived, double dt) {
     }
   draw_banners();
   draw_toasts();
+  draw_opening();
   ask_to_leave();
   draw_question();
   wanted_tabs_.clear();
@@ -388,7 +395,7 @@ float App::tools_width(bool signs) const {
   float wide = 0;
   for (const auto& each : tools_)
     wide += ImGui::CalcTextSize(signs ? each->sign() : each->name()).x + 2 * style.FramePadding.x + ui::px(2);
-  return wide + ui::px(ui::kWide) + 5 * (ImGui::GetFrameHeight() + ui::px(8));  // buttons that play
+  return wide + ui::px(ui::kWide) + 5 * (ImGui::GetFrameHeight() + ui::px(8));  // play buttons
 }
 
 bool App::top_has_two_rows() const {
@@ -425,13 +432,13 @@ void App::draw_top(float high) {
     ImGui::SameLine(0, ui::px(ui::kWide));
     draw_play_buttons();
   };
-  if (!two_rows) {  // what the mouse does in the viewport, after the menus
+  if (!two_rows) {  // viewport tools, after the menus
     ImGui::SameLine(0, ui::px(ui::kWide));
     tools();
     ImGui::SameLine();
     used = ImGui::GetCursorPosX();
   }
-  // The document in the middle of what is left; how it is shown at the right.
+  // The document's title in the centre of the remaining space; view modes at the right.
   const float buttons =
       ImGui::CalcTextSize("SolidRendered").x + 4 * ImGui::GetStyle().FramePadding.x + ui::px(2 + ui::kPad);
   const std::string title = printable(editor.document.title()) + (files_->read_only() ? " (read-only)" : "") +
@@ -481,7 +488,7 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
     ImGui::End();
     return;
   }
-  // As much air in the tabs as lets every name be read.
+  // Padding of the tabs such that all names are readable.
   float names = 0, tabs = 0;
   for (const auto& each : panels_) {
     if (each->place() != place || !each->shown(editor)) continue;
@@ -509,7 +516,7 @@ void App::draw_side(Panel::Place place, ImVec2 low, ImVec2 high) {
       ImGui::PopStyleVar(2);
       ui::known_as(std::string("Tab/") + each->name());
       if (!open) continue;
-      ui::underline_item();  // told apart from one under the pointer
+      ui::underline_item();  // distinguishes it from a hovered one
       ImGui::BeginChild(each->name());
       {
         const ui::Scope scope(each->name());
@@ -579,7 +586,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   in.shift = io.KeyShift;
   in.control = io.KeyCtrl;
   in.alt = io.KeyAlt;
-  // The hand points at what it sees, though the camera may be ahead of the picture.
+  // Input refers to the displayed picture, though the camera may be ahead of it.
   in.view = picture_.number > 0 ? picture_.view : editor.camera.viewpoint();
   in.orthographic = picture_.number > 0 ? picture_.orthographic : orthographic();
   if (!io.WantTextInput) {
@@ -600,7 +607,7 @@ void App::draw_viewport(ImVec2 low, ImVec2 high, double dt) {
   const ImVec2 away(io.MousePos.x - pressed_at_.x, io.MousePos.y - pressed_at_.y);
   if (std::hypot(away.x, away.y) > ui::px(kClick)) moved_since_press_ = true;
 
-  // The tool has the first word, then the camera, then selecting.
+  // Input goes to the tool first, then to the camera, then to selection.
   bool taken = false;
   const bool playing = play_.on();
   if (!in.alt && playing) taken = touch(in);
@@ -734,7 +741,7 @@ void App::draw_bottom_bar() {
   ImGui::End();
 }
 
-// What went wrong stays in sight until it has been read.
+// An error stays visible until it has been read.
 void App::draw_toasts() {
   if (editor.said.empty()) return;
   const Said& last = editor.said.back();
@@ -798,6 +805,7 @@ void App::ask_to_leave() {
   ImGui::SameLine();
   if (ui::button("Cancel", "Esc", true, 110) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
     after_leaving_ = nullptr;
+    wants_out_ = false;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();

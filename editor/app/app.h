@@ -1,4 +1,4 @@
-// The program `pliant edit`: a window, its panels around the viewport, and a turn of its loop.
+// The program `pliant edit`: a window, the panels around the viewport, and one iteration of its loop.
 #pragma once
 
 #include <deque>
@@ -35,7 +35,7 @@ class App {
   Settings settings;
   Stage& stage() { return *stage_; }
   Play& play() { return play_; }
-  void toggle_play();              // play, pause, go on
+  void toggle_play();              // play, pause, resume
   void step_play(double seconds);  // 0: one tick
   Window& window() { return window_; }
   const std::vector<Action>& actions() const { return actions_; }
@@ -43,34 +43,34 @@ class App {
   ViewTool* tool();
   void take_tool(const std::string& name);
   Panel* panel(const std::string& name);
-  void show_panel(const std::string& name);  // its tab comes to the front; a dialog opens
-  bool is_open(const std::string& name) const { return open_.contains(name) && open_.at(name); }  // of a dialog
+  void show_panel(const std::string& name);  // brings its tab to the front; opens a dialog
+  bool is_open(const std::string& name) const { return open_.contains(name) && open_.at(name); }  // for dialogs
   void close_panel(const std::string& name) { open_[name] = false; }
-  std::string keys_of(const Action& action) const;  // as bound now
+  std::string keys_of(const Action& action) const;  // with current bindings
   std::string keys_of(const std::string& id) const;
   void do_action(const std::string& id);
 
   Files& files() { return *files_; }
   const std::vector<std::filesystem::path>& shipped() const { return options_.levels; }
-  void ask(Question question);                   // questions are asked one after the other
-  void look_changed() { look_changed_ = true; }  // of the settings; holds from the next frame on
-  // The keys page waits for new keys of this action, and gets them as text in `rebound`.
+  void ask(Question question);                   // questions are asked one at a time
+  void look_changed() { look_changed_ = true; }  // for settings; applied at the next frame
+  // While the keys page waits for a new binding of this action, it is returned as text in `rebound`.
   std::string rebinding, rebound;
 
-  // What was dropped on the window: files, folders, several at once (app/drop.cpp).
+  // Handles drops on the window: files, folders, several at once (app/drop.cpp).
   void drop(const std::vector<std::string>& files);
-  // Opens a file, asking first where something is not saved.
+  // Opens a file; asks first if there are unsaved changes.
   void open(const std::filesystem::path& file);
   void new_document();
-  bool save();  // false: asks for a name, or failed
+  bool save();  // false: it asks for a name, or saving failed
   // Runs `then` at once, or after asking what to do with unsaved changes.
   void leave_document(std::function<void()> then);
-  void close();  // the window, asking first
+  void close();  // closes the window; asks first
   ImVec2 viewport_corner() const { return viewport_low_; }
   ImVec2 viewport_size() const { return {viewport_high_.x - viewport_low_.x, viewport_high_.y - viewport_low_.y}; }
   const StagePicture& picture() const { return picture_; }
   void screenshot(const std::filesystem::path& file);  // of the next frame
-  std::vector<ViewLine> extra_lines;                   // of panels, for the next picture; cleared every frame
+  std::vector<ViewLine> extra_lines;                   // from panels, for the next picture; cleared every frame
 
  private:
   void frame(std::span<const InputEvent> arrived, double dt);
@@ -80,7 +80,7 @@ class App {
   void draw_menus();
   void draw_menu(const std::string& group);
   void draw_view_mode();
-  float tools_width(bool signs) const;  // [pixel] of the row of tools, and of the buttons that play
+  float tools_width(bool signs) const;  // [pixel] of the toolbar, and of the play buttons
   bool top_has_two_rows() const;
   void draw_bottom_bar();
   void draw_side(Panel::Place place, ImVec2 low, ImVec2 high);
@@ -89,20 +89,22 @@ class App {
   bool ask_for_devices();
   void begin_play();
   void draw_play_buttons();
+  Status write_felt(const std::filesystem::path& file) const;  // of the last run, a row a tick
   void draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high);
-  bool touch(const ViewportInput& in);  // the mouse in a level that is played; true: it is taken
-  bool as_played() const;               // the picture is the renderer's
-  double orthographic() const;          // [m]; the renderer has perspective alone
+  bool touch(const ViewportInput& in);  // mouse input in a played level; true: handled
+  bool as_played() const;               // the picture comes from the renderer
+  double orthographic() const;          // [m]; the renderer has only perspective
   void draw_toasts();
-  // `shown` [point]: the size as it is drawn, which may be less than what is wished for; a drag goes on from it.
+  // `shown` [point]: the drawn size, possibly smaller than the wished one; a drag starts from it.
   void splitter(const char* name, double& place, double shown, bool vertical, ImVec2 low, ImVec2 high, double sign);
   void order_picture();
+  void draw_opening();  // what takes long to open can be given up
   void ask_to_leave();
   void draw_question();
   void draw_banners();
   void set_look();
   bool settled() const { return under_way().empty(); }
-  std::string under_way() const;  // what keeps the editor from being at rest; "": nothing
+  std::string under_way() const;  // what the editor is still doing; "": nothing
   void say_figures(const std::string& name);
   void take_screenshot(const std::filesystem::path& file);
 
@@ -117,10 +119,10 @@ class App {
   std::vector<Action> actions_;
   std::optional<ui::Script> script_;
   std::map<std::string, bool> open_;   // dialogs
-  std::set<std::string> wanted_tabs_;  // come to the front in the next frame
+  std::set<std::string> wanted_tabs_;  // brought to the front in the next frame
   std::string wanted_menu_;            // opens in the next frame
-  bool menu_by_hover_ = false;         // the open menu was not pressed
-  bool popup_was_open_ = false;        // when this frame began: Esc is its own
+  bool menu_by_hover_ = false;         // the open menu was opened by hovering
+  bool popup_was_open_ = false;        // at the start of this frame: Esc belongs to it
   StagePicture picture_;
   std::string said_trouble_;  // of pictures
   std::uint64_t order_ = 0, question_ = 0;
@@ -129,31 +131,34 @@ class App {
   CreaseLines creases_;
   std::pair<int, int> viewport_size_now() const;  // [pixel] of a picture
   std::pair<int, int> ordered_size_{0, 0};
-  SolidOrder ordered_;           // of the last picture that was ordered; its state is not kept
-  bool wants_question_ = false;  // the mouse has moved since the last question
+  SolidOrder ordered_;           // of the last ordered picture; its state is not kept
+  bool wants_question_ = false;  // the mouse has moved since the last pick request
   ImVec2 viewport_low_{0, 0}, viewport_high_{1, 1};
   bool dragging_view_ = false, pressed_in_view_ = false, moved_since_press_ = false;
   ImVec2 pressed_at_{0, 0};
   Play play_{editor};
   Rendered rendered_;
   enum class Hand : std::uint8_t { kNone, kAsked, kHolds, kView };
-  Hand hand_ = Hand::kNone;               // what a press in a level that is played has become
-  std::uint64_t hand_asked_ = 0;          // the question whose answer decides that
-  bool hand_pulls_ = false;               // it was pressed with Ctrl
+  Hand hand_ = Hand::kNone;               // what a press in a played level has become
+  std::uint64_t hand_asked_ = 0;          // the pick request that decides it
+  bool hand_pulls_ = false;               // pressed with Ctrl
   std::vector<ViewLine> lines_;           // of the picture ordered last
-  std::optional<std::uint64_t> selects_;  // the question whose answer is selected
+  std::optional<std::uint64_t> selects_;  // the pick request whose result will be selected
   bool select_adds_ = false;
   bool closing_ = false, dirty_picture_ = true;
+  bool wants_out_ = false;               // it was asked to close, and may still have a question
+  bool opening_shown_ = false;           // its dialog was there in the frame before
+  std::optional<Error> not_opened_;      // why the file that it was started with is not there
   std::function<void()> after_leaving_;  // what waits for an answer about unsaved changes
   std::deque<Question> questions_;
   bool look_changed_ = false;
   std::filesystem::path shot_;
   std::uint64_t shown_revision_ = ~std::uint64_t{0};
   ViewSettings shown_view_;
-  double frame_ms_ = 0.0;  // of the interface
+  double frame_ms_ = 0.0;  // of the user interface
   double most_computed_ms_ = 0.0;
   std::vector<double> frames_ms_;  // while a script runs
-  double slow_ = 0.0;              // [s] that a frame takes at least, as a script says
+  double slow_ = 0.0;              // [s] minimal frame time, set by a script
 };
 
 }  // namespace pliant

@@ -1,8 +1,9 @@
-// Playing in the program: its buttons, the mouse that touches, and what stands over the picture meanwhile.
+// Playing in the program: its buttons, the mouse that touches, and the overlay meanwhile.
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "content/files/file_io.h"
 #include "editor/app/app.h"
 #include "editor/play/run_findings.h"
 #include "editor/ui/widgets.h"
@@ -24,7 +25,7 @@ double App::orthographic() const {
   return editor.view.orthographic && !as_played() ? editor.camera.orthographic_height() : 0.0;
 }
 
-// What the level asks for beyond what a level may is opened only once it has been shown and allowed.
+// Devices beyond those that a level may request are opened only after the user has seen and allowed them.
 bool App::ask_for_devices() {
   const std::vector<LevelRequest> asked = play_.on() ? std::vector<LevelRequest>() : play_.asks();
   if (asked.empty()) return false;
@@ -52,7 +53,7 @@ void App::toggle_play() {
 
 void App::begin_play() {
   if (!play_.on()) {
-    take_tool("Select");  // the mouse touches
+    take_tool("Select");  // this tool lets the mouse touch
     show_panel("Plots");
   }
   play_.toggle();
@@ -60,6 +61,16 @@ void App::begin_play() {
 
 void App::step_play(double seconds) {
   play_.step(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(seconds * play_.status().rate))));
+}
+
+Status App::write_felt(const std::filesystem::path& file) const {
+  std::string rows = "tick,time_s,probe,force_N,depth_m\n";
+  for (const PlayTrace& trace : play_.traces())
+    for (const PlaySample& each : trace.samples)
+      rows += fmt::format("{},{:.9g},{},{:.9g},{:.9g}\n", each.tick, each.time, trace.name, each.force, each.depth);
+  std::error_code ignored;
+  if (!file.parent_path().empty()) std::filesystem::create_directories(file.parent_path(), ignored);
+  return write_file(file, std::span(reinterpret_cast<const std::uint8_t*>(rows.data()), rows.size()));
 }
 
 void App::draw_play_buttons() {
@@ -95,8 +106,7 @@ void App::draw_play_buttons() {
     play_.restart();
 }
 
-// What is pressed is known once a picture has said what stands there: a surface, a tool, or neither, which turns the
-// view.
+// A press is classified after picking: a surface, a tool, or neither, which rotates the view.
 bool App::touch(const ViewportInput& in) {
   PlayHand* const hand = play_.hand();
   if (!hand || !play_.ready() || editor.tool != "Select") {
@@ -108,7 +118,7 @@ bool App::touch(const ViewportInput& in) {
     ++question_;
     dirty_picture_ |= in.dx != 0 || in.dy != 0 || hand_ != Hand::kNone || !play_.paused();
   }
-  const bool pulls = in.control && hand->over() == PlayHand::Over::kBody;  // else Ctrl drags a frame
+  const bool pulls = in.control && hand->over() == PlayHand::Over::kBody;  // otherwise Ctrl drags a frame
   if (in.pressed && !in.shift && (!in.control || pulls)) {
     hand_ = Hand::kAsked;
     hand_pulls_ = pulls;
@@ -138,7 +148,7 @@ bool App::touch(const ViewportInput& in) {
 
 void App::draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high) {
   const ui::Palette& p = ui::palette();
-  if (as_played()) {  // the renderer draws the level alone
+  if (as_played()) {  // the renderer draws only the level
     const int width = static_cast<int>(high.x - low.x), height = static_cast<int>(high.y - low.y);
     for (const ViewLine& line : lines_) {
       const auto from = on_picture(picture_.view, 0.0, width, height, dvec3(line.from)),
@@ -172,7 +182,7 @@ void App::draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high) {
   list.AddText(corner, ui::color(color), text.c_str());
   ImGui::PopFont();
   if (waits) return;
-  // What every hand feels, in words and numbers.
+  // The force on each hand, in words and numbers.
   float y = corner.y + size.y + ui::px(10);
   for (const PlayEffector& each : s.effectors) {
     if (!each.reading.touching) continue;
@@ -182,6 +192,7 @@ void App::draw_play_over(ImDrawList& list, ImVec2 low, ImVec2 high) {
     list.AddRectFilled({corner.x - ui::px(8), y - ui::px(3)}, {corner.x + wide.x + ui::px(8), y + wide.y + ui::px(3)},
                        ui::color(p.window, 0.95f), ui::px(4));
     list.AddText({corner.x, y}, ui::color(p.text), felt.c_str());
+    ui::known_at("Play/" + each.name + " touches", {corner.x, y}, {corner.x + wide.x, y + wide.y});
     y += wide.y + ui::px(8);
   }
   for (const RunFinding& each : run_findings(editor.state(), s, play_.traces())) {

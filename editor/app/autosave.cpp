@@ -22,7 +22,7 @@ void Autosave::update(Editor& editor) {
   if (!editor.document.dirty()) {
     if (written_ != ~std::uint64_t{0}) {
       place_->forget();
-      place_.reset();  // another one at the next change
+      place_.reset();  // a new one at the next change
     }
     return;
   }

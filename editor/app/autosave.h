@@ -1,4 +1,4 @@
-// Writes what is not saved yet, now and then, in the background; nothing that was done is lost with the program.
+// Periodically saves unsaved changes in the background, so that a crash loses little.
 #pragma once
 
 #include <cstdint>
@@ -14,30 +14,30 @@ class Editor;
 class Autosave {
  public:
   explicit Autosave(std::filesystem::path state_folder) : state_folder_(std::move(state_folder)) {}
-  double interval = 30.0;  // [s] between two copies; what is lost at most, and what is done while a copy is written
+  double interval = 30.0;  // [s] between two copies; at most this much, and what is done during writing, is lost
 
-  // Another editor has the document's file open: copies do not go where its own go.
+  // Another editor has the document's file open: copies must not replace that editor's.
   bool shared = false;
 
-  // Once a frame. A copy is written where the document differs from its file and from the copy before, and taken away
-  // where it does not differ from its file any more, or another document was opened.
+  // Call once per frame. Writes a copy if the document differs from its file and from the last copy; removes it if the
+  // document equals its file again, or another document was opened.
   void update(Editor& editor);
-  // At once, on this thread: the program has to end.
+  // At once, on this thread: the program must end.
   void write_now(Editor& editor);
-  // The document is closed in order.
+  // The document is closed normally.
   void forget();
-  bool has_copy() const { return place_ && place_->written(); }  // of the document that is open
+  bool has_copy() const { return place_ && place_->written(); }  // of the open document
 
  private:
   void follow(const Editor& editor);
   std::filesystem::path state_folder_;
   std::shared_ptr<RecoveryPlace> place_;
   std::shared_ptr<std::atomic<bool>> writes_ = std::make_shared<std::atomic<bool>>(false);
-  std::uint64_t document_ = ~std::uint64_t{0};  // Editor::documents that `place_` is of
+  std::uint64_t document_ = ~std::uint64_t{0};  // Editor::documents for `place_`
   std::filesystem::path file_;
   bool of_shared_ = false;
   std::uint64_t written_ = ~std::uint64_t{0};  // revision
-  double began_ = -1e9;                        // [s] the copy before
+  double began_ = -1e9;                        // [s] time of the last copy
   bool said_ = false;
 };
 

@@ -1,13 +1,21 @@
 // The program's questions, and lines over the viewport.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "editor/app/app.h"
+#include "editor/app/files.h"
 #include "editor/ui/fonts.h"
 #include "editor/ui/seen.h"
 #include "editor/ui/widgets.h"
 #include "runtime/printable.h"
 
 namespace pliant {
+namespace {
+
+constexpr double kLongOpening = 0.3;  // [s] what opens sooner shows no dialog
+
+}  // namespace
 
 void App::ask(Question question) {
   questions_.push_back(std::move(question));
@@ -42,7 +50,7 @@ void App::draw_question() {
     if (first ? ui::strong_button(answer.label.c_str(), answer.hint.c_str())
               : ui::button(answer.label.c_str(), answer.hint.c_str()))
       taken = &answer;
-    if (first && ImGui::IsWindowAppearing()) {  // Enter takes what is to be expected
+    if (first && ImGui::IsWindowAppearing()) {  // Enter selects the default
       ImGui::SetItemDefaultFocus();
       ui::lead_by_keyboard();
     }
@@ -58,11 +66,44 @@ void App::draw_question() {
   ImGui::EndPopup();
 }
 
+void App::draw_opening() {
+  const std::optional<Jobs::Progress> opening = editor.jobs.progress(Files::kOpenJob);
+  const bool shown = opening && opening->seconds > kLongOpening && questions_.empty() && !after_leaving_;
+  if (!shown && !opening_shown_) return;
+  const ui::Scope scope("Opening");
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  if (shown) ImGui::OpenPopup("Opening");
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.4f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  opening_shown_ = ImGui::BeginPopupModal(
+      "Opening", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove);
+  if (!opening_shown_) return;
+  if (shown) {
+    const float wide = std::min(ui::px(420), 0.7f * size.x);
+    ui::title(ui::fitted(printable(opening->what), *ui::font(ui::Type::kTitle), wide, ui::px(60)).c_str());
+    ui::gap(ui::kGap);
+    ImGui::ProgressBar(static_cast<float>(opening->share), {wide, ui::px(6)}, "");
+    ui::dim(ui::fitted(fmt::format("{:.0f} s  {}", opening->seconds, printable(opening->doing)), *ImGui::GetFont(),
+                       wide, ImGui::GetFontSize())
+                .c_str());
+    ui::gap(ui::kPad);
+    const bool gives_up = ui::button("Cancel", "Esc", true, 110);
+    if (ImGui::IsWindowAppearing()) {
+      ImGui::SetItemDefaultFocus();
+      ui::lead_by_keyboard();
+    }
+    if (gives_up || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) files_->give_up_opening();
+  } else {
+    opening_shown_ = false;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
 void App::draw_banners() {
   float y = viewport_low_.y + ui::px(ui::kPad);
   for (const auto& each : panels_) {
     if (each->place() != Panel::Place::kBanner || !each->shown(editor)) continue;
-    // Where there is little room, beside the cross at the right.
+    // In a small viewport, beside the axis cross at the right.
     const bool narrow = viewport_high_.x - viewport_low_.x < ui::px(640);
     ImGui::SetNextWindowPos(
         {narrow ? viewport_low_.x + ui::px(ui::kPad) : 0.5f * (viewport_low_.x + viewport_high_.x), y},

@@ -1,5 +1,5 @@
-// What is dropped on the window: levels and meshes are opened, a panorama surrounds the level, a script moves a probe,
-// tetrahedra fill a soft body, a folder is shown; what is none of these is said in a sentence.
+// Files dropped on the window: a level or mesh is opened, a panorama becomes the environment, a script moves a probe,
+// tetrahedra fill a soft body, a folder is shown; others are rejected with a sentence.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,14 +44,14 @@ std::string name_of(const fs::path& file) {
   return printable(file.filename().string());
 }
 
-// As a level names it: a URI, relative to the folder.
+// As a URI relative to the folder, for use in a level.
 std::string uri_of(const fs::path& relative) {
   std::string uri;
   for (const char c : relative.generic_string()) uri += c == '%' ? std::string("%25") : std::string(1, c);
   return uri;
 }
 
-// Beside the level, where it is not there yet: a level reaches no further than its folder. `then` gets its name.
+// Copies a file beside the level if needed, because a level can only refer to its own folder. `then` receives its name.
 void beside_the_level(App& app, const fs::path& file, const std::string& use,
                       const std::function<void(const std::string&)>& then) {
   std::error_code failed;
@@ -148,7 +148,7 @@ void tetrahedra(App& app, const fs::path& file) {
             {"Cancel", "", {}}}});
 }
 
-// Several that could be opened: a window has one level.
+// Several files that could be opened: a window has one level.
 void choose_one(App& app, const std::vector<fs::path>& files) {
   constexpr std::size_t kMostAnswers = 5;
   Question which{fmt::format("{} files were dropped; which one is opened?", files.size()), {}, {}};
@@ -167,7 +167,7 @@ void App::drop(const std::vector<std::string>& names) {
   std::vector<fs::path> opened, rest;
   for (const std::string& name : names) (kind_of(name) == Dropped::kOpens ? opened : rest).emplace_back(name);
   const bool empty = editor.state().nodes.empty() && editor.document.file().empty();
-  // Of parts alone, tetrahedra of an empty window are a level.
+  // In an empty window, tetrahedra alone are opened as a level.
   if (opened.empty() && empty)
     for (auto it = rest.begin(); it != rest.end();) {
       const bool takes = kind_of(*it) == Dropped::kTetrahedra;

@@ -4,6 +4,7 @@
 #include <unordered_set>
 
 #include "devices/choose.h"
+#include "editor/document/resting_mesh.h"
 #include "editor/tools/painting.h"
 #include "editor/viewport/frames.h"
 
@@ -32,6 +33,7 @@ void Editor::take(Document next) {
   selected.clear();
   hovered = kNoNode;
   surfaces_.clear();
+  resting_.clear();
   findings.clear();
   found_at = ~std::uint64_t{0};
   camera.home(scene_box());
@@ -127,7 +129,8 @@ Box Editor::scene_box() const {
 
 void Editor::frame_selected() {
   Box box = bounds_of(state(), selected);
-  if (!box.empty() && !(box.diagonal() > 0.0f)) {  // a place without a size: as much around it as tells where it is
+  if (!box.empty() && !(box.diagonal() > 0.0f)) {  // a box of zero size: enlarge it so that its surroundings are
+                                                   // visible
     const float whole = scene_box().diagonal(), half = whole > 0.0f ? 0.1f * whole : 0.05f;
     box.min -= half;
     box.max += half;
@@ -144,7 +147,7 @@ std::shared_ptr<const PaintSurface> Editor::surface_of(NodeId id) {
   for (const auto& each : surfaces_)
     if (each->mesh == mesh && each->frame == frame) {
       if (each->surface || each->failed || jobs.running(each->job)) return each->surface;
-      surfaces_.erase(std::find(surfaces_.begin(), surfaces_.end(), each));  // its job made way for another's
+      surfaces_.erase(std::find(surfaces_.begin(), surfaces_.end(), each));  // its job was replaced by another one
       break;
     }
   if (surfaces_.size() > 32) surfaces_.erase(surfaces_.begin());
@@ -182,6 +185,80 @@ std::shared_ptr<const PaintSurface> Editor::surface_now(NodeId id) {
   for (const auto& each : surfaces_)
     if (each->mesh == mesh && each->frame == frame) each->surface = ready;
   return ready;
+}
+
+bool Editor::rests_by_itself(NodeId id) const {
+  const DocumentNode* const node = state().find(id);
+  return node && node->node.mesh >= 0 && node->node.soft_body && !node->node.handle &&
+         length(state().simulation.gravity) > 0.0;
+}
+
+namespace {
+
+Editor::Ground made_ground(const Level& level, std::int32_t node, const dmat3& frame,
+                           const std::filesystem::path& folder, const std::stop_token& stop,
+                           const std::atomic<bool>* stopped) {
+  const RestingMesh rest = resting_mesh(level, node, folder, stop);
+  Editor::Ground out{.ready = true, .sag = rest.sag, .held = rest.held, .falls = rest.falls};
+  if (auto surface = PaintSurface::make(rest.mesh, frame, stopped))
+    out.surface = std::make_shared<const PaintSurface>(*std::move(surface));
+  return out;
+}
+
+std::int32_t numbered(const Level& level, const std::string& name) {
+  const auto at =
+      std::find_if(level.nodes.begin(), level.nodes.end(), [&](const LevelNode& n) { return n.name == name; });
+  return static_cast<std::int32_t>(at - level.nodes.begin());
+}
+
+}  // namespace
+
+// The entry of a soft body as it stands now; a new one is not ready.
+std::shared_ptr<Editor::Resting> Editor::resting_of(NodeId id) {
+  auto wanted = std::make_shared<Resting>();
+  wanted->node = state().nodes[state().place(id)];
+  const auto mesh = static_cast<std::uint32_t>(wanted->node->node.mesh);
+  wanted->mesh = state().meshes[mesh];
+  wanted->to_world = state().to_world(id);
+  wanted->gravity = state().simulation.gravity;
+  for (const auto& [key, layer] : state().paint)
+    if (key.mesh == mesh && key.channel == Channel::kPinned) wanted->pinned.push_back(layer);
+  for (const auto& each : resting_)
+    if (each->node == wanted->node && each->mesh == wanted->mesh && each->to_world == wanted->to_world &&
+        each->gravity == wanted->gravity && each->pinned == wanted->pinned)
+      return each;
+  std::erase_if(resting_, [&](const auto& each) { return each->node->id == id; });
+  resting_.push_back(wanted);
+  return wanted;
+}
+
+Editor::Ground Editor::ground_of(NodeId id) {
+  if (!rests_by_itself(id)) {
+    const auto surface = surface_of(id);
+    return {.surface = surface, .ready = surface || !jobs.running("surface " + std::to_string(id))};
+  }
+  const std::shared_ptr<Resting> entry = resting_of(id);
+  const std::string job = "ground " + std::to_string(id);
+  if (entry->ground.ready || jobs.running(job)) return entry->ground;
+  auto level = std::make_shared<Level>(level_of(state()));
+  jobs.start(job, "Preparing " + entry->node->node.name,
+             [entry, level, folder = document.folder()](const Jobs::Stop& stop) {
+               const Ground made = made_ground(*level, numbered(*level, entry->node->node.name), dmat3(entry->to_world),
+                                               folder, stop.source.get_token(), &stop);
+               return [entry, made](Editor&) { entry->ground = made; };
+             });
+  return entry->ground;
+}
+
+Editor::Ground Editor::ground_now(NodeId id) {
+  if (!rests_by_itself(id)) return {.surface = surface_now(id), .ready = true};
+  const std::shared_ptr<Resting> entry = resting_of(id);
+  if (!entry->ground.ready) {
+    const Level level = level_of(state());
+    entry->ground = made_ground(level, numbered(level, entry->node->node.name), dmat3(entry->to_world),
+                                document.folder(), {}, nullptr);
+  }
+  return entry->ground;
 }
 
 void Editor::copy() {

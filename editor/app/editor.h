@@ -1,5 +1,5 @@
-// What the editor holds and every panel sees: the document, what is selected, how it is shown, what is being done. No
-// window is needed for it, so tests drive it as panels do.
+// The state of the editor that all panels share: document, selection, view settings, running work. It needs no window,
+// so tests use it like the panels.
 #pragma once
 
 #include <array>
@@ -21,22 +21,22 @@
 
 namespace pliant {
 
-// A line of the console; the newest is shown over the viewport for a while.
+// A line of the console; the newest is also shown over the viewport for a while.
 struct Said {
-  double time = 0.0;  // [s] since the editor began
+  double time = 0.0;  // [s] since the editor's start
   Severity severity = Severity::kNote;
   std::string text;
-  int times = 1;  // the same, in a row
+  int times = 1;  // repeated in a row
 };
 
-// What a finding offers to do about it.
+// A remedy that a finding offers.
 struct QuickFix {
   std::string label;
   std::function<Result<State>(const State&, NodeId& next_id)> fix;
 };
 struct EditorFinding {
   Finding finding;
-  NodeId node = kNoNode;  // that it is about
+  NodeId node = kNoNode;  // that it concerns
   std::optional<QuickFix> fix;
 };
 
@@ -50,41 +50,42 @@ class Editor {
   // --- Document
   Document document;
   const State& state() const { return document.state(); }
-  // The one way of every panel and tool to change the level: says what went wrong. True: it is as was asked.
+  // All panels and tools change the level only through this; reports errors. True: the level is as requested.
   bool apply(const std::string& what, Result<State> next, const std::string& gesture = {});
-  // Replaces the document; asks nothing.
+  // Replaces the document without asking.
   void take(Document next);
-  std::uint64_t documents = 0;                                                              // taken so far
-  void revert_to(Level level, const FileStamp& stamp, const std::string& what = "Revert");  // as Document; keeps what
-                                                                                            // is selected, by name
-  void go_to_step(std::size_t step);                                                        // of the document's history
+  std::uint64_t documents = 0;                                                              // number of documents taken
+                                                                                            // so far
+  void revert_to(Level level, const FileStamp& stamp, const std::string& what = "Revert");  // as Document; keeps the
+                                                                                            // selection, by name
+  void go_to_step(std::size_t step);                                                        // in the document's history
   void undo();
   void redo();
-  void drop_gesture(const std::string& gesture);  // what is being dragged goes back to where it was
-  // Called after every change of what is shown, undo and redo included.
+  void drop_gesture(const std::string& gesture);  // undoes the drag in progress
+  // Called after every change of the shown state, including undo and redo.
   std::vector<std::function<void(const State& before, const State& after)>> on_change;
 
   // --- Selection
-  std::vector<NodeId> selected;  // the last is the active one
+  std::vector<NodeId> selected;  // the last one is active
   NodeId hovered = kNoNode;
-  NodeId renaming = kNoNode;  // the tree takes a new name for it
+  NodeId renaming = kNoNode;  // the node being renamed in the tree
   NodeId active() const { return selected.empty() ? kNoNode : selected.back(); }
   const DocumentNode* active_node() const { return document.state().find(active()); }
   bool is_selected(NodeId id) const;
-  void select(NodeId id, bool add = false);  // kNoNode: nothing; `add` turns one on or off
-  void forget_gone();                        // what is selected but not there any more
+  void select(NodeId id, bool add = false);  // kNoNode: none; `add` toggles one
+  void forget_gone();                        // removes deleted nodes from the selection
 
-  // --- What is said
+  // --- Messages
   void say(const std::string& text, Severity severity = Severity::kNote);
   std::deque<Said> said;  // oldest first, at most kMostSaid
   static constexpr std::size_t kMostSaid = 2000;
-  double now = 0.0;  // [s] since the editor began; the frame's
+  double now = 0.0;  // [s] since the editor's start; of the frame
 
-  // --- Findings of the document as it stands
+  // --- Findings of the current document
   std::vector<EditorFinding> findings;
-  std::uint64_t found_at = ~std::uint64_t{0};  // the revision that they are of
+  std::uint64_t found_at = ~std::uint64_t{0};  // the revision they belong to
   std::vector<EditorFinding> run_findings;     // of the last run, until the next
-  std::uint64_t files_read = 0;  // grows when a file that the level names (a script, a panorama) is another one on disk
+  std::uint64_t files_read = 0;  // incremented when a referenced file (a script, a panorama) changes on disk
 
   // --- View
   ViewSettings view;
@@ -92,11 +93,21 @@ class Editor {
   Box scene_box() const;  // [m] world
   void frame_selected();  // or all
 
-  // --- Surfaces to paint and to point at, by mesh and scale; made in the background
-  // Null: not ready yet (it has been begun); the error is said once.
+  // --- Surfaces for painting and picking, by mesh and scale; built in the background
+  // Null: not ready yet (it has been started); an error is reported once.
   std::shared_ptr<const PaintSurface> surface_of(NodeId id);
-  // The same at once, where it takes that long; null: it cannot be made.
+  // The same, but waits for it; null: it cannot be built.
   std::shared_ptr<const PaintSurface> surface_now(NodeId id);
+  // The surface as it stands when the level begins: of a soft body that sags on its pins, at rest
+  // (document/resting_mesh.h); of all else that of above.
+  struct Ground {
+    std::shared_ptr<const PaintSurface> surface;  // null: not ready yet, or it cannot be made
+    bool ready = false;
+    double sag = 0.0;  // [m] the farthest that it is from where it is drawn
+    bool held = true, falls = false;
+  };
+  Ground ground_of(NodeId id);               // begins to prepare it
+  Ground ground_now(NodeId id);              // at once, where it takes that long
   const std::unique_ptr<Painting> painting;  // the brush, and what is done with it (editor/tools/painting.h)
 
   // --- Clipboard
@@ -106,21 +117,21 @@ class Editor {
   void cut();
   void paste();
 
-  // --- The path that is edited (app/path_editing.h)
-  std::size_t path_key = 0;   // that is active
+  // --- The edited path (app/path_editing.h)
+  std::size_t path_key = 0;   // the active one
   double path_depth = 0.005;  // [m] of the next key
-  double path_speed = 0.02;   // [m/s] on the way to it
+  double path_speed = 0.02;   // [m/s] on the way to the next key
 
-  // --- Devices on this machine, as looked for last; in the background
+  // --- Devices on this machine, from the last background search
   static constexpr const char* kDeviceJob = "devices";
   std::vector<DeviceInfo> devices;
   bool devices_looked_for = false;
   void look_for_devices();
-  std::vector<std::string> device_wishes() const;  // what an `id` may say: kinds, then ids that can be opened
+  std::vector<std::string> device_wishes() const;  // possible values of an `id`: kinds, then available ids
 
   Jobs jobs;
-  std::string tool = "Select";          // the active one of the viewport
-  bool playing = false;                 // a session runs on the stage
+  std::string tool = "Select";          // the viewport's active tool
+  bool playing = false;                 // a session is running
   std::function<void()> request_close;  // set by the program
 
  private:
@@ -128,10 +139,22 @@ class Editor {
     std::shared_ptr<const DocumentMesh> mesh;
     dmat3 frame{1};
     std::string job;
-    std::shared_ptr<const PaintSurface> surface;  // null: under way, or it failed
+    std::shared_ptr<const PaintSurface> surface;  // null: in progress, or failed
     bool failed = false;
   };
   std::vector<std::shared_ptr<Surface>> surfaces_;
+  // Of a soft body, and all that it rests by.
+  struct Resting {
+    std::shared_ptr<const DocumentNode> node;
+    std::shared_ptr<const DocumentMesh> mesh;
+    dmat4 to_world{1};
+    dvec3 gravity{0};
+    std::vector<PaintLayer> pinned;
+    Ground ground;
+  };
+  bool rests_by_itself(NodeId id) const;  // a soft body that gravity may move
+  std::shared_ptr<Resting> resting_of(NodeId id);
+  std::vector<std::shared_ptr<Resting>> resting_;
 };
 
 }  // namespace pliant

@@ -59,7 +59,7 @@ void Files::update() {
   autosave.interval = app_.settings.autosave;
   follow_lock();
   autosave.update(app_.editor);
-  // What was recovered stays where it was until a newer copy, or the file itself, has it.
+  // A recovered copy is kept until a newer copy or the saved file contains its content.
   if (!recovered_.copy.empty() && (autosave.has_copy() || !app_.editor.document.dirty())) {
     const bool same_place = !recovered_.file.empty() && recovered_.copy == recovery_beside(recovered_.file);
     if (!same_place || !app_.editor.document.dirty()) remove_recovery(recovered_);
@@ -85,7 +85,7 @@ void Files::choose(const FileWish& wish, std::function<void(const fs::path&)> th
     fs::path file;
     const bool came_up = native_dialog(wish, stop, file);
     return [this, file, came_up](Editor&) {
-      if (!came_up) {  // no service for it, say
+      if (!came_up) {  // for instance, no service for it
         native_ = false;
         app_.show_panel("Files");
       } else if (!file.empty()) {
@@ -112,7 +112,7 @@ void Files::open(const fs::path& file, double unit) {
   app_.leave_document([this, file, unit] {
     ask_who_has(file, [this, file, unit](bool read_only) {
       std::optional<RecoveryCopy> copy = find_recovery(file, state_folder());
-      // A copy that a running editor writes is no remains of one that ended.
+      // A copy written by a running editor is not left over from a crash.
       if (!copy || read_only || lock_holder(file)) return load(file, unit, read_only);
       const FileStamp saved = stamp_of(file);
       app_.ask(
@@ -138,7 +138,7 @@ void Files::ask_who_has(const fs::path& file, std::function<void(bool)> then) {
              {"Cancel", "", {}}}});
 }
 
-// The file of the document is marked as open, and as soon as another editor that has it lets it go.
+// Locks the document's file, as soon as no other editor has it locked.
 void Files::follow_lock() {
   const Editor& editor = app_.editor;
   const fs::path& file = editor.document.file();
@@ -156,11 +156,12 @@ void Files::follow_lock() {
   if (lock_->took_over()) app_.editor.say(file.filename().string() + " was left open by an editor that runs no more");
 }
 
-void Files::load(const fs::path& file, double unit, bool read_only) {
+void Files::load(const fs::path& file, double unit, bool read_only, std::function<void(const Error&)> failed) {
   app_.editor.jobs.start(
-      "open", "Opening " + file.filename().string(), [this, file, unit, read_only](const Jobs::Stop&) {
+      kOpenJob, "Opening " + file.filename().string(), [this, file, unit, read_only, failed](const Jobs::Stop&) {
         auto document = std::make_shared<Result<Document>>(Document::open(file, unit));
-        return [this, document, file, read_only](Editor& to) {
+        return [this, document, file, read_only, failed](Editor& to) {
+          if (!*document && failed) return failed(document->error());
           if (!*document) return to.say(document->error().message(), Severity::kError);
           to.take(std::move(**document));
           next_read_only_ = read_only;
@@ -171,8 +172,15 @@ void Files::load(const fs::path& file, double unit, bool read_only) {
       });
 }
 
+void Files::give_up_opening() {
+  const std::optional<Jobs::Progress> opening = app_.editor.jobs.progress(kOpenJob);
+  if (!opening) return;
+  app_.editor.jobs.cancel(kOpenJob);
+  app_.editor.say("Given up: " + opening->what);
+}
+
 void Files::recover(const RecoveryCopy& copy) {
-  app_.editor.jobs.start("open", "Recovering " + copy.title, [this, copy](const Jobs::Stop&) {
+  app_.editor.jobs.start(kOpenJob, "Recovering " + copy.title, [this, copy](const Jobs::Stop&) {
     auto document = std::make_shared<Result<Document>>(Document::recover(copy.copy, copy.file, copy.folder));
     return [this, document, copy](Editor& to) {
       if (!*document) return to.say(document->error().message(), Severity::kError);
@@ -220,7 +228,7 @@ void Files::ask_name(const char* title, bool copy, std::function<void()> then) {
     std::error_code gone;
     if (!fs::exists(file, gone) || is_own) return write(file, copy, then);
     const std::optional<LockHolder> holder = lock_holder(file);
-    // The desktop's dialog has asked already, unless the ending came after it.
+    // The desktop's dialog has already asked, unless the extension was added after it.
     const FileStamp there = stamp_of(file);
     app_.ask({"Replace " + file.filename().string() + "?",
               {"There is a file of this name already, of " + time_text(there.time) + ".",
@@ -260,7 +268,7 @@ void Files::revert() {
 void Files::reload(const std::string& what) {
   const fs::path file = app_.editor.document.file();
   const std::uint64_t document = app_.editor.documents;
-  app_.editor.jobs.start("open", "Reading " + file.filename().string(), [file, document, what](const Jobs::Stop&) {
+  app_.editor.jobs.start(kOpenJob, "Reading " + file.filename().string(), [file, document, what](const Jobs::Stop&) {
     const FileStamp stamp = stamp_of(file);
     auto level = std::make_shared<Result<Level>>(load_level(file));
     return [level, stamp, file, document, what](Editor& to) {
@@ -283,12 +291,13 @@ void Files::save_what_can_be() {
   autosave.write_now(app_.editor);
 }
 
-// --- Files that other programs change
+// --- Files changed by other programs
 
 void Files::watch() {
   Editor& editor = app_.editor;
   constexpr double kEvery = 1.0;  // [s]
-  if (editor.now - watched_ < kEvery || asking_ || editor.jobs.running("watch") || editor.jobs.running("open")) return;
+  if (editor.now - watched_ < kEvery || asking_ || editor.jobs.running("watch") || editor.jobs.running(kOpenJob))
+    return;
   watched_ = editor.now;
   const fs::path folder = editor.document.folder(), file = editor.document.file();
   Watches all;
@@ -324,7 +333,7 @@ void Files::read_script_again(const std::string& name, const fs::path& path) {
         return [this, name, keys, document](Editor& to) {
           if (to.documents != document) return;
           if (!*keys) return to.say(keys->error().message(), Severity::kWarning);
-          if (to.document.is_on_disk(name, **keys)) return;  // it was written here
+          if (to.document.is_on_disk(name, **keys)) return;  // written by this editor
           const State before = to.state();
           const bool taken = to.document.script_read_again(name, **keys);
           ++to.files_read;
@@ -360,7 +369,7 @@ void Files::read_picture_again(const std::string& name, const fs::path& path) {
           const State before = to.state();
           const std::uint64_t revision = to.document.revision();
           to.document.picture_read_again(name, **image, *encoded);
-          if (to.document.revision() == revision) return;  // it is what it was
+          if (to.document.revision() == revision) return;  // unchanged
           for (const auto& each : to.on_change) each(before, to.state());
           to.say(name + " has changed on disk and was read again");
         };
@@ -370,7 +379,7 @@ void Files::read_picture_again(const std::string& name, const fs::path& path) {
 void Files::compare(const Watches& now, const FileStamp& known, std::uint64_t document) {
   Editor& editor = app_.editor;
   if (editor.documents != document) return;
-  const bool written_here = !(seen_level_ == known);  // saving writes its buffers, too
+  const bool written_here = !(seen_level_ == known);  // saving also writes its buffers
   seen_level_ = known;
   if (seen_document_ != document) {
     seen_.clear();
@@ -407,7 +416,7 @@ void Files::compare(const Watches& now, const FileStamp& known, std::uint64_t do
   if (level == now.end() || !level->second.stamp.there || !(known == editor.document.file_stamp()) ||
       level->second.stamp == known)
     return;
-  if (level->second.stamp != unsettled_) {  // once more in a second: it may still be written
+  if (level->second.stamp != unsettled_) {  // check again in a second: it may still be being written
     unsettled_ = level->second.stamp;
     return;
   }

@@ -1,5 +1,5 @@
-// What becomes of documents on disk: opened, saved, saved elsewhere, reverted, recovered, read again where another
-// program has changed them. What takes long is done in the background.
+// Files of documents: opening, saving, saving elsewhere, reverting, recovery, and reloading when another program has
+// changed them. Slow work is done in the background.
 #pragma once
 
 #include <filesystem>
@@ -20,33 +20,37 @@ class App;
 
 class Files {
  public:
-  // `native`: the desktop's own dialogs, where there are any; else the built-in browser.
+  // `native`: the desktop's own dialogs, if available; else the built-in browser.
   Files(App& app, bool native);
-  void update();  // once a frame
+  void update();  // once per frame
 
-  void ask_open(const std::filesystem::path& folder = {});  // empty: where one is likely to look
-  // Asks first where something is not saved, and where there are changes of a run that ended before they were saved.
+  void ask_open(const std::filesystem::path& folder = {});  // empty: a likely folder
+  // Asks first if there are unsaved changes, or changes of a crashed run.
   void open(const std::filesystem::path& file, double unit = 1.0);
+  // In the background, without a question. `failed`: hears why it cannot be opened; empty: the console says it.
+  void load(const std::filesystem::path& file, double unit, bool read_only = false,
+            std::function<void(const Error&)> failed = {});
+  void give_up_opening();  // the level stays as it is
+  static constexpr const char* kOpenJob = "open";
   void recover(const RecoveryCopy& copy);
-  bool save();  // false: asks for a name, or failed
+  bool save();  // false: it asks for a name, or saving failed
   void save_as(std::function<void()> then = {});
   void save_copy();
   void revert();
   bool read_only() const { return read_only_; }  // saving asks for another name
-  void close_in_order();                         // the program ends as the user wants it
-  void save_what_can_be();                       // the program has to end
+  void close_in_order();                         // the user ends the program
+  void save_what_can_be();                       // the program must end
 
   Autosave autosave;
-  // Asks for a name; `then` is called with what was chosen.
+  // Asks for a name; calls `then` with the choice.
   void choose(const FileWish& wish, std::function<void(const std::filesystem::path&)> then);
-  // Of the built-in browser: what it is to ask for now.
+  // For the built-in browser: the current request.
   const FileWish& wish() const { return wish_; }
-  std::uint64_t wishes() const { return wishes_; }  // so far
+  std::uint64_t wishes() const { return wishes_; }  // number of requests so far
   void chosen(const std::filesystem::path& file);   // by the built-in browser
   void given_up() { then_ = nullptr; }
 
  private:
-  void load(const std::filesystem::path& file, double unit, bool read_only = false);
   void ask_who_has(const std::filesystem::path& file, std::function<void(bool read_only)> then);
   void follow_lock();
   void write(const std::filesystem::path& file, bool copy, const std::function<void()>& then);
@@ -55,7 +59,7 @@ class Files {
   enum class Watched : std::uint8_t { kLevel, kBuffer, kScript, kPicture, kNamed, kShader };
   struct Watch {
     Watched kind = Watched::kNamed;
-    std::string name;  // as the level has it
+    std::string name;  // as in the level
     FileStamp stamp;
   };
   using Watches = std::map<std::filesystem::path, Watch>;
@@ -69,24 +73,24 @@ class Files {
   FileWish wish_;
   std::uint64_t wishes_ = 0;
   std::function<void(const std::filesystem::path&)> then_;
-  std::unique_ptr<FileLock> lock_;  // of the document's file; held or not
+  std::unique_ptr<FileLock> lock_;  // of the document's file; locked or not
   std::uint64_t locked_document_ = ~std::uint64_t{0};
   std::filesystem::path locked_file_;
   double lock_tried_ = 0.0;                          // [s]
-  bool read_only_ = false, next_read_only_ = false;  // of the document; of the one that is being opened
-  RecoveryCopy recovered_;                           // where the document comes from, until there is a newer copy
+  bool read_only_ = false, next_read_only_ = false;  // of the document; of the one being opened
+  RecoveryCopy recovered_;                           // the document's recovery copy, until there is a newer one
   // Watching.
   double watched_ = 0.0;                             // [s]
-  std::map<std::filesystem::path, FileStamp> seen_;  // of files that the level names
+  std::map<std::filesystem::path, FileStamp> seen_;  // files that the level refers to
   std::uint64_t seen_document_ = ~std::uint64_t{0};
-  FileStamp seen_level_;  // as the document had it when the others were looked at last
-  FileStamp unsettled_;   // of the level, when it was another for the first time: it may still be written
+  FileStamp seen_level_;  // of the document's file at the last check
+  FileStamp unsettled_;   // the level's stamp when first seen changed: it may still be being written
   bool asking_ = false;
 };
 
-// Whether a name is one of the formats that a level is saved in.
+// Whether a name has an extension in which a level can be saved.
 bool is_level_name(const std::filesystem::path& file);
-// For what has no file yet: "liver.level.glb"
+// For documents without a file: "liver.level.glb"
 std::string suggested_name(const class Document& document);
 
 }  // namespace pliant

@@ -13,7 +13,7 @@
 namespace pliant {
 namespace {
 
-// "/nodes/3/extensions/PLIANT_probe/device" -> the node that came from there; else the name of a new one.
+// "/nodes/3/extensions/PLIANT_probe/device" -> the node from there; otherwise the name of a new node.
 const DocumentNode* node_of(const State& state, const std::string& pointer) {
   constexpr std::string_view kNodes = "/nodes/";
   if (pointer.starts_with(kNodes)) {
@@ -64,7 +64,7 @@ QuickFix with(std::string label, NodeId id, std::string extension, std::string k
           [=](const State& s, NodeId&) { return with_value(s, std::span(&id, 1), extension, key, value); }};
 }
 
-// A device of its own, for a probe or tool.
+// Gives a probe or tool its own device.
 Result<State> with_device(const State& state, NodeId id) {
   const NodeIds one(&id, 1);
   Result<State> next(state);
@@ -75,7 +75,7 @@ Result<State> with_device(const State& state, NodeId id) {
   return next;
 }
 
-// A name that no device has: the one that was probably meant, else a device of its own.
+// A device name that does not exist: replaced by the one probably meant, else by a new device.
 std::optional<QuickFix> fix_of_device(const State& state, const DocumentNode& node) {
   const LevelNode& it = node.node;
   const std::string named = it.probe ? it.probe_device : it.handle ? it.handle->device : "";
@@ -96,7 +96,7 @@ std::optional<QuickFix> fix_of(const State& state, const DocumentNode* node, con
   std::string extension, key;
   const bool has_key = key_of(finding.pointer, extension, key) && is_known(extension, key);
   if (!node) {
-    // Of the scene: a panorama that is not there, a key that nothing reads.
+    // Scene keys: a missing panorama, a key without effect.
     if (has_key && extension == "environment" && key == "panorama" && finding.severity == Severity::kError)
       return QuickFix{"Without the panorama",
                       [](const State& s, NodeId&) { return with_default(s, {}, "environment", "panorama"); }};
@@ -126,7 +126,7 @@ std::optional<QuickFix> fix_of(const State& state, const DocumentNode* node, con
     return QuickFix{"Reset " + key, [id, extension, key](const State& s, NodeId&) {
                       return with_default(s, std::span(&id, 1), extension, key);
                     }};
-  if (has_key && extension == "haptic_device" && key == "file" && it.device)  // its driver cannot do without
+  if (has_key && extension == "haptic_device" && key == "file" && it.device)  // its driver requires it
     return QuickFix{"Without the script", [id](const State& s, NodeId&) {
                       Result<State> next = with_value(s, std::span(&id, 1), "haptic_device", "driver", "null");
                       return next ? with_default(*next, std::span(&id, 1), "haptic_device", "file") : next;
@@ -160,7 +160,7 @@ Findings find_in_state(const State& state, const std::filesystem::path& file, co
                        const std::atomic<bool>* stop) {
   Level level = level_of(state);
   level.path = file.empty() ? folder / "untitled" : file;
-  leave_out_scripts(level, state.scripts, DriverKind::kMouse);  // something moves it
+  leave_out_scripts(level, state.scripts, DriverKind::kMouse);  // moved by anything
   if (!level.has_pliant())
     return {{Severity::kNote, "",
              "nothing can be touched yet: select a mesh and add a deformable surface or a soft "
@@ -182,9 +182,9 @@ void FindingsWatch::update(Editor& editor) {
     seen_ = revision;
     document_ = editor.documents;
     since_ = editor.now;
-    editor.jobs.cancel("findings");  // nobody wants its answer any more
+    editor.jobs.cancel("findings");  // its result is obsolete
   }
-  // One at a time: what was stopped ends at the next mesh or system. A run has the machine to itself.
+  // One job at a time: a cancelled one ends at the next mesh or system. Not while a run needs the CPU.
   if (up_to_date(editor) || editor.playing || editor.now - since_ < kRest || editor.jobs.any("findings")) return;
   if (editor.state().nodes.empty()) {
     editor.findings.clear();

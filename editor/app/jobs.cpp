@@ -4,6 +4,8 @@
 #include <exception>
 
 #include "editor/app/editor.h"
+#include "runtime/clock.h"
+#include "runtime/long_work.h"
 
 namespace pliant {
 
@@ -18,11 +20,20 @@ void Jobs::start(const std::string& key, const std::string& what, Work work) {
   auto job = std::make_unique<Job>();
   job->key = key;
   job->what = what;
+  job->began = now_ns();
   Job* const it = job.get();
   jobs_.push_back(std::move(job));
   it->thread = std::thread([this, it, work = std::move(work)] {
+    const OpenProgress watch = [it](double share, const std::string& doing) {
+      const std::lock_guard lock(it->mutex);
+      it->share = share;
+      it->doing = doing;
+      return !it->stop.load();
+    };
     try {
+      const WatchedWork watched(watch);
       it->result = work(it->stop);
+    } catch (const WorkStopped&) {
     } catch (const std::exception& error) {
       it->result = [what = it->what, why = std::string(error.what())](Editor& editor) {
         editor.say(what + " failed: " + why, Severity::kError);
@@ -56,6 +67,15 @@ std::vector<std::string> Jobs::under_way() const {
   for (const auto& job : jobs_)
     if (!job->stop && !job->done && !job->what.empty()) all.push_back(job->what);
   return all;
+}
+
+std::optional<Jobs::Progress> Jobs::progress(const std::string& key) const {
+  for (const auto& job : jobs_) {
+    if (job->key != key || job->stop || job->done) continue;
+    const std::lock_guard lock(job->mutex);
+    return Progress{job->what, job->doing, job->share, 1e-9 * static_cast<double>(now_ns() - job->began)};
+  }
+  return {};
 }
 
 void Jobs::deliver(Editor& editor) {

@@ -1,4 +1,4 @@
-// The menus: pressed or hovered while another one is open, led through by arrow keys, closed by Esc.
+// The menus: opened by press, or by hovering while another is open; navigated with arrow keys, closed with Esc.
 #include <algorithm>
 #include <utility>
 
@@ -45,7 +45,7 @@ void App::draw_menus() {
         wanted = group;
         menu_by_hover_ = true;
       } else if (ImGui::IsMouseClicked(0) && (!is_open || menu_by_hover_)) {
-        wanted_menu_ = group;  // a press outside of it closes it at the end of the frame
+        wanted_menu_ = group;  // a press outside closes it at the end of the frame
         menu_by_hover_ = false;
       }
     }

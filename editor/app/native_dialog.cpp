@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// In the folders of PATH.
+// Whether a program is in the folders of PATH.
 bool there(const char* program) {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path ? path : "");

@@ -1,4 +1,4 @@
-// The desktop's own dialog for files: zenity or kdialog, where there is one.
+// The desktop's file dialog through zenity or kdialog, if installed.
 #pragma once
 
 #include <atomic>
@@ -10,12 +10,13 @@ namespace pliant {
 struct FileWish {
   std::string title;
   bool save = false;
-  std::filesystem::path folder;  // where one begins
-  std::string name;              // of what is saved, suggested
+  std::filesystem::path folder;  // initial folder
+  std::string name;              // suggested name for saving
 };
 
 bool native_dialog_there();
-// Waits for the answer, on a thread of its own. Empty: nothing was chosen, or `stop` was set. False: no dialog came up.
+// Blocks until answered; call on a separate thread. Empty: no choice, or `stop` was set. False: no dialog could be
+// shown.
 bool native_dialog(const FileWish& wish, const std::atomic<bool>& stop, std::filesystem::path& chosen);
 
 }  // namespace pliant

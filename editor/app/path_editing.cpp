@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLeastApart = 1e-3;  // [s] between keys
 
-// A file name of a node's name.
+// Makes a file name from a node's name.
 std::string file_of(const State& state, const std::string& name) {
   std::string file;
   for (const char c : name) file += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
@@ -23,12 +23,12 @@ std::string file_of(const State& state, const std::string& name) {
 std::vector<PathSurface> surfaces_of_paths(Editor& editor) {
   std::vector<PathSurface> all;
   for (const NodeId id : path_grounds(editor.state()))
-    if (auto surface = editor.surface_now(id))
+    if (auto surface = editor.ground_now(id).surface)
       all.push_back({std::move(surface), dvec3(editor.state().to_world(id)[3])});
   return all;
 }
 
-// A tool begins where its path does, so that nothing pulls it there through the organ.
+// Moves a tool to the start of its path, so that it is not pulled there through the organ.
 Result<State> standing_at(const State& state, const DocumentNode& tool, const PathRow& row) {
   const dmat4 parent = state.to_world(tool.parent);
   LocalTransform local = tool.node.local;
@@ -37,7 +37,7 @@ Result<State> standing_at(const State& state, const DocumentNode& tool, const Pa
   return placed(state, tool.id, local);
 }
 
-// The lowest of some points, the middle of those that are as low; `up` unit.
+// The mean of the lowest points; `up` is unit.
 dvec3 lowest_of(const std::vector<dvec3>& points, dvec3 up, double& size) {
   double low = 1e300, high = -1e300;
   for (const dvec3& p : points) {
@@ -55,7 +55,7 @@ dvec3 lowest_of(const std::vector<dvec3>& points, dvec3 up, double& size) {
   return sum / count;
 }
 
-// It is drawn as instruments are that are made here: from its origin down along its own -Y, however it stands now.
+// Whether the tool extends from its origin down along its own -Y, as instruments made here do.
 bool hangs_down(const std::vector<dvec3>& points) {
   constexpr double kShare = 0.8;
   double low = 0.0, farthest = 0.0;
@@ -164,7 +164,7 @@ std::string script_file_of(const State& state, const std::filesystem::path& fold
   if (state.scripts.contains(has)) return has;
   std::error_code failed;
   if (!has.empty() && has.find('/') == std::string::npos && !std::filesystem::exists(folder / has, failed)) return has;
-  // What lies there already is somebody else's.
+  // An existing file belongs to something else.
   const std::string name = file_of(state, node.node.name);
   std::string file = name + ".csv";
   for (int i = 2; state.scripts.contains(file) || std::filesystem::exists(folder / file, failed); ++i)
@@ -192,7 +192,7 @@ bool set_keys_of_node(Editor& editor, NodeId node, const ScriptKeys& keys, const
   const NodeId led = effector_of(editor.state(), node);
   const DocumentNode* const tool = editor.state().find(led);
   if (sorted.along && !sorted.keys.empty()) {
-    // A tool stands where its path begins, so that its lowest place is no longer the tip's: that stays the same.
+    // The tool moves to the start of its path, after which its lowest place may not be the tip's: keep the known tip.
     const bool known = keys.rows && keys.tip.axis != dvec3(0) && tool && !tool->node.probe;
     if (!known) sorted.tip = tip_of(editor.state(), node).value_or(PathTip{});
     sorted.rows = std::make_shared<const std::vector<PathRow>>(rows_along(sorted, surfaces_of_paths(editor)));

@@ -1,4 +1,4 @@
-// The paths of a document's probes and tools as keys: which one is edited, and how it is changed.
+// Editing the paths of a document's probes and tools as keys.
 #pragma once
 
 #include "editor/app/editor.h"
@@ -6,25 +6,25 @@
 
 namespace pliant {
 
-// The node whose device's path is edited: the active one or that of the probe or tool that is active; kNoNode: none.
+// The node whose device's path is edited: the active one, or the device of the active probe or tool; kNoNode: none.
 NodeId path_node(const Editor& editor);
-// The node whose device moves a probe or tool, or the node itself where it is a device; kNoNode: none.
+// The device of a probe or tool, or the node itself if it is a device; kNoNode: none.
 NodeId device_of(const State& state, NodeId node);
-// The file that a device's path goes to: the one that it follows, else one named after the node that is not there yet.
+// The script file of a device's path: the current one, else a new one named after the node.
 std::string script_file_of(const State& state, const std::filesystem::path& folder, NodeId device);
-// Its keys as they stand in the document; empty: it has no path yet.
+// Its keys in the document; empty: it has no path yet.
 ScriptKeys keys_of_node(const Editor& editor, NodeId node);
-// The device follows the script from now on; one that had none gets a file named after the node.
+// Makes the device follow the script; a device without one gets a file named after the node.
 bool set_keys_of_node(Editor& editor, NodeId node, const ScriptKeys& keys, const std::string& what,
                       const std::string& gesture = {});
-// The sphere with which the probe or tool of a device touches: of a probe its own, of a capsule the one at its node, of
-// a tool the one that fits into it where it is lowest as it stands. Null: the device moves nothing.
+// The sphere with which a device's probe or tool touches. Probe: its own; capsule: the one at its node; tool: the one
+// that fits at its lowest point in its current pose. Null: the device moves nothing.
 std::optional<PathTip> tip_of(const State& state, NodeId device);
-// The node of the probe or tool that a device moves; kNoNode: none.
+// The probe or tool that a device moves; kNoNode: none.
 NodeId effector_of(const State& state, NodeId device);
-// What a path may be on: what can be touched, or, where nothing can yet, every mesh but the tools.
+// Surfaces for paths: touchable objects, or if there are none, every mesh except the tools.
 std::vector<NodeId> path_grounds(const State& state);
-// [m] How high above a surface a path begins and ends.
+// [m] Height above a surface at which a path begins and ends.
 double path_clearance(const Editor& editor, NodeId node);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// A question that has to be answered before anything else is done.
+// A modal question.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ struct Answer {
 struct Question {
   std::string title;
   std::vector<std::string> lines;
-  std::vector<Answer> answers;  // the first is the one to be expected; Esc is the last
+  std::vector<Answer> answers;  // the first is the default; Esc is the last
 };
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Every panel, tool and action of the editor. A new one is a line here.
+// Lists every panel, tool and action of the editor. To add one, add a line here.
 #include <numbers>
 
 #include "editor/app/add.h"

@@ -1,5 +1,5 @@
-// What the editor remembers of its user: $XDG_CONFIG_HOME/pliant/editor.json, else ~/.config/pliant/editor.json. A file
-// that cannot be read is set aside, never overwritten silently.
+// The user's settings: $XDG_CONFIG_HOME/pliant/editor.json, else ~/.config/pliant/editor.json. An unreadable file is
+// renamed, never silently overwritten.
 #pragma once
 
 #include <filesystem>
@@ -17,23 +17,23 @@ struct Settings {
   double scale = 0.0;                            // [1] of the interface; 0: the display's
   double left = 260, right = 330, bottom = 210;  // [point] sizes of the panels
   std::vector<std::string> recent;               // files, newest first
-  std::map<std::string, std::string> keys;       // action id -> keys, where they differ from the default
-  std::map<std::string, std::string> presets;    // name -> JSON, of the user's own
+  std::map<std::string, std::string> keys;       // action id -> keys, if they differ from the default
+  std::map<std::string, std::string> presets;    // the user's presets: name -> JSON
   bool snap = false;
   double snap_move = 0.01, snap_turn = 15.0, snap_scale = 0.1;  // [m], [degrees], [1]
   bool local_axes = false;
   double autosave = 30.0;  // [s] between copies for recovery
 
-  // `folder` empty: the user's. `note` gets a sentence where something was not as it should be.
+  // Empty `folder`: the user's. `note` receives a sentence if the file is faulty.
   static Settings load(const std::filesystem::path& folder, std::string& note);
   Status save() const;                           // atomically
-  void used(const std::filesystem::path& file);  // is the newest of `recent`
+  void used(const std::filesystem::path& file);  // moves it to the front of `recent`
 
  private:
   std::filesystem::path file_;
 };
 
-// Where recovery copies of documents without a file go; made when it is first written to.
+// Folder of recovery copies of documents without a file; created on first use.
 std::filesystem::path state_folder();
 
 }  // namespace pliant

@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-// The keys that were chosen, with their values.
+// The chosen keys with their values.
 std::vector<SaidKey> keys_set(const std::vector<ModelChoice>& choices, const Level& after, std::size_t node) {
   std::vector<SaidKey> keys;
   for (const ModelChoice& choice : choices)

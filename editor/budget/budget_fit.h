@@ -1,5 +1,5 @@
-// What an error budget chooses for an object of the document: measured in the background on a copy, kept until the
-// document is another one, and known to be out of date once the object is another one. No window is needed for it.
+// Model parameters that an error budget chooses for an object. Measured in the background on a copy; kept for the
+// document; marked stale when the object changes. Needs no window.
 #pragma once
 
 #include <atomic>
@@ -14,35 +14,36 @@
 
 namespace pliant {
 
-// Everything that figures of an object depend on, its budget apart: candidates do not depend on it.
+// Everything that the measurement depends on, except the budget: candidates do not depend on it.
 struct FitSubject {
   std::shared_ptr<const DocumentMesh> mesh;
   std::map<LayerKey, PaintLayer> paint;  // of the mesh
   dmat4 to_world{1};
   Json object, simulation;  // keys
-  double sphere = 0.0;      // [m] radius of the least spherical probe that meets surfaces: what it is pressed by
+  double sphere = 0.0;      // [m] smallest radius of a spherical probe that touches surfaces
   bool operator==(const FitSubject&) const = default;
 };
 FitSubject fit_subject(const State& state, NodeId id);
 
-// The extension whose `error` is the object's budget: "deformable" or "soft_body"; "": the node is neither.
+// The extension whose `error` is the object's budget: "deformable" or "soft_body"; "": neither.
 std::string budget_extension(const LevelNode& node);
 double budget_of(const LevelNode& node);  // [1] 0: none
 
 struct BudgetFit {
   FitSubject subject;
-  std::optional<FitSubject> used;  // the same object with the keys that were chosen
+  std::optional<FitSubject> used;                                        // the same object with the chosen keys
   Result<std::vector<ModelChoice>> choices = Error{"", "not measured"};  // surface and force law, or body and tool
-  std::vector<SaidKey> keys;  // what was chosen, as keys that the level does not say
-  double seconds = 0.0;       // that it took
+  std::vector<SaidKey> keys;                                             // chosen keys that the level does not state
+  double seconds = 0.0;                                                  // duration of the measurement
 };
 
-// Measures as opening the level would choose, on the calling thread; `file` and `folder` are the document's.
+// Measures on the calling thread, with the choices that opening the level would make; `file` and `folder` are the
+// document's.
 BudgetFit fit_budget(const State& state, NodeId id, double budget, const std::filesystem::path& file,
                      const std::filesystem::path& folder, const ChoiceWatch& watch = {});
-// Of what was measured, what another budget chooses.
+// The choice for another budget, from the same measurement.
 ModelChoice with_budget(ModelChoice choice, double budget);
-// Whether that is another model of any kind.
+// Whether that differs in any model.
 bool chooses_another(const std::vector<ModelChoice>& choices, double budget);
 
 class BudgetFits {
@@ -51,20 +52,20 @@ class BudgetFits {
 
   void measure(Editor& editor, NodeId id, double budget);  // in the background; one object at a time
   void cancel(Editor& editor);
-  // Once a frame: nothing is measured of an object that is gone, nor kept of another document.
+  // Call once per frame: cancels measurements of deleted objects, and drops results of other documents.
   void update(Editor& editor);
   const BudgetFit* of(NodeId id) const;
-  bool stale(const State& state, NodeId id) const;   // the object is another one than was measured
-  bool in_use(const State& state, NodeId id) const;  // the level says what was chosen
-  // Writes what was chosen as keys of the level: one edit. False: what stands in the way was said.
+  bool stale(const State& state, NodeId id) const;   // the object has changed since the measurement
+  bool in_use(const State& state, NodeId id) const;  // the level states the chosen keys
+  // Writes the chosen keys to the level, as one edit. False: an error was reported.
   bool use(Editor& editor, NodeId id);
 
   struct Progress {
     NodeId node = kNoNode;
     int parts = 0;         // measurements done
-    double seconds = 0.0;  // since it began
+    double seconds = 0.0;  // since the start
   };
-  std::optional<Progress> progress(const Editor& editor) const;  // nullopt: nothing is being measured
+  std::optional<Progress> progress(const Editor& editor) const;  // nullopt: no measurement is running
 
  private:
   struct Running {
@@ -72,12 +73,12 @@ class BudgetFits {
     double began = 0.0;  // [s]
     std::shared_ptr<std::atomic<int>> parts;
   };
-  std::uint64_t document_ = 0;  // that `fits_` are of
+  std::uint64_t document_ = 0;  // the document of `fits_`
   std::map<NodeId, BudgetFit> fits_;
   std::optional<Running> running_;
 };
 
-// What the level says of an object that its budget would choose otherwise.
+// Keys stated in the level that the object's budget would otherwise choose.
 std::vector<SaidKey> said_of(const State& state, NodeId id);
 
 }  // namespace pliant

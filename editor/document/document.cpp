@@ -17,7 +17,7 @@ Document::Document(State state, NodeId next) : next_id_(next) {
 }
 
 Result<Document> Document::open(const fs::path& file, double unit) {
-  const FileStamp stamp = stamp_of(file);  // what is written while it is read is noticed later
+  const FileStamp stamp = stamp_of(file);  // changes during reading are noticed later
   Result<Level> level = load_level(file);
   if (!level) return level.error();
   const bool is_level = level->source && level->has_pliant();
@@ -33,7 +33,7 @@ Result<Document> Document::open(const fs::path& file, double unit) {
     document.file_ = file;
     document.stamp_ = stamp;
   } else {
-    document.saved_ = ~std::uint64_t{0};  // what stands here is nowhere yet
+    document.saved_ = ~std::uint64_t{0};  // the content is in no file yet
   }
   return document;
 }
@@ -47,7 +47,7 @@ Result<Document> Document::recover(const fs::path& copy, const fs::path& file, c
   document->recovered_ = true;
   State& state = document->steps_[0].state;
   state.scripts.clear();
-  document->read_scripts(state);  // from where the document's own are
+  document->read_scripts(state);  // from the document's own folder
   for (auto& [name, keys] : scripts_beside_copy(copy)) state.scripts[name] = keys;
   document->remember_file();
   return document;
@@ -97,8 +97,8 @@ std::string Document::title() const {
   return state().rest->name.empty() ? "untitled" : state().rest->name + " (not saved)";
 }
 
-// All of it or nothing; scripts come first: a level that names one never stands without it. What could not be opened
-// again is an error before anything is replaced.
+// Writes all or nothing, scripts first, so that a level never lacks a script that it refers to. A level that could not
+// be opened again is an error before anything is replaced.
 Status Document::write(const fs::path& file, const State& state, bool scripts_too) const {
   std::vector<MadeFile> files;
   if (scripts_too)
@@ -182,7 +182,7 @@ void Document::remember_file() {
 bool Document::file_changed() const {
   if (file_.empty()) return false;
   const FileStamp now = stamp_of(file_);
-  return now.there && now != stamp_;  // taken away: what is here is still here
+  return now.there && now != stamp_;  // deleted: the document is unaffected
 }
 
 void Document::accept_file() {
@@ -215,7 +215,7 @@ bool Document::script_read_again(const std::string& name, const ScriptKeys& keys
     state.scripts[name] = fresh;
     return true;
   });
-  return *state().scripts.at(name) == keys;  // in_every_state has seen to it that there is one
+  return *state().scripts.at(name) == keys;  // in_every_state ensures that there is one
 }
 
 void Document::picture_read_again(const std::string& uri, const Image& image,
@@ -231,7 +231,7 @@ void Document::picture_read_again(const std::string& uri, const Image& image,
       bool found = false;
       for (std::size_t i = 0; i < images.size() && i < rest->images.size(); ++i) {
         if (!images[i].contains("uri") || images[i]["uri"] != uri) continue;
-        if (i < source->images.size() && source->images[i] == encoded) continue;  // saved here, say
+        if (i < source->images.size() && source->images[i] == encoded) continue;  // for instance, saved by this editor
         const std::string name = rest->images[i].name;
         rest->images[i] = image;
         rest->images[i].name = name;

@@ -44,7 +44,7 @@ Result<const Key*> find_both(const std::string& extension, const std::string& ke
   return found;
 }
 
-// What a document's scene extensions are set in.
+// A Level with the document's scene extensions.
 Level scene_of(const State& state) {
   Level level;
   level.environment = state.environment;
@@ -80,7 +80,7 @@ Result<State> with_component(const State& state, NodeIds ids, const std::string&
     if (of->present(&node)) return false;
     forget_stated(node.stated, extension);
     of->add(&node);
-    // What moves a probe or a tool is by default on the same node.
+    // By default, a probe or tool is moved by the device on the same node.
     if (node.probe && extension == "probe" && node.device) node.probe_device = node.name;
     if (node.handle && extension == "handle" && node.device) node.handle->device = node.name;
     if (extension == "haptic_device") {
@@ -139,7 +139,7 @@ Result<State> with_value(const State& state, NodeIds ids, const std::string& ext
   }
   return each_with(state, ids, [&](LevelNode& node) -> Result<bool> {
     if (!of.present(&node)) return false;
-    // Stiffness and Young's modulus stand for each other: the one that is set last holds.
+    // Stiffness and Young's modulus exclude each other: the last one set wins.
     if (extension == "deformable" && key == "stiffness") node.deformable->young = 0.0;
     (*found)->set(&node, value);
     if (const std::string clash = of.settle(&node); !clash.empty()) return Error{node.name, clash};

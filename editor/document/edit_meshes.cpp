@@ -1,4 +1,4 @@
-// Paint, meshes and scripts, and what changes a whole level.
+// Paint, meshes and scripts, and edits of a whole level.
 #include "editor/document/edit_parts.h"
 
 namespace pliant {
@@ -53,7 +53,7 @@ Result<State> with_script(const State& state, NodeId id, const std::string& file
 
 Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit) {
   Level level = level_of(state);
-  // Nodes are known again by a mark, wherever the edit puts new ones between them.
+  // Nodes are marked to identify them after the edit, wherever it inserts new ones.
   constexpr std::int32_t kMark = -2;
   for (std::size_t i = 0; i < level.nodes.size(); ++i) level.nodes[i].source = kMark - static_cast<std::int32_t>(i);
   if (Status s = edit(level); !s) return s.error();
@@ -77,7 +77,7 @@ Result<State> by_level(const State& state, NodeId& next_id, const std::function<
     each = std::move(node);
   }
   next_id = fresh;
-  // What was there stays shared.
+  // Unchanged data stay shared.
   for (std::size_t i = 0; i < mesh_count; ++i) next.meshes[i] = state.meshes[i];
   for (auto& [key, layer] : next.paint)
     if (const auto before = state.paint.find(key); before != state.paint.end() && before->second == layer)

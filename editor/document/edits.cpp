@@ -39,7 +39,7 @@ std::optional<std::string> fault_of_name(const std::string& name) {
   return {};
 }
 
-// Parents before children, siblings as they stand.
+// Parents before children, siblings in their order.
 void put_in_order(State& state) {
   std::map<NodeId, std::vector<std::shared_ptr<const DocumentNode>>> below;
   for (const auto& each : state.nodes) below[each->parent].push_back(each);
@@ -66,7 +66,7 @@ LocalTransform local_of(const dmat4& m) {
   return local;
 }
 
-// The ids that no other one of them stands above, each once.
+// The ids that have no ancestor among them, each once.
 std::vector<NodeId> topmost(const State& state, NodeIds ids) {
   const std::set<NodeId> wanted(ids.begin(), ids.end());
   std::set<NodeId> inside;  // below one of them
@@ -189,7 +189,7 @@ Result<State> pasted(const State& state, const State& from, NodeIds ids, NodeId 
   if (parent != kNoNode && !state.find(parent)) return kNoSuchNode;
   const std::vector<NodeId> tops = topmost(from, ids);
   if (tops.empty()) return Error{"paste", "there is nothing to paste; copy a node first"};
-  // A mesh that this document has already is shared; another one comes along.
+  // A mesh that this document already has is shared; others are added.
   State next = state;
   std::map<std::int32_t, std::int32_t> mesh_of;
   for (const auto& each : from.nodes) {

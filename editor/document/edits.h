@@ -1,5 +1,5 @@
-// What can be done to a level: each function makes another State of one, or says in a sentence why not.
-// Document::change takes it. Several nodes at once are one edit.
+// Edits of a level: each function returns a new State, or an error sentence. Document::change takes the result. Edits
+// of several nodes are one edit.
 #pragma once
 
 #include <functional>
@@ -15,19 +15,20 @@ using Json = nlohmann::json;
 using NodeIds = std::span<const NodeId>;
 
 // --- The tree
-// A name that no node has: "probe", "probe 2", "probe 3" ...
+// An unused name: "probe", "probe 2", "probe 3" ...
 std::string unique_name(const State& state, const std::string& wanted);
-// References to the node by its name follow it. A name that another node has is an error.
+// Updates references by name. Error: another node has the name.
 Result<State> renamed(const State& state, NodeId id, const std::string& name);
 Result<State> with_node(const State& state, NodeId id, NodeId parent, LevelNode node);  // its name is made unique
-Result<State> without(const State& state, NodeIds ids);                                 // with all below them
-// Copies with all below them, under the same parents; `ids_out` gets the copies' own. References among what is copied
-// lead to the copies.
+Result<State> without(const State& state, NodeIds ids);                                 // with their subtrees
+// Copies subtrees under the same parents; `ids_out` receives the copies' ids. References within the copied nodes refer
+// to the copies.
 Result<State> duplicated(const State& state, NodeIds ids, NodeId& next_id, std::vector<NodeId>* ids_out = nullptr);
-// The nodes of another state (the clipboard), with their meshes, below `parent`.
+// Inserts nodes of another state (the clipboard), with their meshes, below `parent`.
 Result<State> pasted(const State& state, const State& from, NodeIds ids, NodeId parent, NodeId& next_id,
                      std::vector<NodeId>* ids_out = nullptr);
-// Below another parent (kNoNode: a root) and before a sibling (kNoNode: last); where it stands in the world is kept.
+// Moves nodes below another parent (kNoNode: a root) and before a sibling (kNoNode: last); world transforms are
+// preserved.
 Result<State> reparented(const State& state, NodeIds ids, NodeId parent, NodeId before = kNoNode);
 
 // --- One node
@@ -36,18 +37,18 @@ struct Placing {
   NodeId id = kNoNode;
   LocalTransform local;
 };
-Result<State> placed(const State& state, std::span<const Placing> all);  // those that are gone are left out
+Result<State> placed(const State& state, std::span<const Placing> all);  // skips deleted nodes
 Result<State> with_light(const State& state, NodeId id, const std::optional<Light>& light);
 Result<State> with_camera(const State& state, NodeId id, const std::optional<Camera>& camera);
 
 // --- Components, by the key table: `extension` without PLIANT_, `key` as in the level format
 Result<State> with_component(const State& state, NodeIds ids, const std::string& extension);
 Result<State> without_component(const State& state, NodeIds ids, const std::string& extension);
-// Of every one of `ids` that has the component; of the scene's extensions `ids` is not looked at.
+// For every node of `ids` that has the component; for scene extensions `ids` is ignored.
 Result<State> with_value(const State& state, NodeIds ids, const std::string& extension, const std::string& key,
                          const Json& value);
 Result<State> with_default(const State& state, NodeIds ids, const std::string& extension, const std::string& key);
-// The value; null: the node does not have the component. kNoNode: of the scene.
+// The value; null: the node lacks the component. kNoNode: the scene.
 Json value_of_key(const State& state, NodeId id, const std::string& extension, const std::string& key);
 Json default_of_key(const std::string& extension, const std::string& key);
 bool has_component(const State& state, NodeId id, const std::string& extension);
@@ -55,13 +56,14 @@ bool has_component(const State& state, NodeId id, const std::string& extension);
 // --- Paint and meshes
 Result<State> with_layer(const State& state, const LayerKey& key, PaintLayer layer);
 Result<State> without_layer(const State& state, std::uint32_t mesh, Channel channel);  // of all its primitives
-// The node gets a mesh of its own (refined, say); other nodes keep theirs. Painted values are the mesh's own arrays.
+// Gives the node its own mesh (a refined one, for instance); other nodes keep theirs. Painted values are in the mesh's
+// arrays.
 Result<State> with_mesh(const State& state, NodeId id, LevelMesh mesh);
 
-// The node's device follows these keys, in a script of that name beside the level, from now on.
+// Makes the node's device follow these keys, in a script of that name beside the level.
 Result<State> with_script(const State& state, NodeId id, const std::string& file, const ScriptKeys& keys);
 
-// An edit that is written for Levels (content/author): it may change nodes and scene and append nodes and meshes.
+// An edit written for Levels (content/author): it may change nodes and scene, and append nodes and meshes.
 Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit);
 
 }  // namespace pliant

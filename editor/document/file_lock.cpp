@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// Field 22 of /proc/PID/stat; 0: there is no such process. The second field may hold spaces and brackets.
+// Field 22 of /proc/PID/stat; 0: no such process. The second field may contain spaces and brackets.
 std::uint64_t start_of(int process) {
   std::ifstream in(fmt::format("/proc/{}/stat", process));
   std::string text((std::istreambuf_iterator<char>(in)), {});
@@ -63,7 +63,7 @@ std::optional<LockHolder> read_lock(const fs::path& lock) {
 }
 
 bool runs(const LockHolder& holder) {
-  if (holder.host != host_name()) return true;  // nobody can tell from here
+  if (holder.host != host_name()) return true;  // a process on another host cannot be checked
   return holder.process > 0 && start_of(holder.process) == holder.started;
 }
 
@@ -95,7 +95,7 @@ FileLock::FileLock(const fs::path& file) : lock_(lock_of(file)) {
                   {"user", user_name()},
                   {"since", fmt::format("{:%Y-%m-%d %H:%M}", local)}};
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  // Written aside and linked into place: it appears whole, and of two that try at once one has it.
+  // Written to a temporary file and linked: it appears atomically, and only one of two concurrent attempts succeeds.
   const fs::path aside = fs::path(lock_).concat(fmt::format(".{}", ::getpid()));
   {
     std::ofstream out(aside, std::ios::trunc);
@@ -113,7 +113,7 @@ FileLock::FileLock(const fs::path& file) : lock_(lock_of(file)) {
 
 FileLock::~FileLock() {
   if (!held_) return;
-  const std::optional<LockHolder> now = read_lock(lock_);  // unless somebody has taken it by hand
+  const std::optional<LockHolder> now = read_lock(lock_);  // unless it was replaced by hand
   std::error_code gone;
   if (now && now->process == ::getpid() && now->host == host_name()) std::filesystem::remove(lock_, gone);
 }

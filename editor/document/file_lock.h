@@ -1,5 +1,4 @@
-// Who edits a file: .NAME.lock beside it, with process and host, for as long as an editor has it open. It binds nobody;
-// a second editor is told.
+// Advisory lock of an open file: .NAME.lock beside it contains process and host. A second editor is informed.
 #pragma once
 
 #include <filesystem>
@@ -10,21 +9,21 @@ namespace pliant {
 
 struct LockHolder {
   int process = 0;
-  std::uint64_t started = 0;  // of the process, in the kernel's clock ticks: a number that is used again is another's
+  std::uint64_t started = 0;  // of the process, in the kernel's clock ticks: detects reused process ids
   std::string host, user, since;
 };
 
 std::filesystem::path lock_of(const std::filesystem::path& file);
-// The editor that has the file open: another process that runs, or one of another host, of which nobody can tell.
+// The editor that has the file open: a running process, or one on another host, which cannot be checked.
 std::optional<LockHolder> lock_holder(const std::filesystem::path& file);
 // "anna on ward3 (process 4711), since 2026-05-04 10:03"
 std::string text_of(const LockHolder& holder);
 
-// Held until it is destroyed.
+// Locked until destruction.
 class FileLock {
  public:
-  // Takes over what an editor left that runs no more. Not held where another one has it, or where the folder cannot be
-  // written: then nobody there can save either.
+  // Replaces the lock of an editor that no longer runs. Not locked if another editor has it, or the folder is not
+  // writable (then no one can save there).
   explicit FileLock(const std::filesystem::path& file);
   ~FileLock();
   FileLock(const FileLock&) = delete;

@@ -1,4 +1,4 @@
-// When a file was written last, and how large it is: whether it is another than before.
+// Time and size of a file, to detect changes.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The files that a level names beside itself: scripts, a panorama, tetrahedra.
+// The files beside a level that it refers to: scripts, a panorama, tetrahedra.
 #pragma once
 
 #include <string>
@@ -8,17 +8,17 @@
 
 namespace pliant {
 
-// As the level names them, each once.
+// Names as in the level, each once.
 std::vector<std::string> named_files(const State& state);
 
-// External files of the level's own glTF: pictures, and buffers with its meshes, as it names them.
+// External files of the level's own glTF: pictures and mesh buffers, with their names there.
 struct OwnFiles {
   std::vector<std::string> pictures, buffers;
 };
 OwnFiles own_files(const State& state);
 
-// Those that lie in `from` and are not in `to` are copied there, so that a level that is saved elsewhere still finds
-// them. The error names the first that could not be. The names of what was copied.
+// Copies the files that are in `from` and not in `to`, so that a level saved elsewhere finds them. The error names the
+// first failure. Returns the copied names.
 Result<std::vector<std::string>> bring_named_files(const State& state, const std::filesystem::path& from,
                                                    const std::filesystem::path& to);
 

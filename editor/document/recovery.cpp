@@ -21,12 +21,12 @@ using Json = nlohmann::json;
 
 constexpr const char* kEnding = ".recovery.glb";
 
-// Of a copy in the user's folder: what it is of.
+// For a copy in the user's folder: the file that describes its origin.
 fs::path about_of_copy(const fs::path& copy) {
   return fs::path(copy).concat(".json");
 }
 
-// Paths that a copy needs and the level's own file format has no place for.
+// Paths that a copy needs and that have no place in the level's file format.
 fs::path scripts_of_copy(const fs::path& copy) {
   return fs::path(copy).concat(".paths.json");
 }
@@ -36,7 +36,7 @@ Status write_json(const fs::path& file, const Json& json) {
   return write_file(file, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }
 
-// Before the copy itself: a level never stands without the paths that it names.
+// Written before the copy, so that a level never lacks its paths.
 Status write_scripts(const fs::path& copy, const Scripts& scripts) {
   std::error_code gone;
   if (scripts.empty()) {
@@ -81,7 +81,7 @@ fs::path whole(const fs::path& file) {
   return failed ? file : from_root.lexically_normal();
 }
 
-// Of a document with a file: the same name for the same file. Of another one: of this process.
+// For a document with a file: one name per file. Otherwise: a name of this process.
 fs::path apart(const fs::path& state_folder, const fs::path& file, const std::string& title) {
   static std::atomic<int> number{0};
   const std::string name =
@@ -165,14 +165,14 @@ Scripts scripts_beside_copy(const fs::path& copy) {
         if (!rows->empty()) script.rows = std::move(rows);
       }
       scripts[name] = std::make_shared<const ScriptKeys>(std::move(script));
-    } catch (const Json::exception&) {  // not what was written: the others may be
+    } catch (const Json::exception&) {  // invalid content; the others may be valid
     }
   return scripts;
 }
 
 void remove_recovery(const RecoveryCopy& copy) {
   std::error_code gone;
-  // What a copy was being written to when the editor ended.
+  // Temporary files left when the editor crashed during writing.
   const std::string half = copy.copy.filename().string() + ".";
   for (const fs::directory_entry& entry :
        fs::directory_iterator(copy.copy.parent_path().empty() ? "." : copy.copy.parent_path(), gone)) {

@@ -1,6 +1,6 @@
-// Copies of what is not saved yet, for the day the editor ends without being asked to. A document that has a file has
-// its copy beside it, as .NAME.recovery.glb; where that folder cannot be written, and for a document without a file,
-// the copy lies in a folder of the user's. A copy appears whole, and is gone once the document is saved or given up.
+// Recovery copies of unsaved changes, in case the editor crashes. The copy of a document with a file is beside it, as
+// .NAME.recovery.glb. If that folder is not writable, or the document has no file, the copy is in a folder of the
+// user's. A copy is written atomically, and removed when the document is saved or closed.
 #pragma once
 
 #include <atomic>
@@ -17,8 +17,8 @@ namespace pliant {
 
 struct RecoveryCopy {
   std::filesystem::path copy;
-  std::filesystem::path file;    // that it is of; empty: it has none yet
-  std::filesystem::path folder;  // where files that it names are sought
+  std::filesystem::path file;    // the original file; empty: none yet
+  std::filesystem::path folder;  // folder of referenced files
   std::string title;
   std::filesystem::file_time_type time;
 };
@@ -27,21 +27,21 @@ std::filesystem::path recovery_beside(const std::filesystem::path& file);
 
 // The newer one of the two places.
 std::optional<RecoveryCopy> find_recovery(const std::filesystem::path& file, const std::filesystem::path& state_folder);
-// In the user's folder, of editors that run no more; newest first.
+// In the user's folder, from editors that no longer run; newest first.
 std::vector<RecoveryCopy> find_recoveries(const std::filesystem::path& state_folder);
-// The paths that were in no file when the copy was written; empty: there were none, or they cannot be read.
+// The paths that were in no file when the copy was written; empty: none, or unreadable.
 Scripts scripts_beside_copy(const std::filesystem::path& copy);
-// With what belongs to it. A failure leaves it for the next time.
+// With its associated files. After a failure it is left for the next time.
 void remove_recovery(const RecoveryCopy& copy);
 
-// Where one document's copy goes, for as long as it is open.
+// The place of one document's copy, while it is open.
 class RecoveryPlace {
  public:
-  // `file` empty: the document has none. `folder`: where files that it names are sought.
+  // Empty `file`: none yet. `folder`: of referenced files.
   RecoveryPlace(std::filesystem::path file, std::filesystem::path folder, std::string title,
                 std::filesystem::path state_folder);
-  // `unsaved`: paths that are in no file as they are. On any thread, one at a time. Nothing is left once forget() was
-  // called, even if that was meanwhile.
+  // `unsaved`: paths that differ from their files. On any thread, one at a time. After forget(), also during this call,
+  // nothing is left.
   Status write(const State& state, const Scripts& unsaved = {});
   void forget();  // on any thread
   bool written() const { return written_; }

@@ -5,7 +5,7 @@
 namespace pliant {
 namespace {
 
-// Where it is noted that keys of an extension are said; the node becomes this state's own.
+// The set of stated keys for an extension; copies the node into this state.
 std::set<std::string>& stated_of(State& state, NodeId id, const std::string& extension) {
   if (find_extension(extension)->on_scene) return state.stated;
   const std::size_t at = state.place(id);

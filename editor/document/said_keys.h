@@ -1,4 +1,4 @@
-// Keys that the level says, at their default too: they are saved with it, and no error budget chooses them.
+// Keys stated in the level, even at their default: they are saved, and error budgets do not choose them.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 namespace pliant {
 
 struct SaidKey {
-  std::string extension, key;  // "deformable", "shape"; "simulation", "soft_step" of the scene
+  std::string extension, key;  // "deformable", "shape"; for the scene "simulation", "soft_step"
   Json value;
 };
 
-// All of them in one edit, of this node or the scene.
+// Sets all keys in one edit, on this node or the scene.
 Result<State> with_said(const State& state, NodeId id, const std::vector<SaidKey>& keys);
-// Back to their defaults, and left out when the level is saved; values are not looked at.
+// Resets keys to their defaults and unstates them; ignores the values.
 Result<State> without_said(const State& state, NodeId id, const std::vector<SaidKey>& keys);
 
 }  // namespace pliant

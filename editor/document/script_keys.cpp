@@ -27,7 +27,7 @@ std::uint64_t hash_of(std::string_view text) {  // FNV-1a
   return hash;
 }
 
-// What stands behind the comments of a script.
+// The text after the comments of a script.
 std::string_view rows_of_text(std::string_view text) {
   while (text.starts_with('#')) {
     const std::size_t end = text.find('\n');
@@ -39,7 +39,7 @@ std::string_view rows_of_text(std::string_view text) {
 
 // The slope at key i that keeps each piece monotone.
 dvec3 slope(const std::vector<PathKey>& keys, std::size_t i) {
-  if (i == 0 || i + 1 == keys.size()) return dvec3(0);  // begins and ends at rest
+  if (i == 0 || i + 1 == keys.size()) return dvec3(0);  // starts and ends at rest
   const double before = keys[i].time - keys[i - 1].time, after = keys[i + 1].time - keys[i].time;
   const dvec3 left = (keys[i].position() - keys[i - 1].position()) / before,
               right = (keys[i + 1].position() - keys[i].position()) / after;
@@ -57,7 +57,7 @@ dvec3 slope(const std::vector<PathKey>& keys, std::size_t i) {
 bool ScriptKeys::operator==(const ScriptKeys& o) const {
   if (keys != o.keys || smooth != o.smooth || repeats != o.repeats || along != o.along || !(tip == o.tip)) return false;
   if (!rows || !o.rows) return !rows == !o.rows;
-  // Rotations are made unit when they are read.
+  // Rotations are normalised on reading, so they are not compared.
   return rows == o.rows ||
          std::equal(rows->begin(), rows->end(), o.rows->begin(), o.rows->end(),
                     [](const PathRow& a, const PathRow& b) { return a.time == b.time && a.position == b.position; });
@@ -91,7 +91,7 @@ dvec3 position_at(const ScriptKeys& script, double time) {
     const PathRow row = pose_at(script, time);
     const dvec3 middle = row.position + row.rotation * script.tip.place;
     dvec3 out = row.rotation * script.tip.axis;
-    if (script.tip.axis == dvec3(0)) {  // as the keys around it are pressed
+    if (script.tip.axis == dvec3(0)) {  // in the direction in which the neighbouring keys are pressed
       const auto after =
           std::upper_bound(keys.begin(), keys.end(), time, [](double t, const PathKey& key) { return t < key.time; });
       const PathKey& b = after == keys.end() ? keys.back() : *after;
@@ -178,7 +178,7 @@ ScriptKeys smooth_keys_of(const Path& path, double tolerance) {
   };
   std::vector<std::size_t> kept{0};
   if (rows.size() > 1) kept.push_back(rows.size() - 1);
-  for (bool more = true; more;) {  // a key where each piece is farthest off
+  for (bool more = true; more;) {  // adds a key where each piece has its largest error
     more = false;
     script.keys.clear();
     for (const std::size_t row : kept) script.keys.push_back(key_at(row));
@@ -199,7 +199,7 @@ ScriptKeys smooth_keys_of(const Path& path, double tolerance) {
     next.push_back(kept.back());
     kept = std::move(next);
   }
-  // Each that its neighbours can do without. A key has a say in the two pieces on either side of it.
+  // Removes keys that are not needed. A key influences two pieces on either side.
   for (std::size_t k = 1; k + 1 < kept.size();) {
     const std::size_t first = k < 3 ? 0 : k - 3, last = std::min(k + 3, kept.size() - 1);
     ScriptKeys near;
@@ -280,7 +280,7 @@ Result<ScriptKeys> load_keys(const std::filesystem::path& file) {
     if (words >> k.time >> k.anchor.x >> k.anchor.y >> k.anchor.z >> k.normal.x >> k.normal.y >> k.normal.z >> k.height)
       script.keys.push_back(k);
   }
-  // Keys count only where they still make the rows: somebody may have changed those.
+  // Stored keys are used only if they still produce the rows, which may have been edited.
   const auto ascend = [](const PathKey& a, const PathKey& b) { return a.time >= b.time; };
   bool same = script.keys.size() > (has_tip ? 0u : 1u) &&
               std::adjacent_find(script.keys.begin(), script.keys.end(), ascend) == script.keys.end();

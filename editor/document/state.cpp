@@ -71,8 +71,8 @@ std::string name_of(Channel channel) {
 }
 
 std::size_t State::place(NodeId id) const {
-  // Ids are given in order, and edits shift nodes by little: the search begins where the node would be had nothing been
-  // changed, and goes both ways.
+  // Ids are assigned in order, and edits move nodes only a little: search from the expected position in both
+  // directions.
   const std::size_t count = nodes.size();
   if (count == 0) return 0;
   const std::size_t first = nodes.front()->id;

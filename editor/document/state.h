@@ -1,6 +1,5 @@
-// A level as the editor has it: everything that can be changed, in parts that copies share. A State is a value: an edit
-// makes another one and leaves the first as it was, so that undo keeps states, and other threads may read one while the
-// hand goes on.
+// The editor's representation of a level: all editable data, in parts that copies share. A State is a value: an edit
+// creates a new one and leaves the old one unchanged. Undo keeps states, and other threads can read one during edits.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +15,7 @@
 
 namespace pliant {
 
-// Stands for a node as long as the document is open, whatever is renamed, moved, deleted and brought back.
+// Identifies a node while the document is open, through renaming, moving, deletion and undo.
 using NodeId = std::uint32_t;
 inline constexpr NodeId kNoNode = 0;
 
@@ -32,12 +31,12 @@ struct DocumentMesh : LevelMesh {
   explicit DocumentMesh(LevelMesh mesh);
 };
 
-// What is painted on a mesh, one value a vertex of a primitive.
+// The painted values of a mesh, one per vertex of a primitive.
 using Channel = PaintAttribute;
 inline constexpr Channel kChannels[] = {Channel::kStiffness,  Channel::kFriction, Channel::kDamping,
                                         Channel::kRelaxation, Channel::kPinned,   Channel::kHandle};
 std::string name_of(Channel channel);  // "stiffness"
-// 0 to 1, 0 where nothing is painted; else a factor, 1 there.
+// Shares: 0 to 1, default 0; else a factor, default 1.
 inline bool is_share(Channel channel) {
   return channel >= Channel::kPinned;
 }
@@ -54,44 +53,44 @@ struct LayerKey {
   auto operator<=>(const LayerKey&) const = default;
 };
 
-// By the file that a device names.
+// By the file name in the device.
 using Scripts = std::map<std::string, std::shared_ptr<const ScriptKeys>>;
 
 struct State {
   std::vector<std::shared_ptr<const DocumentNode>> nodes;  // parents before children
-  // Only ever added to, so that a number stands for the same mesh in every state.
+  // Only appended to, so that a number identifies the same mesh in every state.
   std::vector<std::shared_ptr<const DocumentMesh>> meshes;
-  std::map<LayerKey, PaintLayer> paint;  // absent: nothing is painted
+  std::map<LayerKey, PaintLayer> paint;  // absent: unpainted
   std::shared_ptr<const Level> rest;     // materials, images, animations, notes, source; without nodes and meshes
-  std::string about;                     // what the level shows
+  std::string about;                     // description of the level
   std::optional<LevelEnvironment> environment;
   Simulation simulation;
-  std::set<std::string> stated;  // keys of the scene that are said, as Level::stated; those of nodes are theirs
-  // Paths that devices follow, by the file that they name, relative to the level; files that cannot be read are absent.
+  std::set<std::string> stated;  // stated keys of the scene, as Level::stated; nodes have their own
+  // Paths of devices, by file name relative to the level; unreadable files are absent.
   Scripts scripts;
 
   const DocumentNode* find(NodeId id) const;
-  const DocumentNode* find(const std::string& name) const;  // the first of that name
-  std::size_t place(NodeId id) const;                       // into `nodes`; their number: none
+  const DocumentNode* find(const std::string& name) const;  // the first with that name
+  std::size_t place(NodeId id) const;                       // into `nodes`; their number: not found
   std::vector<NodeId> children(NodeId id) const;            // kNoNode: roots
   bool below(NodeId id, NodeId ancestor) const;             // or the same
   dmat4 to_world(NodeId id) const;                          // of its frame; of kNoNode the identity
 };
 
-// `next_id` gives ids and is moved on.
+// `next_id` is the source of ids and is incremented.
 State state_of(Level level, NodeId& next_id);
-// The whole level, painted values in its meshes: what is saved and played.
+// The whole level with painted values in its meshes, for saving and playing.
 Level level_of(const State& state);
-// The same without meshes' contents and painted values: names, frames and components, for what asks only for those.
+// The same without mesh contents and painted values: names, frames and components only.
 Level outline_of(const State& state);
 
-// Whether both are the same document to the bit: nodes, components, painted values, scene.
+// Whether both documents are identical, bit by bit: nodes, components, painted values, scene.
 bool same(const State& a, const State& b);
 
-// Devices that follow one of these scripts have another driver: no file is looked for that is not written yet.
+// Replaces the driver of devices that follow one of these scripts, because their files may not be written yet.
 void leave_out_scripts(Level& level, const Scripts& scripts, DriverKind instead);
 
-// Writes a document's level where it is, or elsewhere; the file appears whole.
+// Writes a document's level to its file or another one, atomically.
 Status save_state(const State& state, const std::filesystem::path& file);
 
 }  // namespace pliant

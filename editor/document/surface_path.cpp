@@ -15,8 +15,8 @@ constexpr int kTightenings = 60;      // sweeps that pull it tight
 constexpr int kMostPushes = 80;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-// Of the feature that is closest: a face, or what faces around an edge or a corner make together, so that inside and
-// outside are told apart there, too (Baerentzen and Aanaes 2005).
+// The pseudonormal of the closest feature: of a face, or of the faces around an edge or vertex, so that inside and
+// outside are distinguished there, too (Baerentzen and Aanaes 2005).
 dvec3 outward(const PaintSurface& surface, const SurfaceHit& hit) {
   constexpr double kOn = 1e-9;
   const Mesh& mesh = surface.mesh();
@@ -39,7 +39,7 @@ dvec3 outward(const PaintSurface& surface, const SurfaceHit& hit) {
   return size > 0.0 ? hit.normal + n / size : hit.normal;
 }
 
-// As it is shaded. [1]
+// The shading normal. [1]
 dvec3 smooth_normal(const PaintSurface& surface, const SurfaceHit& hit) {
   dvec3 sum(0);
   for (int i = 0; i < 3; ++i) sum += hit.barycentric[i] * dvec3(surface.mesh().normal(hit.triangle, i));
@@ -47,7 +47,7 @@ dvec3 smooth_normal(const PaintSurface& surface, const SurfaceHit& hit) {
   return size > 1e-6 ? sum / size : hit.normal;
 }
 
-// The shortest turn of `from` to `to`; both unit.
+// The shortest rotation of `from` to `to`; both unit.
 dquat turn_between(dvec3 from, dvec3 to) {
   const double cosine = dot(from, to);
   if (cosine < -0.999999) {
@@ -59,8 +59,8 @@ dquat turn_between(dvec3 from, dvec3 to) {
   return normalize(dquat(1.0 + cosine, c.x, c.y, c.z));
 }
 
-// Values at ascending times, once continuously differentiable and monotone between neighbours (Fritsch and Butland
-// 1984); `slows` [1] is how much of its slope a place keeps.
+// C1 monotone interpolation of values at ascending times (Fritsch and Butland 1984); `slows` [1] scales the slope at
+// each point.
 struct Monotone {
   std::vector<double> time, value, slows;
   bool smooth = true;
@@ -127,7 +127,7 @@ class RowMaker {
   };
   struct Leg {
     std::vector<Node> nodes;
-    std::vector<double> way;          // [m] of the tip's middle, as far as each node
+    std::vector<double> way;          // [m] arc length of the tip centre's path at each node
     const PathSurface* on = nullptr;  // null: through the air
     double spacing = 0.0;             // [m]
   };
@@ -138,10 +138,10 @@ class RowMaker {
 
   double stands_off(double height) const { return height + script_.tip.radius; }
 
-  // [m] How far surfaces are looked for: what stands off one is no farther in any; what goes through the air may be.
+  // [m] Search distance for surfaces: for a point on a surface its offset suffices; in the air it is unlimited.
   double reach(double off, bool on_surface) const { return on_surface ? std::abs(off) + tolerance_ : size_; }
 
-  // Where the middle of the tip stands off a place, moved out of whatever else comes nearer.
+  // The tip's centre at its offset from a surface point, moved away from any surface that is nearer.
   dvec3 lifted(const Node& node, double off, bool on_surface) const {
     dvec3 middle = node.place + off * node.out;
     for (int i = 0; i < kMostPushes; ++i) {
@@ -156,7 +156,7 @@ class RowMaker {
     return {key.time, lifted({key.anchor, key.normal}, stands_off(key.height), true), key.normal};
   }
 
-  // The surface that a key lies on.
+  // The surface on which a key lies.
   const PathSurface* under(const PathKey& key, SurfaceHit& hit) const {
     const PathSurface* found = nullptr;
     double nearest = 10.0 * tolerance_;
@@ -195,7 +195,7 @@ class RowMaker {
     return out;
   }
 
-  // From corner to corner of the mesh, the shortest; A* (Hart, Nilsson and Raphael 1968).
+  // The shortest path along mesh edges; A* (Hart, Nilsson and Raphael 1968).
   static std::vector<dvec3> over_edges(const PaintSurface& surface, const SurfaceHit& from, const SurfaceHit& to) {
     const Mesh& mesh = surface.mesh();
     std::vector<dvec3> out{from.point};
@@ -240,7 +240,7 @@ class RowMaker {
     return out;
   }
 
-  // As many places, the same way apart.
+  // Resamples with equal spacing.
   static std::vector<dvec3> resampled(const std::vector<dvec3>& line, int steps) {
     std::vector<double> way{0.0};
     for (std::size_t i = 1; i < line.size(); ++i) way.push_back(way.back() + length(line[i] - line[i - 1]));
@@ -272,7 +272,7 @@ class RowMaker {
     for (int sweep = 0; sweep < kTightenings; ++sweep)
       for (std::size_t i = 1; i + 1 < line.size(); ++i) {
         const SurfaceHit hit = surface.closest(0.5 * (line[i - 1] + line[i + 1]), 2.0 * spacing);
-        // A thin part has another side: the curve stays in one piece.
+        // A thin part has another side: keep the curve on one.
         if (!hit.valid() || length(hit.point - line[i - 1]) > 1.5 * spacing ||
             length(hit.point - line[i + 1]) > 1.5 * spacing)
           continue;
@@ -293,7 +293,7 @@ class RowMaker {
     return out;
   }
 
-  // Directions turn over about `reach` [m] of the way, so that the tip is led around an edge instead of jumping.
+  // Smooths directions over about `reach` [m] of arc length, so that the tip is moved around an edge without a jump.
   static void soften(Leg& leg, double reach) {
     const int count = static_cast<int>(leg.nodes.size()), wide = static_cast<int>(std::ceil(reach / leg.spacing));
     const std::vector<Node> before = leg.nodes;
@@ -306,7 +306,7 @@ class RowMaker {
     }
   }
 
-  // Straight; where that leads through a surface, up from both, and over.
+  // Straight; if that crosses a surface, up from both ends, and over.
   Leg through_air(const PathKey& a, const PathKey& b) const {
     const double off_a = stands_off(a.height), off_b = stands_off(b.height);
     const dvec3 up_a = a.normal, up_b = b.normal;
@@ -335,7 +335,7 @@ class RowMaker {
     return best;
   }
 
-  // 1: both legs lie in one line where they meet; 0: it turns, and the tip rests there.
+  // 1: both legs are collinear where they meet; 0: the direction changes, and the tip stops there.
   static double straight_on(const Leg& before, const Leg& after) {
     const auto piece = [](const Node& a, const Node& b) { return b.place - a.place; };
     const dvec3 in = piece(before.nodes[before.nodes.size() - 2], before.nodes.back()),
@@ -365,7 +365,7 @@ class RowMaker {
     return {time, lifted(node, off, leg.on != nullptr), node.out};
   }
 
-  // Rows between two that are too far apart for a straight line between them.
+  // Inserts rows between two that are too far apart for a straight line.
   void refine(std::size_t i, const Placed a, const Placed& b, int deeper, std::vector<Placed>& all) const {
     const double time = 0.5 * (a.time + b.time);
     bool close = deeper == 0;
@@ -385,7 +385,7 @@ class RowMaker {
     refine(i, middle, b, deeper - 1, all);
   }
 
-  // The device under the tip, turned along with it as little as that takes.
+  // Device poses for the tip's path, with the least rotation.
   std::vector<PathRow> poses(const std::vector<Placed>& all) const {
     const PathTip& tip = script_.tip;
     const bool turns = tip.axis != dvec3(0);

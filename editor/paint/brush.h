@@ -1,4 +1,4 @@
-// A brush as its settings, and how its effect falls off with the way along the surface.
+// Settings of a brush, and the falloff of its effect with the distance along the surface.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,10 @@ namespace pliant {
 
 enum class BrushFalloff : std::uint8_t { kConstant, kLinear, kSmooth, kSharp };
 enum class BrushMode : std::uint8_t {
-  kSet,     // towards `value`; going over a place again in one stroke takes it no farther than `strength`
-  kAdd,     // `value` is added by every dab, at full weight; below 0 it takes away
-  kSmooth,  // towards the mean of the neighbours, with every dab
-  kErase    // as kSet, towards what is unpainted
+  kSet,     // towards `value`; repeated passes in one stroke go no farther than `strength`
+  kAdd,     // every dab adds `value` at full weight; below 0 it subtracts
+  kSmooth,  // every dab moves values towards the neighbours' mean
+  kErase    // as kSet, towards the unpainted value
 };
 enum class BrushMirror : std::uint8_t { kNone, kX, kY, kZ };  // of the mesh frame, through its origin
 
@@ -23,15 +23,15 @@ struct Brush {
   double strength = 1.0;  // [1] 0 to 1
   BrushFalloff falloff = BrushFalloff::kSmooth;
   BrushMode mode = BrushMode::kSet;
-  double value = 1.0;  // [1] clamped to paint_range(); for kAdd what it leads to is
+  double value = 1.0;  // [1] clamped to paint_range(); for kAdd the result is clamped
   BrushMirror mirror = BrushMirror::kNone;
   PaintMask mask;
   bool both_sides = false;  // PaintSurface::hit
 };
 
-inline constexpr double kDabSpacing = 0.25;  // [1] of the radius: closer dabs are not told apart
+inline constexpr double kDabSpacing = 0.25;  // [1] of the radius: closer dabs look the same
 
-// Share of the strength at a distance of `away` [1] radii: 1 at the middle. kSmooth leaves both ends level.
+// Share of the strength at a distance of `away` [1] radii: 1 at the centre. kSmooth has zero slope at both ends.
 inline double falloff_at(BrushFalloff falloff, double away) {
   const double near = 1.0 - std::clamp(away, 0.0, 1.0);
   switch (falloff) {

@@ -32,7 +32,7 @@ double mm(double metres) {
   return 1e3 * metres;
 }
 
-// Triangles that the touch mesh leaves out (degenerate or double) stay in the file.
+// Triangles that are not in the touch mesh (degenerate or duplicate) are kept in the file.
 void keep_the_rest(const LevelMesh& mesh, const TouchMesh& touch, std::vector<Primitive>& finer) {
   std::vector<std::uint8_t> taken(touch.gathered.triangle.size(), 0);
   for (const std::uint32_t t : touch.welded.source_triangle) taken[t] = 1;
@@ -50,7 +50,7 @@ void keep_the_rest(const LevelMesh& mesh, const TouchMesh& touch, std::vector<Pr
 
 std::optional<CoarseMesh> coarse_for(const Brush& brush, const PaintSurface& surface, const SurfaceHit& hit,
                                      MarchWork& work) {
-  // The inner half: a large triangle that the rim touches is not in the brush's way.
+  // Only the inner half: a large triangle touched by the rim does not matter.
   const double edge = longest_edge(surface.mesh(), surface.triangles_under(hit, 0.5 * brush.radius, work));
   const double most = kSpared * kEdgeOfReach * brush.radius;
   if (!(edge > most)) return std::nullopt;
@@ -66,7 +66,7 @@ Result<RefinedMesh> refine_under(const LevelMesh& mesh, const PaintSurface& surf
   const std::string where = "mesh `" + mesh.name + "`";
   if (!(radius > 0.0 && edge > 0.0 && std::isfinite(radius + edge)))
     return Error{where, "refining wants a radius and an edge length above 0"};
-  // In the mesh frame and as the file is wound, so that nothing needs to be turned back.
+  // In the mesh frame and with the file's winding, so that no conversion back is needed.
   Result<TouchMesh> touch = build_touch_mesh(mesh.name, mesh.primitives, mat4(1.0f), {.mend_winding = false});
   if (!touch) return touch.error();
 
@@ -76,7 +76,7 @@ Result<RefinedMesh> refine_under(const LevelMesh& mesh, const PaintSurface& surf
   for (std::size_t n = 0; n < mesh.primitives.size(); ++n)
     first[n + 1] = first[n] + mesh.primitives[n].index.size() / 3;
   MarchWork work;
-  // As far as edges may get shorter: where half the distance is as long as the longest of them.
+  // Limit of the region in which edges are shortened: where half the distance equals the longest edge.
   const double longest = longest_edge(surface.mesh(), surface.triangles_under(hit, radius, work));
   for (const std::uint32_t t : surface.triangles_under(hit, radius + 2.0 * longest, work)) {
     const SourceTriangle source = surface.source_triangle(t);
@@ -94,7 +94,7 @@ Result<RefinedMesh> refine_under(const LevelMesh& mesh, const PaintSurface& surf
     return out;
   }
   keep_the_rest(mesh, *touch, finer.primitives);
-  for (std::size_t n = 0; n < mesh.primitives.size(); ++n)  // -0, which gathering makes 0
+  for (std::size_t n = 0; n < mesh.primitives.size(); ++n)  // -0, which gathering replaces by 0
     std::copy(mesh.primitives[n].position.begin(), mesh.primitives[n].position.end(),
               finer.primitives[n].position.begin());
   out.mesh.primitives = std::move(finer.primitives);

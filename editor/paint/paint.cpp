@@ -95,7 +95,7 @@ double value_probe(const MeshPaint& paint, const PaintSurface& surface, const Su
 
 namespace {
 
-// A vertex counts as changed where any of its copies is.
+// A vertex counts as changed if any of its copies is.
 void change(const MeshPaint& paint, const PaintSurface& surface, std::uint32_t vertex, float value,
             PaintChanges& changes) {
   for (const SourceVertex& s : surface.sources(vertex))

@@ -1,6 +1,6 @@
-// What a PaintSurface finds along the surface. Marching as systems/touch/surface_distance.cpp does: Kimmel & Sethian
-// 1998 with the source unfolded into each triangle's plane, and a node that is reached by a shorter way later is
-// expanded again, so that obtuse triangles are not in the way.
+// Geodesic queries of a PaintSurface. Fast marching as in systems/touch/surface_distance.cpp: Kimmel & Sethian 1998
+// with the source unfolded into each triangle's plane. A node reached by a shorter way later is expanded again, so that
+// obtuse triangles cause no error.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +14,7 @@ namespace pliant {
 namespace {
 
 constexpr float kUnreached = std::numeric_limits<float>::infinity();
-// Shorter by more than rounding, or two nodes would go on improving each other for ever.
+// Shorter by more than rounding; otherwise two nodes could improve each other forever.
 constexpr float kShorter = 1 - 1e-5f;
 
 std::vector<std::uint32_t> ascending(std::vector<std::uint32_t> values) {
@@ -33,7 +33,7 @@ std::vector<std::uint32_t> flagged(const std::vector<std::uint8_t>& flags, std::
 
 }  // namespace
 
-// Leaves the distances of all nodes within radius in `work`, and of some beyond.
+// Writes the distances of all nodes within the radius, and of some beyond, to `work`.
 void PaintSurface::march(const SurfaceHit& hit, double radius, const PaintMask& mask, MarchWork& work) const {
   const Topology& topology = topology_of(mask);
   const auto position = [&](std::uint32_t node) {
@@ -59,7 +59,7 @@ void PaintSurface::march(const SurfaceHit& hit, double radius, const PaintMask& 
   const uvec3 start = nodes_of(topology, hit.triangle);
   for (int i = 0; i < 3; ++i) reached(start[i], length(position(start[i]) - vec3(hit.point)));
 
-  // The corners of a triangle that the rim passes through may lie beyond it, and their distances count.
+  // Corners of a triangle at the rim may lie beyond it, and their distances are needed.
   const auto rim = static_cast<float>(radius);
   float longest = 0.0f;
   while (!work.heap_.empty()) {
@@ -97,7 +97,7 @@ std::vector<ReachedVertex> PaintSurface::footprint(const SurfaceHit& hit, double
       found.push_back({topology.vertex.empty() ? node : topology.vertex[node], node, work.distance_[node]});
   if (topology.vertex.empty()) return found;
 
-  // A vertex that was reached on several sides of a crease counts where it is nearest.
+  // A vertex reached on several sides of a crease takes its smallest distance.
   std::sort(found.begin(), found.end(), [](const ReachedVertex& a, const ReachedVertex& b) {
     return a.vertex != b.vertex ? a.vertex < b.vertex : a.distance < b.distance;
   });
@@ -114,7 +114,8 @@ std::vector<std::uint32_t> PaintSurface::triangles_under(const SurfaceHit& hit, 
   if (!hit.valid() || !(radius > 0.0)) return {};
   march(hit, radius, {}, work);
   std::vector<std::uint32_t> found{hit.triangle};
-  // Every triangle that the march has met has a corner among the nodes touched, those far larger than the brush too.
+  // Every triangle reached by the march has a corner among the touched nodes, including triangles much larger than the
+  // brush.
   for (const std::uint32_t node : work.touched_)
     for (std::uint32_t c = whole_.corners.first[node]; c < whole_.corners.first[node + 1]; ++c) {
       const std::uint32_t t = whole_.corners.corner[c] / 3;

@@ -36,7 +36,7 @@ PaintLayer PaintLayer::constant(std::size_t count, float value) {
 
 PaintLayer PaintLayer::with(std::span<const IndexedValue> changes) const {
   PaintLayer out = *this;
-  std::vector<Chunk*> own(chunks_.size(), nullptr);  // chunks made here, which nobody else sees yet
+  std::vector<Chunk*> own(chunks_.size(), nullptr);  // chunks created here, which are not shared yet
   for (const auto [index, value] : changes) {
     ASSERT(index < size_);
     const std::size_t place = index / kChunk, at = index % kChunk;

@@ -1,6 +1,5 @@
-// What is painted on one primitive: a persistent array of floats. It never changes; `with` makes a new one that shares
-// every chunk that is not touched, so an undo stack pays for a stroke what the stroke touched.
-// Copies are cheap and may be read on any thread.
+// The paint of one primitive: a persistent, immutable array of floats. `with` makes a new one that shares all unchanged
+// chunks, so an undo step costs only what the stroke touched. Copies are cheap and may be read on any thread.
 #pragma once
 
 #include <array>
@@ -30,14 +29,14 @@ class PaintLayer {
   // kChunk values; two chunks at the same address are the same.
   const float* chunk(std::size_t i) const { return chunks_[i]->data(); }
   float value(std::size_t i) const { return (*chunks_[i / kChunk])[i % kChunk]; }
-  // In order: of several values for one index the last counts. A chunk whose bits stay as they are stays shared.
+  // Applied in order: of several values for one index the last counts. A chunk whose bits do not change stays shared.
   PaintLayer with(std::span<const IndexedValue> changes) const;
   std::vector<float> flatten() const;
 
-  // To the bit: NaN equals itself, 0 differs from -0. Shared chunks are not read.
+  // Bitwise: NaN equals itself, 0 differs from -0. Shared chunks are not compared.
   friend bool operator==(const PaintLayer& a, const PaintLayer& b);
 
-  // [bytes] of the chunks that only this layer holds, seen from `other`: what keeping both costs over `other` alone.
+  // [bytes] of the chunks that are not shared with `other`.
   std::size_t bytes_not_shared_with(const PaintLayer& other) const;
 
  private:

@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-// A frame whose volume is less than this share of its longest axis cubed flattens.
+// A frame whose volume is below this share of its longest axis cubed is degenerate.
 constexpr double kFlat = 1e-12;
 
 bool flattens(const dmat3& frame) {
@@ -65,7 +65,7 @@ void PaintSurface::find_sources(const Gathered& gathered, const Welded& welded) 
 }
 
 PaintSurface::Topology PaintSurface::split_at_creases(const Mesh& mesh, const Corners& corners) {
-  // Corners at one vertex hang together over edges that are no creases.
+  // Corners at one vertex are connected across edges that are not creases.
   Topology out;
   out.triangle = mesh.triangles;
   out.vertex.resize(mesh.vertex_count);
@@ -132,7 +132,7 @@ SurfaceHit PaintSurface::hit(const Ray& ray, bool both_sides) const {
   const double size = length(ray.direction);
   if (!(size > 0.0) || !std::isfinite(size + length(ray.origin))) return {};
   const dvec3 along = ray.direction / size;
-  // Only the piece of the ray that can meet the mesh: a ball about its box.
+  // Only the segment of the ray that can hit the mesh: a sphere around its box.
   const dvec3 center(mesh_.box.center());
   const double half = 0.5 * static_cast<double>(mesh_.box.diagonal()) * 1.001, middle = dot(center - ray.origin, along);
   const double begin = std::max(0.0, middle - half), end = middle + half;
@@ -151,7 +151,7 @@ SurfaceHit PaintSurface::hit(const Ray& ray, bool both_sides) const {
         const uvec3 t = mesh_.triangles[triangle];
         const dvec3 a(mesh_.position(t.x)), e(dvec3(mesh_.position(t.y)) - a), f(dvec3(mesh_.position(t.z)) - a);
         const dvec3 p = cross(d, f);
-        const double volume = dot(e, p);  // > 0: met from outside
+        const double volume = dot(e, p);  // > 0: hit from outside
         if (volume == 0.0) return;
         const dvec3 s = from - a, q = cross(s, e);
         const double u = dot(s, p) / volume, v = dot(d, q) / volume, fraction = dot(f, q) / volume;

@@ -1,7 +1,7 @@
-// The surface that is painted: a level's mesh, welded, with its creases and its triangle tree, and which vertices of
-// the file stand behind each welded one. Made once per mesh, on any thread; never changes; read by every stroke.
+// The surface to paint: a level's mesh, welded, with its creases, its triangle tree and the file vertices of each
+// welded vertex. Built once per mesh, on any thread; immutable; used by every stroke.
 //
-// Surface frame: the mesh frame through the node's linear part, so that lengths are those of the world [m].
+// Surface frame: the mesh frame with the node's linear part applied, so that lengths are world lengths [m].
 #pragma once
 
 #include <atomic>
@@ -28,7 +28,7 @@ struct SourceTriangle {
   std::uint32_t primitive, triangle;
 };
 
-// A place on the surface.
+// A point on the surface.
 struct SurfaceHit {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   std::uint32_t triangle = kNone;  // of PaintSurface::mesh()
@@ -46,11 +46,11 @@ struct Ray {
   dvec3 direction{0, 0, -1};  // of any length but 0
 };
 
-// Where paint stops. It never leaps a gap nor goes through the surface, whatever the mask.
+// Where painting stops. Paint never crosses a gap or the interior, whatever the mask.
 struct PaintMask {
   bool creases = false;    // at creases
-  bool primitive = false;  // at the rim of the primitive; a stroke stays on the one where it began
-  bool part = false;       // a stroke stays on the connected part where it began
+  bool primitive = false;  // at the border of the primitive; a stroke stays on its first one
+  bool part = false;       // a stroke stays on its first connected part
 };
 
 struct ReachedVertex {
@@ -59,7 +59,7 @@ struct ReachedVertex {
   float distance;        // [m] along the surface
 };
 
-// Working memory of marches over surfaces. One per thread; any surface.
+// Working memory for marching. One per thread; for any surface.
 class MarchWork {
   friend class PaintSurface;
   struct Item {
@@ -73,41 +73,40 @@ class MarchWork {
 
 class PaintSurface {
  public:
-  // `frame` is the linear part of the node's world matrix, or only its scale. Fails as build_mesh does, and where
-  // `frame` flattens. Once `stop` is set it soon returns an error, which nobody needs to read.
+  // `frame` is the linear part of the node's world matrix, or only its scale. Errors: those of build_mesh, and a
+  // degenerate `frame`. Once `stop` is set it soon returns an error, which can be ignored.
   static Result<PaintSurface> make(const LevelMesh& mesh, const dmat3& frame, const std::atomic<bool>* stop = nullptr);
 
   const Mesh& mesh() const { return mesh_; }  // surface frame; without zones and painted factors
   const dmat3& frame() const { return frame_; }
   const MeshReport& report() const { return report_; }
 
-  // The nearest front face along the ray, as a surface is drawn; where it meets none, the nearest back face.
-  // `both_sides`: the nearest face, as a double-sided material is drawn. Invalid: it meets nothing.
+  // The nearest front face along the ray, as drawn; if there is none, the nearest back face. `both_sides`: the nearest
+  // face, as for a double-sided material. Invalid: no hit.
   SurfaceHit hit(const Ray& ray, bool both_sides = false) const;
-  // The closest place that is not farther than `within` [m]; invalid where there is none.
+  // The closest point at most `within` [m] away; invalid if there is none.
   SurfaceHit closest(dvec3 point, double within) const;
 
-  // Welded vertices not farther than `radius` [m] from the hit along the surface, each once, about nearest first. Of
-  // the mask, `creases` and `primitive` count.
+  // Welded vertices at most `radius` [m] from the hit along the surface, each once, roughly nearest first. Uses
+  // `creases` and `primitive` of the mask.
   std::vector<ReachedVertex> footprint(const SurfaceHit& hit, double radius, const PaintMask& mask,
                                        MarchWork& work) const;
-  // Triangles that lie in reach of the hit: at least partly within `radius` of it in space, and not reached through the
-  // surface or over a gap. Ascending.
+  // Triangles within reach of the hit: at least partly within `radius` in space, and connected to it along the surface.
+  // Ascending.
   std::vector<std::uint32_t> triangles_under(const SurfaceHit& hit, double radius, MarchWork& work) const;
 
-  // Welded vertices of all triangles that hang together with the hit's; ascending. Of the mask, `creases` and
-  // `primitive` count.
+  // Welded vertices of all triangles connected to the hit's; ascending. Uses `creases` and `primitive` of the mask.
   std::vector<std::uint32_t> connected(const SurfaceHit& hit, const PaintMask& mask = {}) const;
   // Welded vertices of a primitive's triangles; ascending.
   std::vector<std::uint32_t> of_primitive(std::uint32_t primitive) const;
-  // Welded vertices in a box (surface frame); where it holds none, the one nearest to it. Ascending.
+  // Welded vertices in a box (surface frame); if there are none, the nearest one. Ascending.
   std::vector<std::uint32_t> in_box(const Box& box) const;
 
-  // Vertices of the file at a welded vertex. A seam has several: what is painted on one is painted on all.
+  // File vertices of a welded vertex. A seam has several; painting applies to all.
   std::span<const SourceVertex> sources(std::uint32_t vertex) const {
     return {sources_.data() + source_first_[vertex], sources_.data() + source_first_[vertex + 1]};
   }
-  // Nothing: no triangle that is touched uses it.
+  // Empty: no touched triangle uses it.
   std::optional<std::uint32_t> welded(SourceVertex source) const;
 
   std::size_t primitive_count() const { return first_vertex_.size() - 1; }
@@ -118,8 +117,8 @@ class PaintSurface {
   std::uint32_t part_count() const { return part_count_; }
   std::uint32_t part_of(std::uint32_t triangle) const { return part_[mesh_.triangles[triangle].x]; }  // < part_count
 
-  // Calls visit(vertex) for the welded vertices around a node that a footprint has returned, once per triangle and
-  // corner: those inside the surface twice, on a rim once.
+  // Calls visit(vertex) for the welded neighbours of a footprint's node, once per triangle and corner: twice inside the
+  // surface, once on a border.
   template <class Visit>
   void neighbours(std::uint32_t node, const PaintMask& mask, Visit visit) const {
     const Topology& topology = topology_of(mask);
@@ -132,7 +131,7 @@ class PaintSurface {
   }
 
  private:
-  // How the triangles hang together. A node stands for a welded vertex. Where creases stop, a vertex is one node for
+  // Connectivity of the triangles. A node represents a welded vertex. If creases are borders, a vertex has one node for
   // each fan of triangles between creases.
   struct Topology {
     Corners corners;                    // of nodes

@@ -8,9 +8,10 @@ namespace pliant {
 namespace {
 
 constexpr std::uint32_t kNone = SurfaceHit::kNone;
-constexpr double kSamples = 2.0;    // rays for each dab
-constexpr double kMostRays = 4096;  // for one move: the pointer of a tiny brush that crosses a large mesh at once
-constexpr double kLeap = 1.0;       // [1] radii: farther between two rays is another place, seen behind an edge
+constexpr double kSamples = 2.0;    // rays per dab
+constexpr double kMostRays = 4096;  // per move: limits a tiny brush that crosses a large mesh at once
+constexpr double kLeap = 1.0;       // [1] radii: a larger distance between two rays is a jump to another part, behind
+                                    // an edge
 
 }  // namespace
 
@@ -49,7 +50,7 @@ PaintChanges Stroke::go_on(double most_ms) {
   return changes;
 }
 
-// Finds the places of dabs on the way to `to`.
+// Determines the dab positions on the way to `to`.
 void Stroke::follow(const Pointer& to) {
   const auto place = [&](const Pointer& at) {
     if (at.hit.valid()) waiting_.push_back(at);
@@ -61,7 +62,7 @@ void Stroke::follow(const Pointer& to) {
   }
   const Pointer from = *last_;
   const double spacing = kDabSpacing * brush_.radius;
-  // Where an end is off the surface, the way over it is not known: as if it were half the mesh.
+  // If an end is off the surface, the distance is unknown: half the mesh is assumed.
   const bool whole = from.hit.valid() && to.hit.valid();
   const double way =
       whole ? length(to.hit.point - from.hit.point) : 0.5 * static_cast<double>(surface_.mesh().box.diagonal());
@@ -82,7 +83,7 @@ void Stroke::follow(const Pointer& to) {
   }
 }
 
-// The image of a place in a plane of the mesh frame, on the surface near it and facing the same way.
+// The mirror image of a point at a plane of the mesh frame: the near surface point with the same orientation.
 SurfaceHit Stroke::mirrored(const SurfaceHit& hit) const {
   dmat3 flip(1);
   const int axis = static_cast<int>(brush_.mirror) - 1;
@@ -128,7 +129,7 @@ void Stroke::dab(const Pointer& at) {
   reach(at.hit, strength, allowed_[0]);
   if (brush_.mirror != BrushMirror::kNone) reach(mirrored(at.hit), strength, allowed_[1]);
 
-  // All values from those before the dab, so that their order does not matter.
+  // All values are computed from those before the dab, so that their order does not matter.
   next_.clear();
   for (const std::uint32_t e : dabbed_) {
     Entry& entry = entries_[e];

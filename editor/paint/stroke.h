@@ -1,7 +1,7 @@
-// One stroke of a brush: from the press of a button to its release. Dabs follow the rays that the pointer sends, a
-// quarter of a radius apart on the surface, however fast the pointer moves.
+// One stroke of a brush, from press to release. Dabs are spaced a quarter of a radius apart on the surface along the
+// pointer's rays, whatever the pointer's speed.
 //
-// A dab and its mirror image count as one: where they overlap, the stronger of both acts.
+// A dab and its mirror image count as one: where they overlap, the stronger one acts.
 #pragma once
 
 #include <array>
@@ -19,33 +19,33 @@ class Stroke {
  public:
   static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-  // The surface must outlive the stroke. `before` is kept (shared, not copied) and never changed.
+  // The surface must outlive the stroke. `before` is shared and never changed.
   Stroke(const PaintSurface& surface, MeshPaint before, const Brush& brush);
 
-  // The pointer has come to `ray` (surface frame), straight from where it was; `pressure` [1] multiplies the strength.
-  // Makes the dabs on its way until `most_ms` [ms] have passed, at least one; the others wait. What is painted in the
-  // end does not depend on it. Returns what has changed since the last call.
+  // The pointer has moved straight to `ray` (surface frame); `pressure` [1] multiplies the strength. Makes the dabs on
+  // the way until `most_ms` [ms] have passed, at least one; the others are deferred. The final result does not depend
+  // on the limit. Returns the changes since the last call.
   PaintChanges move(const Ray& ray, double pressure = 1.0, double most_ms = kNoLimit);
-  // Makes dabs that wait.
+  // Makes deferred dabs.
   PaintChanges go_on(double most_ms = kNoLimit);
   bool waits() const { return !waiting_.empty(); }
 
-  // What is painted by the dabs that are made: `before` itself where nothing has changed.
+  // The paint after the dabs so far: `before` itself if nothing has changed.
   MeshPaint after() const;
   const MeshPaint& before() const { return before_; }
   std::uint32_t dabs() const { return dabs_; }
-  // Where the last dab was; nothing before the first.
+  // Place of the last dab; empty before the first.
   const std::optional<SurfaceHit>& last_dab() const { return last_dab_; }
 
  private:
-  // A vertex that the stroke has come to.
+  // A vertex reached by the stroke.
   struct Entry {
     std::uint32_t vertex, node;
     float begin, now;            // [1]
     double most = 0.0;           // [1] the largest weight of any dab
     double weight = 0.0;         // [1] of this dab
-    std::uint32_t dab = 0;       // the last that came here
-    std::uint32_t reported = 0;  // the call that has it in its list
+    std::uint32_t dab = 0;       // the last dab that reached it
+    std::uint32_t reported = 0;  // the call that has reported it
     bool changed = false;
   };
   struct Pointer {
@@ -53,7 +53,7 @@ class Stroke {
     double pressure = 1.0;
     SurfaceHit hit;
   };
-  // Where a stroke, or its mirror image, may go.
+  // Limits of the stroke, or of its mirror image.
   struct Allowed {
     std::uint32_t part = SurfaceHit::kNone, primitive = SurfaceHit::kNone;  // those of its first dab
   };
@@ -71,8 +71,8 @@ class Stroke {
   const MeshPaint before_;
   const Brush brush_;
   std::optional<Pointer> last_;
-  std::deque<Pointer> waiting_;  // dabs to be made
-  double travelled_ = 0.0;       // [m] since the last place of a dab
+  std::deque<Pointer> waiting_;  // deferred dabs
+  double travelled_ = 0.0;       // [m] since the last dab
   std::optional<SurfaceHit> last_dab_;
   std::uint32_t dabs_ = 0, calls_ = 0;
   std::array<Allowed, 2> allowed_;   // of the stroke and of its mirror image

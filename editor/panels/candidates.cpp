@@ -14,8 +14,8 @@ namespace pliant {
 namespace {
 
 constexpr float kPickReach = 9.0f;    // [point] of the mouse, to a point of the plot
-constexpr double kAir = 1.35;         // [1] beside the outermost points
-constexpr double kLeastError = 1e-4;  // [1] shown of an error of nothing
+constexpr double kAir = 1.35;         // [1] margin around the outermost points
+constexpr double kLeastError = 1e-4;  // [1] drawn value for a zero error
 constexpr double kLeastCost = 1e-3;   // [us]
 
 std::string ms_text(const ModelCandidate& it) {
@@ -127,7 +127,7 @@ void CandidateView::plot(const ModelChoice& choice, float wide, float high, bool
   }
   ui::Plot plot("Error against cost", "Error [1]", {wide, high}, axis_over(costs, "\u00b5s a tick"),
                 axis_over(errors, ""));
-  // What no other one beats in both: steps from the cheapest on.
+  // The Pareto front, as steps from the cheapest on.
   std::vector<dvec2> front;
   for (const ModelCandidate& it : choice.tried)
     if (front.empty() || error_of(it) < front.back().y) {
@@ -143,7 +143,8 @@ void CandidateView::plot(const ModelChoice& choice, float wide, float high, bool
     const ModelCandidate& it = choice.tried[i];
     const dvec2 at(cost_of(it), error_of(it));
     const bool chosen = i == choice.chosen, within = it.error <= choice.budget;
-    // Within the budget a disc, else a ring; the chosen one has a ring around it: colour alone says nothing.
+    // Within the budget a disc, else a ring; the chosen one has an outer ring. Shapes, because colour alone is not
+    // enough.
     plot.dot(at, faded ? p.faint : within ? p.good : p.dim, 3.5f, within);
     if (chosen) plot.dot(at, faded ? p.faint : p.accent, 7.0f, false);
     if (pointed_ == i) plot.dot(at, p.text, 5.5f, false);

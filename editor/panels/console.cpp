@@ -1,4 +1,4 @@
-// What has been said: by the level, by a run, by the editor itself.
+// Messages of the level, a run, and the editor.
 #include <fmt/format.h>
 
 #include "editor/app/app.h"
@@ -58,7 +58,7 @@ class ConsolePanel : public Panel {
     ui::checkbox("Warnings", warnings_);
     ImGui::SameLine();
     ui::checkbox("Notes", notes_);
-    // In a small window they make a row of their own.
+    // In a small window they form a separate row.
     if (const float at = ImGui::GetWindowContentRegionMax().x - ui::px(148);
         ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x <= at)
       ImGui::SameLine(at);

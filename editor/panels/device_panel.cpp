@@ -1,4 +1,4 @@
-// The devices of the level that is played (ui/device_list.h), and before that, what is there and what is missing.
+// The devices of the played level (ui/device_list.h); before playing, the available devices and what is missing.
 #include "devices/choose.h"
 #include "editor/app/app.h"
 #include "editor/panels/panels.h"

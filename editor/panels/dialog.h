@@ -1,4 +1,4 @@
-// A window over the others, in the middle, that its panel draws while it is open.
+// A centred modal window that its panel draws while it is open.
 #pragma once
 
 #include "editor/app/app.h"
@@ -8,13 +8,12 @@ namespace pliant {
 
 class Dialog {
  public:
-  // `size` [point]; it never leaves the window. Esc closes it, unless a text is being typed.
+  // `size` [point], limited to the window. Esc closes it, unless text is being edited.
   Dialog(App& app, const char* name, const char* title, ImVec2 size, bool esc_closes = true) {
     const ImVec2 all = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * all.x, 0.5f * all.y}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize(
-        {std::min(ui::px(size.x), all.x - ui::px(ui::kWide)),
-         std::min(ui::px(size.y), all.y - ui::px(60))});  // the line that says things stays in sight
+    ImGui::SetNextWindowSize({std::min(ui::px(size.x), all.x - ui::px(ui::kWide)),
+                              std::min(ui::px(size.y), all.y - ui::px(60))});  // the message line stays visible
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ui::palette().raised);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui::px(ui::kWide), ui::px(ui::kPad)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, ui::px(1));

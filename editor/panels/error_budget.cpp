@@ -1,4 +1,4 @@
-// What an error budget chooses for the selected object, and what it was chosen from: measured on that very object.
+// The model that an error budget chooses for the selected object, with all candidates, measured on that object.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ class ErrorBudgetPanel : public Panel {
           "takes the cheapest that is good enough.");
       return;
     }
-    const DocumentNode node = *found;  // edits of this frame replace the document's
+    const DocumentNode node = *found;  // a copy, because edits in this frame replace the document's
     look(editor, node.id);
     draw_controls(editor, node);
     const ImVec2 room = ImGui::GetContentRegionAvail();
@@ -71,7 +71,7 @@ class ErrorBudgetPanel : public Panel {
   }
 
  private:
-  // What the document says of the object as it is now.
+  // Reads the object's current state from the document.
   void look(const Editor& editor, NodeId id) {
     const DocumentNode& node = *editor.state().find(id);
     const double own = budget_of(node.node);
@@ -110,7 +110,7 @@ class ErrorBudgetPanel : public Panel {
                           "Writes the key `error`: what the level does not say is chosen whenever it is opened")) {
       editor.apply("Set error", with_value(editor.state(), ids, extension, key.name, trial_));
     }
-    // In a small window the row goes on below.
+    // In a small window the row is wrapped.
     ui::rows_end_at(ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x);
     ui::beside(ui::kSpace, "Measure again");
     ui::rows_end_at(0);
@@ -196,8 +196,7 @@ class ErrorBudgetPanel : public Panel {
     view_.table(choice, std::max(ImGui::GetContentRegionAvail().y, ui::px(kLeastTable)), stale_);
   }
 
-  // Which of an object's choices sentence, table and plot are of: its surface or the law of its force, its body or its
-  // tool.
+  // Selects which choice the sentence, table and plot show: surface or force law, body or tool.
   void draw_kinds(const std::vector<ModelChoice>& choices) {
     if (choices.size() < 2) return;
     for (const ModelChoice& each : choices) {
@@ -230,7 +229,7 @@ class ErrorBudgetPanel : public Panel {
   BudgetFits fits_;
   CandidateView view_;
   std::string kind_;       // of the choice that is shown; another object's first where it has none
-  double trial_ = kTrial;  // [1] budget that no key says
+  double trial_ = kTrial;  // [1] budget that is not in a key
   // Of the selected object, as the document is:
   bool has_budget_ = false, stale_ = false, in_use_ = false;
   double budget_ = kTrial;  // [1] its own, else the trial

@@ -1,5 +1,5 @@
-// The built-in browser for files: folders are read in the background, a path can be typed, nothing hidden is shown
-// unless it is asked for.
+// The built-in file browser: folders are read in the background, a path can be typed, hidden files are shown on
+// request.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostEntries = 5000;  // of a folder: beyond, one types a part of the name
+constexpr std::size_t kMostEntries = 5000;  // per folder; beyond it, the user types a part of the name
 
 struct FolderEntry {
   std::string name, shown;
@@ -95,7 +95,7 @@ class FileBrowser : public Panel {
 
   void draw(Editor& editor) override {
     const FileWish& wish = app_.files().wish();
-    if (app_.files().wishes() != of_) {  // another question
+    if (app_.files().wishes() != of_) {  // another request
       of_ = app_.files().wishes();
       name_ = wish.name;
       begins_ = true;
@@ -111,7 +111,7 @@ class FileBrowser : public Panel {
     places(editor);
     ImGui::EndChild();
     ImGui::SameLine();
-    // Arrow keys choose in it, letters seek a name.
+    // Arrow keys move the selection, letters search by name.
     ImGui::BeginChild("entries", {0, -below}, false, ImGuiWindowFlags_NoNavInputs);
     if (begins_ && !wish.save) ImGui::SetWindowFocus();
     if (ImGui::IsWindowFocused() && !ImGui::GetIO().WantTextInput) keys(editor);
@@ -120,7 +120,7 @@ class FileBrowser : public Panel {
     ui::gap(2);
     last_row(editor, wish);
     begins_ = false;
-    // Enter does what the dialog is for, wherever its keys are.
+    // Enter confirms the dialog, whatever has the focus.
     const bool enter = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) ||
                        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter), false);
     const std::string& chosen = wish.save && !entered_folder_ ? name_ : selected_;
@@ -305,7 +305,7 @@ class FileBrowser : public Panel {
   fs::path folder_;
   std::string typed_, name_, selected_;
   Filter filter_, read_;
-  bool begins_ = false;                     // just opened: the keys go where they are likely to be wanted
+  bool begins_ = false;                     // just opened: sets the initial focus
   bool entered_folder_ = false;             // what is selected is a folder
   std::shared_ptr<const Listing> listing_;  // null: being read
 };

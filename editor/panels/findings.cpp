@@ -1,4 +1,4 @@
-// What is wrong with the level as it stands, and what can be done about it.
+// Faults of the current level, and their remedies.
 #include "editor/app/findings.h"
 
 #include <fmt/format.h>
@@ -57,7 +57,7 @@ class FindingsPanel : public Panel {
     if (current) ui::known_as(nothing ? "Nothing is wrong" : "Checked");
   }
 
-  // True: its fix was asked for.
+  // True: its fix was requested.
   bool row(Editor& editor, const EditorFinding& found, std::size_t i) {
     const ui::Palette& p = ui::palette();
     const Severity severity = found.finding.severity;
@@ -101,7 +101,7 @@ class FindingsPanel : public Panel {
     return fix;
   }
 
-  // A form for each, so that colour is not alone.
+  // A different shape for each, because colour alone is not enough.
   static void sign(ImDrawList& list, ImVec2 c, Severity severity, ImU32 tint) {
     const float r = ui::px(5);
     if (severity == Severity::kError) {

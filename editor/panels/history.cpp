@@ -1,4 +1,4 @@
-// Every step that was done, undone ones included; a click goes there.
+// All steps, including undone ones; a click goes to that step.
 #include <fmt/format.h>
 
 #include "editor/panels/panels.h"

@@ -1,4 +1,5 @@
-// What a node is: its place, its components by the key table, its light and camera; of nothing selected, the scene.
+// Properties of the selected node: transform, components by the key table, light and camera. Without a selection: the
+// scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -83,7 +84,7 @@ class InspectorPanel : public Panel {
     }
   }
 
-  // [m] Along the node's own axes, with all scales above it.
+  // [m] Along the node's own axes, including all inherited scales.
   static dvec3 world_size(const Editor& editor, const DocumentNode& node) {
     if (node.node.mesh < 0) return dvec3(0);
     const DocumentMesh& mesh = *editor.state().meshes[static_cast<std::size_t>(node.node.mesh)];
@@ -94,7 +95,7 @@ class InspectorPanel : public Panel {
     return size;
   }
 
-  // A row: what at the left, its field at the right. True while the label's mark for "back to the default" is pressed.
+  // A row: label at the left, field at the right. True while the label's mark for "back to the default" is pressed.
   bool begin_row(const char* label, const char* hint_text, bool differs, float share = kLabelShare) {
     const float left = ImGui::GetCursorPosX(), wide = ImGui::GetContentRegionAvail().x;
     ImGui::AlignTextToFramePadding();
@@ -125,9 +126,9 @@ class InspectorPanel : public Panel {
   void draw_transform(Editor& editor, const DocumentNode& node) {
     if (!ui::section("Place")) return;
     LocalTransform local = node.node.local;
-    // Floats know no more than five digits of an angle.
+    // Floats represent an angle to about five digits.
     const dvec3 euler = glm::round(glm::degrees(glm::eulerAngles(dquat(local.rotation))) * 1e4) * 1e-4;
-    // Lengths are the world's, whatever the parents scale by.
+    // Lengths are shown in world units, including the parents' scale.
     const dmat4 parent = editor.state().to_world(node.parent);
     const dvec3 scaled(length(dvec3(parent[0])), length(dvec3(parent[1])), length(dvec3(parent[2])));
     const bool plain =
@@ -164,7 +165,7 @@ class InspectorPanel : public Panel {
   bool same_turn(quat q) const { return std::abs(glm::dot(q, shown_quat_)) > 0.999999f; }
 
   bool triple(const char* label, const char* unit, dvec3& value, const char* hint_text) {
-    // Three numbers need the room: the unit stands with the label.
+    // Three numbers need the space: the unit is in the label.
     begin_row((*unit ? fmt::format("{} ({})", label, unit) : label).c_str(), hint_text, false, kTripleShare);
     const float wide = (ImGui::GetContentRegionAvail().x - ui::px(8)) / 3.0f / ui::scale();
     bool changed = false;
@@ -201,7 +202,7 @@ class InspectorPanel : public Panel {
       return;
     ui::gap(2);
     const bool open = ui::section(words(extension.name).c_str());
-    ImGui::SetItemAllowOverlap();  // the cross on it is pressed for itself
+    ImGui::SetItemAllowOverlap();  // the reset cross on it is pressed separately
     ui::hint(extension.doc.c_str());
     const float cross = ImGui::CalcTextSize("\u00d7").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SameLine(ImGui::GetContentRegionMax().x - cross);

@@ -27,7 +27,7 @@ bool number_field(const Key& key, const char* label, Json& value, float width = 
   return true;
 }
 
-// Of the i-th number of a row: "N/m, N s/m" are two units. There is no room to show it.
+// Unit of the i-th number of a row: "N/m, N s/m" are two units. There is no space to show it.
 std::string row_unit(const std::string& units, std::size_t i) {
   std::size_t begin = 0;
   for (; i > 0; --i) {
@@ -38,7 +38,7 @@ std::string row_unit(const std::string& units, std::size_t i) {
   return "#" + units.substr(begin, units.find(", ", begin) - begin);
 }
 
-// Several numbers in a row; a press into one of them is an edit of the whole.
+// Several numbers in a row; editing one of them edits the whole value.
 bool row_field(const Key& key, Json& value, std::size_t count) {
   const float wide = (ImGui::GetContentRegionAvail().x - ui::px(4) * static_cast<float>(count - 1)) /
                      static_cast<float>(count) / ui::scale();
@@ -67,7 +67,7 @@ bool node_field(Editor& editor, const Key& key, Json& value) {
   return true;
 }
 
-// The key that says which device: its wishes can be picked from a list.
+// The key for the device's id: wishes can be picked from a list.
 const Key* device_id_key() {
   static const Key* const key = find_key(*find_extension("haptic_device"), "id");
   return key;
@@ -199,7 +199,7 @@ bool key_field(Editor& editor, const Key& key, Json& value) {
       changed = node_field(editor, key, value);
       break;
     case KeyType::kNumberOrMaterial: {
-      // A number, or the word that stands for what follows from the material.
+      // A number, or a word for a value derived from the material.
       bool material = value.is_string();
       changed = ImGui::Checkbox("material##of", &material);
       ui::known_as(key.name + " material");

@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-// At the cursor, as wide as there is room. True: `value` is to be another one (it has not been checked).
+// At the cursor, with the available width. True: `value` was edited (and is unchecked).
 bool key_field(Editor& editor, const Key& key, Json& value);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Every action and its keys, all rebindable: F1.
+// All actions and their key bindings, which can be changed: F1.
 #include <fmt/format.h>
 
 #include "editor/panels/dialog.h"

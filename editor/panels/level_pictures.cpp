@@ -25,9 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kShape = 0.6f;  // height over width of what is shown
+constexpr float kShape = 0.6f;  // height over width of the visible part
 
-// The command draws it, a process of its own: what a level may do to it does not matter here.
+// The command draws it in a separate process, which isolates the editor from the level.
 Status draw_picture(const fs::path& level, const fs::path& folder, const Jobs::Stop& stop) {
   std::error_code failed;
   const fs::path self = fs::read_symlink("/proc/self/exe", failed);
@@ -67,7 +67,7 @@ fs::path first_picture(const fs::path& folder) {
   return {};
 }
 
-// Where a picture of the level is, drawn if need be; empty: there is none.
+// Returns the picture file of the level, drawn if needed; empty: none.
 fs::path picture_file(const fs::path& level, const Jobs::Stop& stop) {
   std::error_code none;
   const fs::path shipped = level.parent_path() / "../../docs/images" / (level.stem().string() + ".jpg");
@@ -112,7 +112,7 @@ void LevelPictures::update(Editor& editor, const std::vector<fs::path>& levels) 
       };
     });
   }
-  // One after the other: each may have to be drawn first.
+  // One at a time: each may have to be drawn first.
   if (next_ >= levels.size() || editor.jobs.running("level picture")) return;
   editor.jobs.start("level picture", "", [this, level = levels[next_]](const Jobs::Stop& stop) {
     auto image = std::make_shared<Image>();
@@ -123,7 +123,7 @@ void LevelPictures::update(Editor& editor, const std::vector<fs::path>& levels) 
       if (image->width == 0 || image->height == 0) return;
       LevelPicture& picture = pictures_[level];
       picture.texture = upload(*image);
-      // The middle of it, in the shape of the card.
+      // The central part, cropped to the card's aspect ratio.
       const float shape = static_cast<float>(image->height) / static_cast<float>(image->width);
       if (shape > kShape) {
         picture.low.y = 0.5f - 0.5f * kShape / shape;

@@ -1,4 +1,4 @@
-// A small picture of each shipped level, and its own sentence: read in the background, drawn where there is none yet.
+// A small picture and the description of each shipped level: read in the background, drawn if missing.
 #pragma once
 
 #include <imgui.h>
@@ -20,7 +20,7 @@ struct LevelPicture {
 
 class LevelPictures {
  public:
-  // Begins to read where it has not. On the interface's thread, its context current, as in every call.
+  // Starts reading if needed. On the interface's thread with its context current, as in every call.
   void update(Editor& editor, const std::vector<std::filesystem::path>& levels);
   const LevelPicture& of(const std::filesystem::path& level) { return pictures_[level]; }
 

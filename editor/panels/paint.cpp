@@ -1,4 +1,4 @@
-// What is painted, with what brush, and what is done to the whole mesh at once.
+// The paint panel: attribute, brush, and operations on the whole mesh.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -123,7 +123,7 @@ class PaintPanel : public Panel {
     if (lacks.empty()) return;
     warn(lacks);
     const std::string extension = text_of(painting.channel).extension;
-    if (painting.channel == Channel::kHandle) return;  // a handle wants a device, too: the inspector's matter
+    if (painting.channel == Channel::kHandle) return;  // a handle also needs a device: see the inspector
     std::string words = extension;
     std::replace(words.begin(), words.end(), '_', ' ');
     if (ui::button(("Add " + words).c_str(), "With its defaults; the inspector shows it"))

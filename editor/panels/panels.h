@@ -1,4 +1,4 @@
-// Every panel, each in a file of its own.
+// All panels, each in its own file.
 #pragma once
 
 #include "editor/app/panel.h"

@@ -1,4 +1,4 @@
-// The path of a probe or tool: its keys in a table, its depth over time as a curve, and the script that it becomes.
+// The path of a probe or tool: its keys in a table, its depth over time as a curve, and the resulting script.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kWithin = 2e-4;  // [m] of a path that is recorded; the tab Play asks for another
+constexpr double kWithin = 2e-4;  // [m] tolerance for a recorded path; the Play tab has its own
 
 class PathPanel : public Panel {
  public:
@@ -46,7 +46,7 @@ class PathPanel : public Panel {
   }
 
  private:
-  // What a run has done with the probes and tools of this device.
+  // The recorded motion of this device's probes and tools in a run.
   void draw_record(Editor& editor, const DocumentNode& device) {
     if (!app_.play().has_past()) return;
     for (const PlayEffector& each : app_.play().status().effectors) {
@@ -69,7 +69,7 @@ class PathPanel : public Panel {
     if (ui::number("speed", speed, 0.1, 500, "mm/s", false, 110)) editor.path_speed = speed * 1e-3;
   }
 
-  // Height over the surface against time; the surface is the middle line.
+  // Height above the surface over time; the surface is the middle line.
   void draw_curve(const Editor&, const ScriptKeys& keys) {
     const ui::Palette& p = ui::palette();
     ui::gap(2);
@@ -116,7 +116,8 @@ class PathPanel : public Panel {
             "from key to key, without turning")) {
       changed = true;
       what = "Along the surface";
-      // Heights are of the tip's surface along it, of its middle off it: the keys stay where they are.
+      // Along a surface, heights are of the tip's surface; otherwise of its centre. Convert them so that the keys keep
+      // their positions.
       const double radius = tip_of(editor.state(), id).value_or(PathTip{}).radius;
       for (PathKey& key : next.keys)
         if (key.normal != dvec3(0)) key.height += next.along ? -radius : radius;

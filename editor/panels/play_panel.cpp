@@ -1,5 +1,4 @@
-// How the level is played: its clock, what moves every probe and tool, what it costs, and what kept a force from what
-// the law says.
+// Playing the level: its clock, the sources of probes and tools, timing, and deviations from the force law.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -120,7 +119,7 @@ class PlayPanel : public Panel {
     for (const std::string& name : names) {
       PlaySource source = play.sources.contains(name) ? play.sources.at(name) : PlaySource{};
       std::string word = source_word(source);
-      for (const PlayEffector& each : play.status().effectors)  // the probe that was added for it
+      for (const PlayEffector& each : play.status().effectors)  // the probe added for it
         if (play.on() && each.name == name && each.source == kMouse) word = kMouse;
       const float left = ImGui::GetCursorPosX(), wide = ImGui::GetContentRegionAvail().x;
       ui::label(printable(name).c_str());
@@ -171,7 +170,7 @@ class PlayPanel : public Panel {
     ui::gap(4);
   }
 
-  // A bar from nothing to what there is, with marks.
+  // A bar from zero to the maximum, with marks.
   static void bar(const char* label, double value, double most, double mark, const std::string& text) {
     const ui::Palette& p = ui::palette();
     ui::label(label);

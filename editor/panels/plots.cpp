@@ -1,5 +1,5 @@
-// What a played level feels like: force and depth of the last seconds, force over depth above the law that its author
-// gave, the run before beside it; and the line on which one goes back.
+// Plots of a played level: force and depth of the last seconds; force over depth with the author's law and the previous
+// run; and the time line for going back.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ class PlotsPanel : public Panel {
   }
 
  private:
-  // Which probe, and the line of time.
+  // Probe selection and time line.
   void draw_head(Play& play) {
     if (play.traces().size() > 1)
       for (std::size_t i = 0; i < play.traces().size(); ++i) {
@@ -111,7 +111,7 @@ class PlotsPanel : public Panel {
       play.pause(false);
   }
 
-  // The samples between two times, as places in the deque.
+  // The samples between two times, as indices into the deque.
   static std::pair<std::size_t, std::size_t> between(const PlayTrace& trace, double low, double high) {
     const auto first = std::lower_bound(trace.samples.begin(), trace.samples.end(), low,
                                         [](const PlaySample& s, double t) { return s.time < t; });
@@ -133,7 +133,7 @@ class PlotsPanel : public Panel {
     return end;
   }
 
-  // One value for each column of pixels: the largest of what falls into it.
+  // One value per pixel column: the largest one in it.
   template <class Value>
   static std::vector<dvec2> columns(const PlayTrace& trace, double low, double high, std::size_t most, Value value) {
     std::vector<dvec2> out;
@@ -232,7 +232,7 @@ class PlotsPanel : public Panel {
     ui::Plot plot("Law plot", "Force [N]", size, {0.0, kLawBeyond * depth, "mm deep", 1e3},
                   {0.0, ui::round_above(1.05 * force), "", 1.0});
     const auto loop = [&](const PlayTrace& of, std::size_t from, std::size_t to, const ImVec4& color, float width) {
-      // Only where it touches: from touch to touch is no line.
+      // Only during contact: no line between contacts.
       for (std::size_t i = from; i < to;) {
         while (i < to && !of.samples[i].touching) ++i;
         std::size_t until = i;
@@ -270,7 +270,7 @@ class PlotsPanel : public Panel {
 
   App& app_;
   std::size_t chosen_ = 0;
-  std::string object_;  // that was touched last
+  std::string object_;  // the last touched object
   bool compare_ = true, dragging_ = false, held_ = false;
   double wanted_ = 0.0;  // [s]
 };

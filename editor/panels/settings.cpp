@@ -1,4 +1,4 @@
-// How the editor looks, and how often it keeps a copy.
+// Appearance of the editor, and the interval of recovery copies.
 #include <fmt/format.h>
 
 #include "editor/panels/dialog.h"

@@ -1,5 +1,4 @@
-// Make it soft: what the selected mesh would be as tissue before it is, where it is pinned, of what it is made, and the
-// instruments to touch it with.
+// Make it soft: a preview of the selected mesh as tissue, its pins, its material, and instruments to touch it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,10 +23,10 @@ namespace {
 
 constexpr Side kSides[] = {Side::kBottom, Side::kTop, Side::kLeft, Side::kRight, Side::kFront, Side::kBack};
 constexpr std::size_t kMostAdvice = 4;
-constexpr double kPause = 0.3;                   // [s] after the last change before a preview is begun
+constexpr double kPause = 0.3;                   // [s] after the last change, before a preview starts
 constexpr std::size_t kMostEdgesShown = 60'000;  // beyond it only some of them
 
-// What a preview is of.
+// The inputs of a preview.
 struct Asked {
   std::shared_ptr<const DocumentMesh> mesh;
   dmat4 to_world{1};
@@ -73,7 +72,7 @@ class SoftPanel : public Panel {
 
  private:
   using Edit = std::function<Status(Level&, std::int32_t node)>;
-  // An edit of content/author on a node; what it added is selected.
+  // Runs an edit of content/author on a node; selects what it added.
   bool author(Editor& editor, const std::string& what, const DocumentNode& node, const Edit& edit,
               bool select_new = false) {
     const NodeId before = editor.document.next_id();
@@ -119,7 +118,7 @@ class SoftPanel : public Panel {
     draw_organ(editor, node);
   }
 
-  // An organ of several meshes, one in the other, in one click.
+  // Makes an organ of several nested meshes soft, in one click.
   void draw_organ(Editor& editor, const DocumentNode& node) {
     if (!ui::button("All parts of this organ",
                     "The outermost of its meshes becomes tissue, and takes along those that lie inside of it: vessels, "
@@ -212,7 +211,7 @@ class SoftPanel : public Panel {
       ui::dim(trouble_.c_str());
       offer(editor, node, trouble_);
     }
-    // The rows stand whether their figures are known or not: what is below does not move under a hand.
+    // The rows are always shown, even without values, so that the widgets below do not move.
     const bool filling = editor.jobs.running("preview");
     static const SoftPreview kNone;
     const SoftPreview& p = preview_ ? *preview_ : kNone;
@@ -253,7 +252,7 @@ class SoftPanel : public Panel {
     ImGui::PopTextWrapPos();
   }
 
-  // What a sentence's cure is, where there is a button for it.
+  // Shows a button for a finding's remedy, if there is one.
   void offer(Editor& editor, const DocumentNode& node, const std::string& sentence) {
     const NodeId ids[] = {node.id};
     if (sentence.find("\"fill\"") == std::string::npos && sentence.find("fill") == std::string::npos) return;
@@ -279,7 +278,7 @@ class SoftPanel : public Panel {
     }
   }
 
-  // How it rests on its pins, before it is played.
+  // The equilibrium on its pins, before playing.
   void draw_gravity(Editor& editor, const DocumentNode& node) {
     ui::gap(2);
     if (!ui::section("Under gravity")) return;
@@ -322,7 +321,7 @@ class SoftPanel : public Panel {
     draw_advice(editor, node);
   }
 
-  // What sides would hold it, from the least that does.
+  // Suggests sides to pin, the smallest sufficient one first.
   void draw_advice(Editor& editor, const DocumentNode& node) {
     if (ui::button("Suggest pins", "Looks which side, pinned, holds it: some seconds", !editor.jobs.running("pins"))) {
       advice_.reset();
@@ -364,7 +363,7 @@ class SoftPanel : public Panel {
     }
   }
 
-  // Begins a preview where the body is another one than the one that was previewed.
+  // Starts a preview if the inputs have changed.
   void ask(Editor& editor, const DocumentNode& node) {
     Asked now;
     now.mesh = editor.state().meshes[static_cast<std::size_t>(node.node.mesh)];
@@ -379,7 +378,7 @@ class SoftPanel : public Panel {
     }
     if (asked_ == wanted_ || editor.now - wanted_at_ < kPause) return;
     asked_ = wanted_;
-    // The level with this node alone, so that the object's frame is found as a run finds it.
+    // The level with this node alone, so that the object frame is the same as in a run.
     auto level = std::make_shared<Level>(level_of(editor.state()));
     const std::int32_t at = place_in(*level, node.node.name);
     editor.jobs.start("preview", "Filling " + node.node.name, [this, level, at](const Jobs::Stop& stop) {

@@ -1,4 +1,4 @@
-// The first page: what was not saved, files that were open before, and the levels that ship.
+// The start page: unsaved documents, recent files, and the shipped levels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ class StartPage : public Panel {
   }
 
  private:
-  static constexpr double kLook = 2.0;  // [s] between two looks at what is on disk
+  static constexpr double kLook = 2.0;  // [s] between two checks of the disk
   static constexpr const char* kFirstLevel = "glass_heart";
   struct Recent {
     std::string file;
@@ -97,7 +97,7 @@ class StartPage : public Panel {
     }
   }
 
-  // Nobody has opened anything here yet.
+  // Shown if no file has been opened yet.
   void first_steps() {
     if (!looked_for_) return;
     ui::dim("New here? Open an organ of your own, or drop its file on this window.");
@@ -125,8 +125,10 @@ class StartPage : public Panel {
       ImGui::TextColored(ui::palette().warning, "%s", printable(copy.title).c_str());
       ui::hint(printable(copy.file.empty() ? copy.copy.string() : copy.file.string()).c_str());
       if (ui::button("Recover", "Opens it as it was; save it to keep it", true, 90)) app_.files().recover(copy);
-      ImGui::SameLine();
       const bool sure = sure_ == copy.copy;
+      ui::rows_end_at(ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x);
+      ui::beside(ui::kGap, sure ? "Really discard" : "Discard");
+      ui::rows_end_at(0);
       if (ui::button(sure ? "Really discard##discard" : "Discard##discard", "It cannot be brought back", true)) {
         if (sure) {
           remove_recovery(copy);
@@ -180,13 +182,13 @@ class StartPage : public Panel {
     else
       list.AddRectFilled(low, high, ui::color(p.raised), round, ImDrawFlags_RoundCornersTop);
     if (hot) list.AddRect(at, end, ui::color(p.accent), round, 0, ui::px(1.5f));
-    list.PushClipRect({at.x + ui::px(8), at.y}, {end.x - ui::px(8), end.y - ui::px(4)}, true);
-    const float y = at.y + picture + ui::px(6);
-    list.AddText(ui::font(ui::Type::kStrong), ui::font(ui::Type::kStrong)->FontSize, {at.x + ui::px(8), y},
-                 ui::color(p.text), level.stem().c_str());
-    list.AddText(ui::font(ui::Type::kSmall), ui::font(ui::Type::kSmall)->FontSize, {at.x + ui::px(8), y + ui::px(20)},
-                 ui::color(p.dim), shown.about.c_str(), nullptr, w - ui::px(16));
-    list.PopClipRect();
+    const ImFont &strong = *ui::font(ui::Type::kStrong), &small = *ui::font(ui::Type::kSmall);
+    const float y = at.y + picture + ui::px(6), inner = w - ui::px(16);
+    const std::string name = ui::fitted(level.stem().string(), strong, inner, strong.FontSize),
+                      about = ui::fitted(shown.about, small, inner, end.y - ui::px(4) - (y + ui::px(20)));
+    list.AddText(&strong, strong.FontSize, {at.x + ui::px(8), y}, ui::color(p.text), name.c_str());
+    list.AddText(&small, small.FontSize, {at.x + ui::px(8), y + ui::px(20)}, ui::color(p.dim), about.c_str(), nullptr,
+                 inner);
     if (pressed) app_.open(level);
   }
 

@@ -1,4 +1,4 @@
-// The scene tree: every node, what it is, and how they hang together.
+// The scene tree: all nodes with their kinds and hierarchy.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,12 +37,12 @@ class TreePanel : public Panel {
     ImGui::SameLine();
     ui::text_field("Search", search_, "Search nodes and components");
     ui::gap(2);
-    // Its arrow keys lead through the rows, as what is selected.
+    // Its arrow keys move the selection through the rows.
     ImGui::BeginChild("nodes", {0, 0}, false, ImGuiWindowFlags_NoNavInputs);
     const State& state = editor.state();
     follow_selection(editor);
     if (ImGui::IsWindowFocused() && !ImGui::GetIO().WantTextInput && !ui::popup_is_open()) keys(editor);
-    // Children by parent once a frame: a level may have thousands.
+    // Children by parent, computed once per frame: a level may have thousands.
     below_.clear();
     open_.clear();
     parents_.clear();
@@ -54,7 +54,7 @@ class TreePanel : public Panel {
       for (const auto& each : state.nodes)
         if (matches(*each)) draw_row(editor, *each, true);
     if (state.nodes.empty()) ui::dim("Nothing here yet. Open an organ, or add something from the menu Add.");
-    // What is dropped below everything becomes a root.
+    // A node dropped below all rows becomes a root.
     const ImVec2 rest = ImGui::GetContentRegionAvail();
     ImGui::InvisibleButton("below", {std::max(rest.x, 1.0f), std::max(rest.y, ui::px(24))});
     ui::known_as("below");
@@ -69,7 +69,7 @@ class TreePanel : public Panel {
   }
 
  private:
-  // What is selected elsewhere comes into sight, whatever is folded or scrolled.
+  // Scrolls to a selection made elsewhere, and unfolds its parents.
   void follow_selection(Editor& editor) {
     if (editor.renaming != kNoNode && renaming_ != editor.renaming) {
       const DocumentNode* const node = editor.state().find(editor.renaming);
@@ -166,7 +166,7 @@ class TreePanel : public Panel {
         if (!given_up && !new_name_.empty() && new_name_ != node.node.name)
           editor.apply("Rename", renamed(editor.state(), node.id, new_name_));
         renaming_ = editor.renaming = kNoNode;
-        ImGui::SetWindowFocus();  // the arrow keys go on from here
+        ImGui::SetWindowFocus();  // the arrow keys continue from here
       }
       if (reveal_ == node.id) reveal_ = kNoNode;
       ImGui::PopID();
@@ -268,7 +268,7 @@ class TreePanel : public Panel {
 
   std::string search_, new_name_;
   NodeId renaming_ = kNoNode;
-  NodeId followed_ = kNoNode, reveal_ = kNoNode;  // what was selected when this was drawn last; what comes into sight
+  NodeId followed_ = kNoNode, reveal_ = kNoNode;  // the selection when last drawn; the node to scroll to
   std::map<NodeId, bool> fold_;                   // rows that open or close in the next frame
   std::set<NodeId> parents_, open_;               // of the rows drawn last
   bool starts_ = false;

@@ -1,4 +1,4 @@
-// A bare mesh that looks as if it were not in metres: what is its unit?
+// Asks for the unit of a bare mesh that is probably not in metres.
 #include <fmt/format.h>
 
 #include "content/level/unit.h"
@@ -23,7 +23,7 @@ class UnitBanner : public Panel {
   }
 
   void draw(Editor& editor) override {
-    const bool narrow = ImGui::GetIO().DisplaySize.x < ui::px(1000);  // then its buttons stand below
+    const bool narrow = ImGui::GetIO().DisplaySize.x < ui::px(1000);  // then its buttons are in a second row
     ImGui::AlignTextToFramePadding();
     ImGui::PushTextWrapPos(narrow ? ui::px(190) : 0.0f);
     ImGui::TextUnformatted(

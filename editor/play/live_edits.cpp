@@ -5,7 +5,7 @@
 namespace pliant {
 namespace {
 
-// Probes and tools that this node's device moves.
+// Probes and tools moved by this node's device.
 std::vector<std::string> held_by(const State& state, const DocumentNode& device) {
   std::vector<std::string> names;
   for (const auto& each : state.nodes) {
@@ -22,7 +22,7 @@ std::vector<std::string> held_by(const State& state, const DocumentNode& device)
 
 LiveEdits live_edits(const State& before, const State& after) {
   LiveEdits out;
-  State almost = before;  // with what can change at once
+  State almost = before;  // with the changes that apply at once
   for (auto& each : almost.nodes) {
     const DocumentNode* const now = after.find(each->id);
     if (!now || now == each.get()) continue;

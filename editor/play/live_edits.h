@@ -1,4 +1,5 @@
-// What of a change of the document a session that runs can take at once, and what waits for the next Play.
+// Divides a change of the document into parameters that a running session can apply at once, and the rest, which waits
+// for the next Play.
 #pragma once
 
 #include <string>
@@ -9,12 +10,12 @@
 namespace pliant {
 
 struct LiveEdit {
-  std::string object, key;  // as Session::set has them
+  std::string object, key;  // as in Session::set
   double value = 0.0;
 };
 struct LiveEdits {
   std::vector<LiveEdit> now;
-  bool later = false;  // there is more that changed
+  bool later = false;  // there are other changes
 };
 LiveEdits live_edits(const State& before, const State& after);
 

@@ -20,7 +20,7 @@ bool any_driver(const std::map<std::string, PlaySource>& sources) {
                      [](const auto& each) { return each.second.kind == PlaySource::Kind::kDriver; });
 }
 
-// Another document, not a change of this one.
+// Whether it is another document, not an edit of this one.
 bool unrelated(const State& before, const State& after) {
   if (before.nodes.empty()) return false;
   std::set<const void*> parts;
@@ -50,7 +50,7 @@ PlayOptions Play::options() {
     return level_to_play(state, folder, file, unsaved);
   };
   for (const auto& [name, source] : sources) made.sources.emplace_back(name, source);
-  // A path that stands in the document alone is followed as it stands there.
+  // A path with unsaved changes is played as in the document.
   const auto unsaved = editor_.document.unsaved_scripts();
   for (const auto& each : editor_.state().nodes) {
     const LevelNode& node = each->node;
@@ -120,7 +120,7 @@ void Play::stop() {
   kept_ = run_->kept;
   if (next_) next_->end();
   if (show && on_stage_) show(nullptr);
-  run_.reset();  // the stage has the last of it, and lets it go once its picture has gone
+  run_.reset();  // the stage keeps the last reference, and releases it after its picture
   next_.reset();
   past_.reset();
   on_stage_ = false;
@@ -139,7 +139,7 @@ void Play::restart() {
 void Play::pause(bool paused) {
   if (!on()) return;
   if (next_) return;
-  if (!paused && status_.again) {  // from here
+  if (!paused && status_.again) {  // continue from here
     const double now = status_.time;
     if (realtime && !status_.realtime) editor_.say("it goes on in lockstep; press Restart for real time");
     run_->go_on();
@@ -264,7 +264,7 @@ void Play::take_samples() {
       trace.name = status_.effectors[i].name;
       trace.radius = status_.effectors[i].radius;
     }
-    // What is had again is there already.
+    // Samples of a repeated past are there already.
     for (const PlaySample& sample : taken_[i])
       if (trace.samples.empty() || sample.time > trace.samples.back().time) {
         trace.samples.push_back(sample);
@@ -284,7 +284,7 @@ void Play::update() {
       run_->end();
       run_ = std::move(next_);
       next_.reset();
-      said_ = ahead.notes.size();  // the first run has said them
+      said_ = ahead.notes.size();  // already reported by the first run
       on_stage_ = false;
     } else if (ahead.phase == PlayPhase::kEnded) {
       editor_.say("going back failed: " + ahead.error, Severity::kError);
@@ -292,7 +292,7 @@ void Play::update() {
     }
   }
   status_ = run_->status();
-  realtime |= status_.realtime;  // a device of the level asks for it
+  realtime |= status_.realtime;  // required by a device of the level
   for (; said_ < status_.notes.size(); ++said_) editor_.say(status_.notes[said_]);
   take_samples();
   note_findings();

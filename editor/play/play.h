@@ -1,7 +1,7 @@
-// Play in place: runs of the edited level, one after another, and what is seen of them. The interface's thread.
+// Play in place: successive runs of the edited level, and their results. On the interface's thread.
 //
-// A run is a PlayRun. Going back makes another that has the same past again, as far as the chosen moment; the picture
-// before stays until it is there.
+// A run is a PlayRun. Going back starts another run that repeats the past up to the chosen time; the previous picture
+// is shown until then.
 #pragma once
 
 #include <deque>
@@ -19,13 +19,13 @@
 
 namespace pliant {
 
-// What one probe or tool has felt: the last kKept seconds.
+// The samples of one probe or tool: the last kKept seconds.
 struct PlayTrace {
   static constexpr double kKept = 60.0;  // [s]
   std::string name;
   double radius = 0.0;  // [m]
   std::deque<PlaySample> samples;
-  std::uint64_t touched = 0, gated = 0;  // [ticks] of the whole run: in contact; force withheld by the gate
+  std::uint64_t touched = 0, gated = 0;  // [ticks] of the whole run: in contact; with force withheld by the gate
 };
 
 class Play {
@@ -35,25 +35,25 @@ class Play {
   Play(const Play&) = delete;
   Play& operator=(const Play&) = delete;
 
-  // What the stage shows (Stage::show); empty: there are no pictures.
+  // Shows a scenery on the stage (Stage::show); empty: no pictures.
   std::function<void(std::function<std::unique_ptr<Scenery>()>)> show;
-  std::map<std::string, PlaySource> sources;  // by probe or tool; others have the level's
-  bool mouse_probe = true;                    // a probe for the mouse is added where nothing else is moved by it
+  std::map<std::string, PlaySource> sources;  // by probe or tool; others use the level's
+  bool mouse_probe = true;                    // adds a probe for the mouse if the mouse moves nothing else
   bool realtime = false;
   double speed = 1.0;
 
-  DeviceAnswers answers;  // which devices of which levels the user allows
-  // What the level asks for, may not have, and nobody has answered yet.
+  DeviceAnswers answers;  // devices that the user allows, per level
+  // Requests of the level that need the user's consent and have no answer yet.
   std::vector<LevelRequest> asks() const;
 
   bool on() const { return run_ != nullptr; }
-  // Runs, or is about to.
+  // Running, or starting.
   bool paused() const { return on() && paused_; }
-  bool ready() const;  // it is not being opened or had again
+  bool ready() const;  // neither opening nor repeating the past
   bool may_step() const { return on() && paused_ && !status_.realtime; }
   void start();
   void pause(bool paused);
-  void toggle();  // play, pause, go on
+  void toggle();  // play, pause, resume
   void step(std::uint64_t ticks);
   void stop();
   void restart();
@@ -62,21 +62,20 @@ class Play {
   void order(const DeviceOrders& orders);  // of devices
 
   // --- Going back
-  double oldest() const;  // [s] that can be gone back to
-  double latest() const;  // [s] that has been
+  double oldest() const;  // [s] earliest time to go back to
+  double latest() const;  // [s] latest time so far
   bool back() const { return status_.again || next_ != nullptr; }
   void go_to(double time);                       // [s]
   double going_to() const { return going_to_; }  // [s]
-  double progress() const;                       // [1] of what is had again
+  double progress() const;                       // [1] of the repeated past
 
-  // What the run that is on has been so far, or what the last one was; null: there was none. `status().effectors` are
-  // its probes and tools.
+  // The past of the current run, or of the last one; null: none. `status().effectors` are its probes and tools.
   std::shared_ptr<const PlayPast> past();
   bool has_past() const { return ready() || (!on() && kept_ != nullptr); }
 
-  // Once a frame.
+  // Once per frame.
   void update();
-  // The document is another one.
+  // Called when the document has changed.
   void changed(const State& before, const State& after);
 
   const PlayStatus& status() const { return status_; }
@@ -95,7 +94,7 @@ class Play {
 
   Editor& editor_;
   std::shared_ptr<PlayRun> run_, next_;
-  std::shared_ptr<const PlayPast> past_;  // while it is gone back in
+  std::shared_ptr<const PlayPast> past_;  // while going back
   std::shared_ptr<PlayKept> kept_;        // of the last run
   PlayStatus status_;
   std::vector<PlayTrace> traces_, before_;

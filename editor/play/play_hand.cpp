@@ -6,12 +6,12 @@
 namespace pliant {
 namespace {
 
-// A picture may come late, and the place that it shows be far from the last one: a hand that jumped would be taken for
-// a device that has lost its way (systems/safety/safety.h), and feel nothing.
-constexpr double kGlideTime = 0.015;   // [s] time constant of the way after what is pointed at
-constexpr double kFastestFree = 8.0;   // [m/s] clear of every surface
-constexpr double kFastestSlide = 0.5;  // [m/s] pressed in
-constexpr double kSwingArc = 0.6;      // [1] of the way that is left: so high it goes over what lies between
+// A picture may be late, and its point far from the last one. A jump would be treated as a device fault
+// (systems/safety/safety.h), with zero force; so the speed is limited.
+constexpr double kGlideTime = 0.015;   // [s] time constant towards the target
+constexpr double kFastestFree = 8.0;   // [m/s] away from every surface
+constexpr double kFastestSlide = 0.5;  // [m/s] in contact
+constexpr double kSwingArc = 0.6;      // [1] of the remaining distance: height of the arc over obstacles
 
 }  // namespace
 

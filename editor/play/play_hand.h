@@ -1,6 +1,5 @@
-// The mouse in a level that is played: what the hand does comes from the interface, what stands under it from the
-// picture, and both become poses of one probe (window/pointer.h) or tool (window/carrier.h) tick by tick. Calls come
-// from three threads.
+// The mouse in a played level. Mouse input comes from the interface, picks come from the picture. Both become poses of
+// one probe (window/pointer.h) or tool (window/carrier.h), tick by tick. Called from three threads.
 #pragma once
 
 #include <mutex>
@@ -14,30 +13,30 @@ namespace pliant {
 class PlayHand {
  public:
   // What is under the mouse.
-  enum class Over : std::uint8_t { kNothing, kTouchable, kBody, kTool };  // kBody: can be pressed, and pulled
+  enum class Over : std::uint8_t { kNothing, kTouchable, kBody, kTool };  // kBody: can be pressed and dragged
 
-  // --- The run's thread
-  // `from` [m] world: where the probe is; nothing: where it is best out of the way.
+  // --- For the run's thread
+  // `from` [m] world: the probe's position; empty: a position out of the way.
   void take_probe(const World& world, const Probe& probe, const Viewpoint& view, std::optional<dvec3> from = {});
   void take_tool(const World& world, Entity tool, dvec3 device);
-  void watch_tool(const World& world, Entity tool);  // moves nothing, until it is taken hold of
-  bool takes() const;                                // what it watches has been taken hold of: call take_tool()
-  void let_go();                                     // moves nothing from now on
+  void watch_tool(const World& world, Entity tool);  // moves nothing until it is dragged
+  bool takes() const;                                // the watched tool is being dragged: call take_tool()
+  void let_go();                                     // stops moving anything
   bool has_any() const;
-  // Where the device should be, `dt` [s] after the last call; nothing: it moves nothing.
+  // The device's target, `dt` [s] after the last call; empty: it moves nothing.
   std::optional<dvec3> update(double dt);
-  ProbeHold probe_hold() const;  // of the probe that it moves
+  ProbeHold probe_hold() const;  // of the moved probe
 
-  // --- The stage's: of the picture drawn last
+  // --- For the stage: of the picture drawn last
   void see(const std::optional<Picked>& seen, const ViewRay& ray);
   Entity holds() const;  // for PickQuestion::holds
 
-  // --- The interface's
+  // --- For the interface
   Over over() const;
   void hold(bool held, bool pulls = false);
-  void follow(const ViewRay& ray, const Viewpoint& view);  // of a tool that is held, a body that is pulled
-  void wheel(int steps, const Viewpoint& view);            // deeper, or a tool away from the eye
-  void stand(int steps);                                   // deeper without holding
+  void follow(const ViewRay& ray, const Viewpoint& view);  // while dragging a tool or body
+  void wheel(int steps, const Viewpoint& view);            // changes the depth, or moves a tool away from the eye
+  void stand(int steps);                                   // changes the depth without pressing
   bool pressing() const;
   double depth_goal() const;  // [m]
 
@@ -47,7 +46,7 @@ class PlayHand {
   std::optional<Carrier> carrier_;
   std::optional<Picked> seen_;
   bool watches_ = false, takes_ = false;
-  dvec3 at_{0};  // [m] world, of a probe: it glides after what is pointed at
+  dvec3 at_{0};  // [m] world, of a probe: it moves smoothly to the target
 };
 
 }  // namespace pliant

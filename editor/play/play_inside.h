@@ -1,4 +1,4 @@
-// What a run's thread has to itself (play_run.h): the session, what it has been, and what moves it.
+// State that belongs to a run's thread (play_run.h): the session, its past, and its sources.
 #pragma once
 
 #include <map>
@@ -27,21 +27,21 @@ struct PlayRun::Inside {
 
   bool realtime = false, paused = false;
   double speed = 1.0;
-  std::uint64_t steps = 0;  // that are to be run, one by one
-  double due = 0.0;         // [ticks] that the wall clock has come ahead
+  std::uint64_t steps = 0;  // single steps still to run
+  double due = 0.0;         // [ticks] due by the wall clock
   std::uint64_t turned_ns = 0, paced_ns = 0, paced_tick = 0;
   double pace = 0.0;
   std::uint64_t shown_ns = 0, hashed = ~std::uint64_t{0}, flushed = ~std::uint64_t{0};
   std::string hash;
   std::vector<std::string> findings;
 
-  // Of a past that is had again.
+  // While repeating a past.
   bool again = false;
   std::uint64_t until = 0;  // [ticks]
   std::size_t next_edit = 0, next_hold = 0;
 
   // Sources.
-  struct Level {  // as the level has it
+  struct Level {  // as in the level
     DriverKind driver = DriverKind::kNull;
     Handle<Path> path;
     EffectorSource source = EffectorSource::kNone;
@@ -50,19 +50,19 @@ struct PlayRun::Inside {
   std::vector<Level> of_level, before_past;                              // of each effector
   std::vector<PlaySource> sources;                                       // of each effector
   std::map<std::string, std::pair<std::string, std::string>> connected;  // by effector: a device's id and name
-  std::vector<DeviceInfo> there;                                         // devices, as listed last
-  double period = 0.0;     // [s] after which all scripts start over, as in the window of a run
-  std::string moved;       // by the mouse
-  std::string watched;     // a tool that the mouse may take hold of
-  dquat held{1, 0, 0, 0};  // as which it is held
+  std::vector<DeviceInfo> there;                                         // devices, as last listed
+  double period = 0.0;     // [s] after which all scripts restart, as in the window of a run
+  std::string moved;       // the effector moved by the mouse
+  std::string watched;     // a tool that the mouse may drag
+  dquat held{1, 0, 0, 0};  // its rotation while dragged
 
   void say(const std::string& note) { notes.push_back(note); }
   Level remember(const SessionEffector& effector) const;
   void bring_back(SessionEffector& effector, const Level& level);
   void apply(const std::string& name, const PlaySource& source);
-  // A device for it, or what stands for one: the mouse, where nothing else is there.
+  // Connects a device, or the mouse if there is none.
   Status connect(const SessionEffector& effector, const std::string& wish, bool& by_mouse);
-  bool feels() const;  // a device that is no simulation, or cannot be stepped
+  bool feels() const;  // a real device, or one that cannot be stepped
   void view(DevicesView& out) const;
   void apply_all();
   void begin_past(const PlayPast& of, std::uint64_t until);

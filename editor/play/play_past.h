@@ -1,4 +1,4 @@
-// What a run has been: poses and edits of every tick, from which it can be had again, and what was felt, to be drawn.
+// The past of a run: poses and edits of every tick, from which it can be repeated, and samples for plots.
 #pragma once
 
 #include <array>
@@ -13,36 +13,36 @@
 
 namespace pliant {
 
-// A parameter that was set, before the tick of this number ran.
+// A parameter change before this tick.
 struct PlayEdit {
   std::uint64_t tick = 0;
   std::string object, key;
   double value = 0.0;
 };
 
-// What the mouse held of a body from the tick of this number on.
+// The mouse's drag of a body from this tick on.
 struct PlayHold {
   std::uint64_t tick = 0;
   std::uint32_t effector = 0;
   ProbeHold hold;
 };
 
-// From the first tick on. The same level with the same past has the same bits.
+// From the first tick on. The same level with the same past gives the same bits.
 struct PlayPast {
-  static constexpr std::size_t kMostTicks = 1'000'000;  // longer runs cannot be gone back in
+  static constexpr std::size_t kMostTicks = 1'000'000;  // in longer runs, going back is not possible
   std::vector<std::uint64_t> ticks;                     // indices, ascending
   std::vector<RecordedPose> poses;                      // [tick][effector]
   std::vector<PlayEdit> edits;                          // by tick, ascending
   std::vector<PlayHold> holds;                          // the same
 };
 
-// Where a run leaves its past when it has ended.
+// Where a run stores its past when it ends.
 struct PlayKept {
   std::mutex mutex;
-  std::shared_ptr<const PlayPast> past;  // null: it runs
+  std::shared_ptr<const PlayPast> past;  // null: still running
 };
 
-// What one probe or tool felt in one tick.
+// The sample of one probe or tool in one tick.
 struct PlaySample {
   static constexpr std::uint16_t kNothing = 0xffff;
   std::uint64_t tick = 0;

@@ -55,7 +55,7 @@ void PlayRun::set_speed(double speed) {
 
 void PlayRun::set(const std::string& object, const std::string& key, double value) {
   post([=](Inside& in) {
-    if (in.again) return;  // what has been is not changed
+    if (in.again) return;  // a repeated past is not changed
     if (const Status done = in.session->set(object, key, value); !done) {
       in.say(done.error().message());
       return;

@@ -1,4 +1,4 @@
-// What moves the probes and tools of a run, and how a past is had again.
+// Sources of probes and tools in a run, and the repetition of a past.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ void PlayRun::Inside::bring_back(SessionEffector& effector, const Level& level) 
   effector.placed = false;
 }
 
-// One that cannot be had leaves the probe without any: nobody moves it.
+// If the source is not available, the probe has none.
 void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
   SessionEffector* const effector = parts->find_effector(name);
   if (!effector) return;
@@ -63,7 +63,7 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
     static_cast<void>(session->release(name));
   connected.erase(name);
   if (kind == PlaySource::Kind::kDriver && (run.options_.past || parts->ticks > 0)) {
-    say(fmt::format("the device of `{}` takes over at the next Play", name));  // it is felt in real time
+    say(fmt::format("the device of `{}` takes over at the next Play", name));  // it needs real time
     static_cast<void>(session->release(name));
     return;
   }
@@ -106,7 +106,7 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
       break;
     }
     case PlaySource::Kind::kMouse: {
-      if (!moved.empty()) {  // there is one mouse
+      if (!moved.empty()) {  // there is only one mouse
         const std::string before = moved;
         apply(before, {PlaySource::Kind::kNone, {}});
         say(fmt::format("the mouse moves `{}` now; nothing moves `{}`", name, before));
@@ -146,8 +146,7 @@ Status PlayRun::Inside::connect(const SessionEffector& effector, const std::stri
   if (!made) return made.error();
   for (const std::string& note : made->notes) say(fmt::format("`{}`: {}", effector.name, note));
   if (Status s = parts->connect(effector.name, std::move(made->driver), made->id, chosen->id); !s) return s;
-  if (Servo* const servo = effector.link.servo(); servo && !servo->note().empty())
-    say(fmt::format("`{}`: {}", effector.name, servo->note()));
+  if (!effector.link.note().empty()) say(fmt::format("`{}`: {}", effector.name, effector.link.note()));
   connected[effector.name] = {chosen->id, chosen->name};
   return Done{};
 }
@@ -175,7 +174,7 @@ void PlayRun::Inside::apply_all() {
       if (name == effector.name) source = its;
     wanted.emplace_back(effector.name, source);
   }
-  // There is one mouse. What the user has chosen for it comes first, then the level's first.
+  // There is only one mouse. The user's choice comes first, then the level's first.
   std::stable_partition(wanted.begin(), wanted.end(),
                         [](const auto& each) { return each.second.kind == PlaySource::Kind::kMouse; });
   for (auto& [name, source] : wanted) {
@@ -191,7 +190,7 @@ void PlayRun::Inside::apply_all() {
   watch();
 }
 
-// Where the mouse moves nothing, it takes hold of the first tool that it is pressed on.
+// If the mouse moves nothing, it drags the first tool that it is pressed on.
 void PlayRun::Inside::watch() {
   watched.clear();
   if (!moved.empty() || realtime) return;
@@ -217,7 +216,7 @@ void PlayRun::Inside::begin_past(const PlayPast& of, std::uint64_t to) {
   parts->begin_replay(std::move(recording));
 }
 
-// The moment that was reached becomes the present.
+// The present starts at the time that was reached.
 void PlayRun::Inside::end_past() {
   again = false;
   parts->replay.reset();

@@ -1,4 +1,4 @@
-// A run's own thread: opens the session, takes turns of ticks, shows what has become of it.
+// A run's own thread: opens the session, runs batches of ticks, publishes the state.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,12 +18,12 @@
 namespace pliant {
 namespace {
 
-constexpr double kTickSlice = 0.012;      // [s] of ticks in a row, so that commands are heard
-constexpr double kFarthestBehind = 0.05;  // [s] a slow machine plays slower; it does not catch up
+constexpr double kTickSlice = 0.012;      // [s] of ticks in a batch, so that commands are processed
+constexpr double kFarthestBehind = 0.05;  // [s] a slow machine plays more slowly; it does not catch up
 constexpr auto kTurn = std::chrono::milliseconds(4);
 constexpr auto kIdleTurn = std::chrono::milliseconds(15);
 constexpr double kShowEvery = 0.03, kPaceOver = 0.5;  // [s]
-constexpr double kRowSeconds = 4.0;                   // [s] of rows that may wait for this thread
+constexpr double kRowSeconds = 4.0;                   // [s] of rows that may be buffered for this thread
 
 double seconds_since(std::uint64_t then) {
   return static_cast<double>(now_ns() - then) * 1e-9;
@@ -47,7 +47,7 @@ std::string words_of(const World& world, const SessionEffector& effector, const 
   return {};
 }
 
-// A name that the level does not have yet.
+// A name not used in the level.
 std::string free_name(const Level& level, std::string name) {
   const auto taken = [&](const LevelNode& node) { return node.name == name; };
   while (std::any_of(level.nodes.begin(), level.nodes.end(), taken)) name += "'";
@@ -59,7 +59,7 @@ bool wants_mouse(const Level& level, const PlayOptions& options) {
   for (const auto& [name, source] : options.sources)
     if (source.kind == PlaySource::Kind::kMouse) return false;
   return std::none_of(level.nodes.begin(), level.nodes.end(), [](const LevelNode& node) {
-    if (node.handle) return true;  // it takes hold of it
+    if (node.handle) return true;  // the mouse will drag it
     if (!node.device) return false;
     const HapticDevice& device = *node.device;
     return device.driver == DriverKind::kMouse ||
@@ -204,7 +204,7 @@ void PlayRun::Inside::move_hand(double dt) {
   static_cast<void>(session->move(moved, *to, held));
 }
 
-// What the mouse held in a past that is had again.
+// Restores the mouse's drags of a repeated past.
 void PlayRun::Inside::hold_again() {
   if (!again) return;
   for (const auto& holds = run.options_.past->holds; next_hold < holds.size() && holds[next_hold].tick <= parts->ticks;
@@ -249,7 +249,7 @@ void PlayRun::Inside::take_rows() {
   }
 }
 
-// Everything that has changed travels, now that nothing more changes.
+// Publishes all changes, after the last tick.
 void PlayRun::Inside::flush() {
   World& world = parts->world;
   if (world.snapshots->unseen()) return;
@@ -377,7 +377,7 @@ void PlayRun::show(Inside& in) {
   status_.findings = in.findings;
 }
 
-// Devices first: nobody holds a force while the rest is taken down.
+// Devices first, so that none keeps a force during shutdown.
 void PlayRun::close(Inside& in) {
   if (in.session) {
     const Status stopped = in.session->stop();

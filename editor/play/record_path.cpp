@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-// [m] The farthest that following `rows`, straight from one to the next, is from the run.
+// [m] The largest distance of the polyline `rows` from the run.
 double farthest(const std::vector<PathRow>& run, const std::vector<PathRow>& rows) {
   double worst = 0.0;
   std::size_t k = 0;
@@ -24,7 +24,7 @@ double farthest(const std::vector<PathRow>& run, const std::vector<PathRow>& row
   return worst;
 }
 
-// The key stays where it is, and is told from the closest place of a surface.
+// Keeps the key's position and expresses it relative to the closest surface point.
 void anchor(PathKey& key, const std::vector<PathSurface>& surfaces) {
   const dvec3 p = key.position();
   double nearest = 1e300;
@@ -36,7 +36,7 @@ void anchor(PathKey& key, const std::vector<PathSurface>& surfaces) {
     if (away >= nearest) continue;
     nearest = away;
     key.height = dot(off, hit.normal) < 0.0 ? -away : away;
-    // On the surface itself the way there has no direction.
+    // On the surface itself the direction is undefined.
     key.normal = away > 1e-6 ? off / key.height : hit.normal;
     key.anchor = p - key.height * key.normal;
   }
@@ -79,7 +79,7 @@ Result<RecordedPath> path_of_past(const PlayPast& past, std::size_t which, std::
   for (std::size_t t = 0; t < past.ticks.size() && which < count; ++t)
     if (const RecordedPose& pose = past.poses[t * count + which]; pose.ready)
       run.push_back({static_cast<double>(past.ticks[t]) / rate, pose.position, {1, 0, 0, 0}});
-  // Without the rest before it sets out and after it has arrived.
+  // Removes rest before the start and after the end of the motion.
   const auto rests = [&](const dvec3& at) {
     return [&at, tolerance](const PathRow& row) { return length(row.position - at) <= tolerance; };
   };

@@ -1,4 +1,4 @@
-// The way that a probe or tool took in a run, as a path that can be edited: few keys, and how far they are from it.
+// The motion of a probe or tool in a run as an editable path: few keys, and their error.
 #pragma once
 
 #include <memory>
@@ -12,18 +12,17 @@ namespace pliant {
 
 struct RecordedPath {
   ScriptKeys keys;     // from 0 s on
-  double begin = 0.0;  // [s] of the run: where the first key is
-  double error = 0.0;  // [m] the farthest that the script, as it is followed, is from the run at any tick
+  double begin = 0.0;  // [s] of the run at the first key
+  double error = 0.0;  // [m] the largest deviation of the followed script from the run at any tick
 };
 
-// Of effector `which` of `count`, without its rest before and after. As few keys as a smooth curve within `tolerance`
-// [m] of the run needs; each has its height over the closest of the surfaces.
+// Of effector `which` of `count`, without rest before and after. As few keys as a smooth curve within `tolerance` [m]
+// of the run needs; heights are relative to the closest surface.
 Result<RecordedPath> path_of_past(const PlayPast& past, std::size_t which, std::size_t count, double rate,
                                   double tolerance, const std::vector<PathSurface>& surfaces = {});
 
-// Of the probe or tool of this name in the run that is on, or in the last one: becomes the script of its device, in one
-// step that can be undone. A probe that is not the document's (the mouse's) becomes one. The work is done in the
-// background; what came of it is said.
+// Makes the motion of the named probe or tool in the current or last run the script of its device, in one undoable
+// step. A probe that is not in the document (the mouse's) is added. Runs in the background; the result is reported.
 void record_path(Editor& editor, Play& play, const std::string& name, double tolerance);
 
 }  // namespace pliant

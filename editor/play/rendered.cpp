@@ -36,12 +36,12 @@ void Rendered::update(Editor& editor, Stage& stage, bool shown) {
     return;
   }
   const std::uint64_t revision = editor.document.revision();
-  if (files_ != editor.files_read) {  // what is shown is of other files
+  if (files_ != editor.files_read) {  // referenced files have changed
     files_ = editor.files_read;
     if (seen_ != ~std::uint64_t{0}) seen_ = made_ = revision + 1;
   }
   if (revision != seen_) {
-    changed_at_ = seen_ == ~std::uint64_t{0} ? -kPatience : editor.now;  // the first comes at once
+    changed_at_ = seen_ == ~std::uint64_t{0} ? -kPatience : editor.now;  // the first one at once
     seen_ = revision;
     waits_ = true;
   }

@@ -1,5 +1,5 @@
-// "Rendered" while the level is edited: a world made of the document in the background, again when it has changed; the
-// picture before stays meanwhile.
+// "Rendered" mode while editing: builds a world from the document in the background, again after changes; the previous
+// picture is shown meanwhile.
 #pragma once
 
 #include "editor/app/editor.h"
@@ -9,23 +9,23 @@ namespace pliant {
 
 class Rendered {
  public:
-  static constexpr double kPatience = 0.3;  // [s] without a change, before it is made anew
-  // Once a frame. `shown`: it is to be seen.
+  static constexpr double kPatience = 0.3;  // [s] without a change, before it is rebuilt
+  // Once per frame. `shown`: the mode is active.
   void update(Editor& editor, Stage& stage, bool shown);
-  // Something else has taken its place on the stage.
+  // The stage shows something else now.
   void forget() { shows_ = false; }
-  bool waits() const { return waits_; }  // a change has not been answered yet
+  bool waits() const { return waits_; }  // a change is not shown yet
 
  private:
   bool shows_ = false, waits_ = false;
-  std::uint64_t made_ = ~std::uint64_t{0}, seen_ = ~std::uint64_t{0};  // revisions: under way or shown; changed last
-  std::uint64_t files_ = 0;                                            // Editor::files_read that it was made with
+  std::uint64_t made_ = ~std::uint64_t{0}, seen_ = ~std::uint64_t{0};  // revisions: in progress or shown; last changed
+  std::uint64_t files_ = 0;                                            // Editor::files_read at building
   double changed_at_ = 0.0;
 };
 
-// A world to look at, prepared as for playing.
+// A world for display only, prepared as for playing.
 Result<std::shared_ptr<World>> world_of(const Level& level);
-// The level with the place of its file, from which it names others.
+// The level with the path of its file, for referenced files.
 Level level_to_play(const State& state, const std::filesystem::path& folder, const std::filesystem::path& file,
                     const Scripts& unsaved);
 

@@ -11,9 +11,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kLongGate = 0.1;  // [s] of force withheld: shorter is a start as it should be
+constexpr double kLongGate = 0.1;  // [s] of force withheld: shorter is normal at the start
 
-// [s] When the path of a probe or tool ends; 0: it has none.
+// [s] End of a probe's or tool's path; 0: none.
 double path_end(const State& state, const std::string& effector) {
   const DocumentNode* const node = state.find(effector);
   const DocumentNode* const device = node ? state.find(device_of(state, node->id)) : nullptr;

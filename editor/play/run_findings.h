@@ -1,4 +1,4 @@
-// What a run has shown to be wrong with a probe or tool: its force was withheld, or it touched nothing.
+// Problems of a probe or tool in a run: its force was withheld, or it touched nothing.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ namespace pliant {
 
 struct RunFinding {
   std::string effector;
-  std::string brief;  // beside the picture, while it is so; empty: not now
-  std::string text;   // half a sentence with its cure, behind the name; empty: nothing yet
+  std::string brief;  // beside the picture, while it lasts; empty: none
+  std::string text;   // half a sentence with its remedy, after the name; empty: none yet
 };
 std::vector<RunFinding> run_findings(const State& state, const PlayStatus& status,
                                      const std::vector<PlayTrace>& traces);

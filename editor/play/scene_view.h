@@ -1,5 +1,5 @@
-// A prepared World as it is played: materials, surroundings, shadows, probes and their forces, by the engine's
-// renderer. Made, called and destroyed on the stage's thread.
+// A prepared World rendered as in play: materials, environment, shadows, probes and their forces, by the engine's
+// renderer. Created, used and destroyed on the stage's thread.
 #pragma once
 
 #include <memory>
@@ -13,14 +13,14 @@ namespace pliant {
 
 class SceneView : public Scenery {
  public:
-  explicit SceneView(std::shared_ptr<World> world);  // which stands still
+  explicit SceneView(std::shared_ptr<World> world);  // which does not run
   explicit SceneView(std::shared_ptr<PlayRun> run);
   ~SceneView() override;
 
   Status draw(const SolidOrder& order, GLuint framebuffer, int width, int height) override;
   void ask(std::optional<dvec2> pixel) override { asked_ = pixel; }
   SolidPicked pick(double x, double y) override;
-  Status reload() override;  // of a level that is played: at the next Play
+  Status reload() override;  // for a played level: at the next Play
   bool moves() const override { return run_ != nullptr; }
   bool wants_picture() const override;
 

@@ -16,7 +16,7 @@ bool GizmoTool::use(Editor& editor, const ViewportInput& in) {
   if (!busy) {
     hovered_ = GizmoPart::kNone;
     if (editor.selected.empty()) return false;
-    const Grip grip = grip_of(editor.state(), editor.selected, editor.active(), pivot, settings_.local_axes);
+    const GizmoGrip grip = grip_of(editor.state(), editor.selected, editor.active(), pivot, settings_.local_axes);
     if (in.over && !grip.held.empty() && !in.held) hovered_ = pick(picture_of(in), grip, {in.x, in.y});
     if (in.pressed && !in.alt) {
       hovered_ = pick(picture_of(in), grip, {in.x, in.y});
@@ -75,7 +75,7 @@ void GizmoTool::show(Editor& editor) {
 void GizmoTool::finish(Editor& editor, bool keep) {
   const auto stays = [&] {
     const std::vector<Placing> to = any_ ? placings(amounts_) : std::vector<Placing>{};
-    return std::equal(to.begin(), to.end(), grip_.held.begin(), [](const Placing& a, const Grip::Held& b) {
+    return std::equal(to.begin(), to.end(), grip_.held.begin(), [](const Placing& a, const GizmoGrip::Held& b) {
       return a.local.translation == b.local.translation && a.local.rotation == b.local.rotation &&
              a.local.scale == b.local.scale;
     });
@@ -95,7 +95,7 @@ void GizmoTool::take_text(Editor& editor, const ViewportInput& in) {
   if (in.typed.empty() && !in.erase) return;
   for (const char c : in.typed)
     if (c >= ' ' && c < 127 && text_.size() < 200) {
-      if (c >= 'x' && c <= 'z') {  // another axis takes the place of the one before
+      if (c >= 'x' && c <= 'z') {  // replaces the previous axis
         std::erase_if(text_, [](char t) { return t >= 'x' && t <= 'z'; });
         text_.insert(text_.begin(), c);
       } else {
@@ -118,12 +118,12 @@ void GizmoTool::overlay(Editor& editor, const ViewportInput& in, ImDrawList& lis
   if (editor.selected.empty()) return;
   const GizmoPicture picture = picture_of(in);
   const bool busy = dragging_ || typing_;
-  const Grip grip = grip_of(editor.state(), editor.selected, editor.active(), pivot, settings_.local_axes);
+  const GizmoGrip grip = grip_of(editor.state(), editor.selected, editor.active(), pivot, settings_.local_axes);
   if (grip.held.empty()) return;
-  Grip shown = grip;
+  GizmoGrip shown = grip;
   if (busy) {
     shown.axes = grip_.axes;
-    // What is held keeps its middle in sight: bounds change a little while it turns.
+    // Keep the pivot fixed: bounds change a little during rotation.
     dvec3 by(0);
     for (std::size_t i = 0; i < std::min(grip.held.size(), grip_.held.size()); ++i)
       by += (grip.held[i].place - grip_.held[i].place) / static_cast<double>(grip.held.size());
@@ -133,7 +133,7 @@ void GizmoTool::overlay(Editor& editor, const ViewportInput& in, ImDrawList& lis
   if (!middle || !gizmo::unit(picture, shown)) return;
   const ui::Palette& p = ui::palette();
   if (busy && (is_axis(part_) || is_plane(part_))) {
-    // The lines along which it moves, across the picture.
+    // The axes of the motion, across the picture.
     for (int i = 0; i < 3; ++i) {
       if (is_axis(part_) ? i != axis_of(part_) : i == axis_of(part_)) continue;
       const auto size = gizmo::unit(picture, shown);
@@ -163,7 +163,7 @@ void GizmoTool::overlay(Editor& editor, const ViewportInput& in, ImDrawList& lis
   const ImVec2 at(in.corner.x + static_cast<float>(middle->x), in.corner.y + static_cast<float>(middle->y));
   ui::known_at(scope + "middle", {at.x - reach, at.y - reach}, {at.x + reach, at.y + reach});
   if (!busy) return;
-  // What it has come to, beside the hand.
+  // The current amount, beside the mouse.
   std::string text = typing_ ? text_ + "\u258f" : std::string();
   const std::string said = any_ ? readout(amounts_) : std::string();
   if (typing_ && !understood_)

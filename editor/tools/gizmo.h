@@ -1,5 +1,5 @@
-// What the tools Move, Turn and Scale have in common: handles over the picture, of one size on the screen, that are
-// dragged with the mouse or set by typing. A drag is one step of the document, and shown at once.
+// Shared by the tools Move, Turn and Scale: handles of constant screen size, dragged with the mouse or set by typing. A
+// drag is one step of the document, and shown at once.
 #pragma once
 
 #include "editor/app/panel.h"
@@ -21,27 +21,27 @@ class GizmoTool : public ViewTool {
   bool has_options() const override { return true; }
   void options(Editor& editor) override;
 
-  Pivot pivot = Pivot::kMiddle;  // about what several nodes, or one, move
+  Pivot pivot = Pivot::kMiddle;  // pivot of the motion
 
  protected:
-  // What a handle does: how far, by what angle (x), by what factors. Nothing: the mouse points at no such place.
+  // The effect of a handle: displacement, angle (x), or factors. Empty: the mouse gives no valid value.
   virtual std::optional<dvec3> dragged(Editor& editor, const ViewportInput& in, bool snap) = 0;
   virtual dvec3 typed_amounts(GizmoPart part, double value) = 0;
   virtual std::vector<Placing> placings(dvec3 amounts) const = 0;
   virtual std::string readout(dvec3 amounts) const = 0;
-  virtual GizmoPart pick(const GizmoPicture& picture, const Grip& grip, dvec2 mouse) const = 0;
-  virtual void draw(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, ImDrawList& list,
+  virtual GizmoPart pick(const GizmoPicture& picture, const GizmoGrip& grip, dvec2 mouse) const = 0;
+  virtual void draw(const GizmoPicture& picture, const GizmoGrip& grip, ImVec2 corner, ImDrawList& list,
                     GizmoPart bright) const = 0;
-  virtual bool lengths() const { return false; }  // what is typed is a length
+  virtual bool lengths() const { return false; }  // typed values are lengths
   virtual void begun(Editor&) {}
   virtual double& snap_step() = 0;
   virtual const char* snap_unit() const = 0;
   virtual void more_options(Editor&) {}
 
   Settings& settings_;
-  Grip grip_;                          // while something is held: as it was before
-  GizmoPart part_ = GizmoPart::kNone;  // that is held
-  dvec2 from_{0}, last_{0};            // [pixel] where the drag began, and the mouse in the frame before
+  GizmoGrip grip_;                          // during a drag: the initial state
+  GizmoPart part_ = GizmoPart::kNone;  // the dragged part
+  dvec2 from_{0}, last_{0};            // [pixel] start of the drag, and the mouse in the last frame
 
  private:
   void begin(Editor& editor, GizmoPart part, const ViewportInput& in);
@@ -52,24 +52,24 @@ class GizmoTool : public ViewTool {
   bool dragging_ = false, typing_ = false;
   GizmoPart hovered_ = GizmoPart::kNone;
   dvec3 amounts_{0};
-  bool any_ = false;  // `amounts_` means something
+  bool any_ = false;  // `amounts_` is valid
   std::string text_;  // typed
   bool understood_ = true;
   int gestures_ = 0;
   std::string gesture_;
 };
 
-// Parts of gizmos, drawn and met by the mouse. Sizes in points.
+// Parts of gizmos: drawing and picking. Sizes in points.
 namespace gizmo {
 inline constexpr float kLength = 92, kPlaneNear = 26, kPlaneFar = 42, kCenter = 9, kReach = 8, kRing = 84;
-// [m] of one point at the grip's pivot; nothing: it is behind the eye.
-std::optional<double> unit(const GizmoPicture& picture, const Grip& grip);
+// [m] of one point at the grip's pivot; empty: behind the eye.
+std::optional<double> unit(const GizmoPicture& picture, const GizmoGrip& grip);
 ImU32 color_of(GizmoPart part, bool bright, float alpha = 1.0f);
-// [1] 0 where an axis points at the eye, or a plane is edge-on: such a part is not drawn.
-float clarity(const GizmoPicture& picture, const Grip& grip, GizmoPart part);
-// Axes, planes and the middle, as Move and Scale have them.
-GizmoPart pick_arrows(const GizmoPicture& picture, const Grip& grip, dvec2 mouse);
-void draw_arrows(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, ImDrawList& list, GizmoPart bright,
+// [1] 0 if an axis points at the eye, or a plane is edge-on: such a part is not drawn.
+float clarity(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part);
+// Axes, planes and centre, for Move and Scale.
+GizmoPart pick_arrows(const GizmoPicture& picture, const GizmoGrip& grip, dvec2 mouse);
+void draw_arrows(const GizmoPicture& picture, const GizmoGrip& grip, ImVec2 corner, ImDrawList& list, GizmoPart bright,
                  bool boxes);
 void letter(ImDrawList& list, ImVec2 at, int axis, ImU32 color);
 }  // namespace gizmo

@@ -22,7 +22,7 @@ double segment_distance(dvec2 p, dvec2 a, dvec2 b) {
 }
 
 // The corners of a plane's square, in pixels.
-bool square_of(const GizmoPicture& picture, const Grip& grip, int out, double size, dvec3 (&corner)[4]) {
+bool square_of(const GizmoPicture& picture, const GizmoGrip& grip, int out, double size, dvec3 (&corner)[4]) {
   const dvec3 u = grip.axes[(out + 1) % 3], v = grip.axes[(out + 2) % 3];
   const double near_end = static_cast<double>(kPlaneNear) * size, far_end = static_cast<double>(kPlaneFar) * size;
   const dvec3 places[4] = {grip.pivot + near_end * u + near_end * v, grip.pivot + far_end * u + near_end * v,
@@ -47,7 +47,7 @@ bool inside(dvec2 p, const dvec3 (&corner)[4]) {
 
 }  // namespace
 
-std::optional<double> unit(const GizmoPicture& picture, const Grip& grip) {
+std::optional<double> unit(const GizmoPicture& picture, const GizmoGrip& grip) {
   const auto pixel = metres_of_pixel(picture, grip.pivot);
   if (!pixel) return {};
   return *pixel * static_cast<double>(ui::scale());
@@ -62,7 +62,7 @@ ImU32 color_of(GizmoPart part, bool bright, float alpha) {
   return ui::color({lighter(own.x, p.text.x), lighter(own.y, p.text.y), lighter(own.z, p.text.z), 1.0f}, alpha);
 }
 
-float clarity(const GizmoPicture& picture, const Grip& grip, GizmoPart part) {
+float clarity(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part) {
   if (part == GizmoPart::kFree) return 1.0f;
   const dvec3 sight = picture.orthographic > 0.0 ? picture.forward() : glm::normalize(grip.pivot - picture.view.eye);
   const int i = axis_of(part);
@@ -74,7 +74,7 @@ float clarity(const GizmoPicture& picture, const Grip& grip, GizmoPart part) {
   return std::clamp((static_cast<float>(seen) - kClear) / (kFull - kClear), 0.0f, 1.0f);
 }
 
-GizmoPart pick_arrows(const GizmoPicture& picture, const Grip& grip, dvec2 mouse) {
+GizmoPart pick_arrows(const GizmoPicture& picture, const GizmoGrip& grip, dvec2 mouse) {
   const auto middle = picture.pixel(grip.pivot);
   const auto size = unit(picture, grip);
   if (!middle || !size) return GizmoPart::kNone;
@@ -111,7 +111,7 @@ void letter(ImDrawList& list, ImVec2 where, int axis, ImU32 color) {
   list.AddText(of, of->FontSize, {where.x - 0.5f * size.x, where.y - 0.54f * size.y}, color, text);
 }
 
-void draw_arrows(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, ImDrawList& list, GizmoPart bright,
+void draw_arrows(const GizmoPicture& picture, const GizmoGrip& grip, ImVec2 corner, ImDrawList& list, GizmoPart bright,
                  bool boxes) {
   const auto middle = picture.pixel(grip.pivot);
   const auto size = unit(picture, grip);
@@ -128,7 +128,7 @@ void draw_arrows(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, I
     list.AddQuad(at(corner, c[0]), at(corner, c[1]), at(corner, c[2]), at(corner, c[3]),
                  color_of(part, on, 0.9f * clear), ui::px(1));
   }
-  // The farthest first, so that the nearest lies over the others.
+  // Farthest first, so that the nearest is drawn on top.
   int order[3] = {0, 1, 2};
   const dvec3 forward = picture.forward();
   std::sort(order, order + 3, [&](int a, int b) { return dot(grip.axes[a], forward) > dot(grip.axes[b], forward); });

@@ -14,15 +14,15 @@
 namespace pliant {
 namespace {
 
-constexpr double kEdgeOn = 0.12;       // [1] sine below which a plane is seen too flat to point at
-constexpr double kLeastFactor = 1e-3;  // [1] a hand does not flatten a node by mistake
+constexpr double kEdgeOn = 0.12;       // [1] sine below which a plane is too edge-on to be used
+constexpr double kLeastFactor = 1e-3;  // [1] smallest factor, to avoid accidental flattening
 constexpr double kFreeScale = 120.0;   // [pixel] that make a factor of e
 
 dmat3 linear(const dmat4& m) {
   return dmat3(m);
 }
 
-// The quickest way to an orthonormal frame that keeps the first axis; `otherwise` where axes are flattened.
+// An orthonormal frame with the same first axis; `otherwise` if axes are degenerate.
 dmat3 unit_columns(const dmat3& m, const dmat3& otherwise) {
   dmat3 axes = m;
   double largest = 0;
@@ -35,7 +35,7 @@ dmat3 unit_columns(const dmat3& m, const dmat3& otherwise) {
   return std::abs(glm::determinant(axes)) > 1e-3 ? axes : otherwise;
 }
 
-// x of m x = v; what a flattened axis cannot give is left out.
+// x of m x = v; components along a degenerate axis are dropped.
 dvec3 solved(const dmat3& m, dvec3 v) {
   const double size = length(m[0]) * length(m[1]) * length(m[2]);
   if (size > 0.0 && std::abs(glm::determinant(m)) > 1e-9 * size) return glm::inverse(m) * v;
@@ -45,14 +45,14 @@ dvec3 solved(const dmat3& m, dvec3 v) {
   return x;
 }
 
-void carry(const Grip::Held& held, dvec3 to, LocalTransform& local) {
+void carry(const GizmoGrip::Held& held, dvec3 to, LocalTransform& local) {
   local.translation = vec3(dvec3(held.local.translation) + solved(linear(held.parent), to - held.place));
 }
 
 }  // namespace
 
-Grip grip_of(const State& state, std::span<const NodeId> ids, NodeId active, Pivot pivot, bool local) {
-  Grip grip;
+GizmoGrip grip_of(const State& state, std::span<const NodeId> ids, NodeId active, Pivot pivot, bool local) {
+  GizmoGrip grip;
   grip.local = local;
   const std::vector<dmat4> frames = world_frames(state);
   std::unordered_map<NodeId, std::size_t> place;
@@ -106,7 +106,8 @@ std::optional<dvec3> on_plane(const ViewRay& ray, dvec3 origin, dvec3 normal) {
   return ray.from + away * ray.along;
 }
 
-std::optional<dvec3> moved_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to) {
+std::optional<dvec3> moved_by(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, dvec2 from,
+                              dvec2 to) {
   const ViewRay first = picture.ray(from.x, from.y), now = picture.ray(to.x, to.y);
   dvec3 by(0);
   if (is_axis(part)) {
@@ -139,7 +140,7 @@ double turned_by(const GizmoPicture& picture, dvec3 pivot, dvec3 axis, dvec2 fro
       if (dot(u, u) > 0.0 && dot(v, v) > 0.0) return std::atan2(dot(cross(u, v), axis), dot(u, v));
     }
   }
-  // Edge-on the ring is a line: its near side moves along it.
+  // Edge-on, the ring is a line: the motion follows its near side.
   const dvec3 near_side = -(sight - facing * axis);
   if (!(dot(near_side, near_side) > 1e-12)) return 0.0;
   const dvec3 tangent = cross(axis, glm::normalize(near_side));
@@ -151,7 +152,8 @@ double turned_by(const GizmoPicture& picture, dvec3 pivot, dvec3 axis, dvec2 fro
   return length(way) > 1e-6 ? dot(to - from, glm::normalize(way)) / radius_pixels : 0.0;
 }
 
-std::optional<dvec3> scaled_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to) {
+std::optional<dvec3> scaled_by(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, dvec2 from,
+                               dvec2 to) {
   dvec3 factors(1);
   if (part == GizmoPart::kFree) return dvec3(std::exp(((to.x - from.x) - (to.y - from.y)) / kFreeScale));
   const ViewRay first = picture.ray(from.x, from.y), now = picture.ray(to.x, to.y);
@@ -171,23 +173,23 @@ std::optional<dvec3> scaled_by(const GizmoPicture& picture, const Grip& grip, Gi
   return factors;
 }
 
-std::vector<Placing> moved(const Grip& grip, dvec3 by) {
+std::vector<Placing> moved(const GizmoGrip& grip, dvec3 by) {
   std::vector<Placing> out;
-  for (const Grip::Held& held : grip.held) {
+  for (const GizmoGrip::Held& held : grip.held) {
     out.push_back({held.id, held.local});
     carry(held, held.place + by, out.back().local);
   }
   return out;
 }
 
-std::vector<Placing> turned(const Grip& grip, dvec3 axis, double angle) {
+std::vector<Placing> turned(const GizmoGrip& grip, dvec3 axis, double angle) {
   const dmat3 turn = glm::mat3_cast(glm::angleAxis(angle, glm::normalize(axis)));
   std::vector<Placing> out;
-  for (const Grip::Held& held : grip.held) {
+  for (const GizmoGrip::Held& held : grip.held) {
     out.push_back({held.id, held.local});
     LocalTransform& local = out.back().local;
     carry(held, grip.pivot + turn * (held.place - grip.pivot), local);
-    // The turn as the parent sees it; under an uneven scale it would shear, and the nearest turn is taken.
+    // The rotation in the parent's frame; a non-uniform scale would add shear, so the nearest rotation is used.
     const dmat3 above = linear(held.parent), own = glm::mat3_cast(dquat(held.local.rotation));
     dmat3 seen;
     for (int i = 0; i < 3; ++i) seen[i] = solved(above, turn * (above * own[i]));
@@ -199,19 +201,19 @@ std::vector<Placing> turned(const Grip& grip, dvec3 axis, double angle) {
   return out;
 }
 
-std::vector<Placing> scaled(const Grip& grip, dvec3 factors) {
+std::vector<Placing> scaled(const GizmoGrip& grip, dvec3 factors) {
   dmat3 stretch(1);
   const dmat3 back = glm::inverse(grip.axes);
   for (int i = 0; i < 3; ++i) stretch[i] = grip.axes[i] * factors[i];
   stretch = stretch * back;
   std::vector<Placing> out;
-  for (const Grip::Held& held : grip.held) {
+  for (const GizmoGrip::Held& held : grip.held) {
     out.push_back({held.id, held.local});
     LocalTransform& local = out.back().local;
     carry(held, grip.pivot + stretch * (held.place - grip.pivot), local);
     const dmat3 own = linear(held.parent) * glm::mat3_cast(dquat(held.local.rotation));
     for (int i = 0; i < 3; ++i) {
-      // Along its own axes exactly; along others as far as a scale without shear can follow.
+      // Exact along its own axes; along others as far as possible without shear.
       double factor = factors[i];
       if (!grip.local) {
         const double size = length(own[i]);
@@ -220,7 +222,7 @@ std::vector<Placing> scaled(const Grip& grip, dvec3 factors) {
         factor = length(to) * (dot(to, own[i]) < 0.0 ? -1.0 : 1.0);
       }
       const double before = static_cast<double>(local.scale[i]);
-      const double after = before == 0.0 ? factor - 1.0 : before * factor;  // what is flat comes back
+      const double after = before == 0.0 ? factor - 1.0 : before * factor;  // a flattened node can be restored
       if (after != 0.0 && std::isfinite(after)) local.scale[i] = static_cast<float>(after);
     }
   }

@@ -1,5 +1,5 @@
-// The arithmetic of gizmos: from the mouse in a picture to metres, angles and factors, and from those to where the
-// nodes that are held stand. No window is needed.
+// The arithmetic of gizmos: from mouse positions to metres, angles and factors, and from these to transforms of the
+// dragged nodes. Needs no window.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-// The picture that a gizmo stands in.
+// The picture with the gizmo.
 struct GizmoPicture {
   Viewpoint view;
   double orthographic = 0.0;  // [m] height; 0: perspective
@@ -29,14 +29,14 @@ inline bool is_axis(GizmoPart part) {
 inline bool is_plane(GizmoPart part) {
   return part >= GizmoPart::kYZ && part <= GizmoPart::kXY;
 }
-// Of an axis its number; of a plane the number of the axis that it leaves out.
+// For an axis, its number; for a plane, the number of its normal axis.
 inline int axis_of(GizmoPart part) {
   return is_plane(part) ? static_cast<int>(part) - static_cast<int>(GizmoPart::kYZ)
                         : static_cast<int>(part) - static_cast<int>(GizmoPart::kX);
 }
 
-// What is held: the topmost nodes of a selection, and about what they move.
-struct Grip {
+// The dragged nodes (the topmost of a selection), and their pivot.
+struct GizmoGrip {
   struct Held {
     NodeId id;
     LocalTransform local;
@@ -50,41 +50,41 @@ struct Grip {
 };
 enum class Pivot : std::uint8_t {
   kOrigin,  // the mean of the nodes' origins
-  kMiddle,  // the middle of their bounds
+  kMiddle,  // the centre of their bounds
 };
-// `local`: along the axes of `active`, else the world's. Nothing to hold: no `held`.
-Grip grip_of(const State& state, std::span<const NodeId> ids, NodeId active, Pivot pivot, bool local);
+// `local`: axes of `active`, else the world's. If there is nothing to drag, `held` is empty.
+GizmoGrip grip_of(const State& state, std::span<const NodeId> ids, NodeId active, Pivot pivot, bool local);
 
-// [m] of a pixel at a place; nothing: it is behind the eye.
+// [m] of a pixel at a point; empty: behind the eye.
 std::optional<double> metres_of_pixel(const GizmoPicture& picture, dvec3 place);
-// [m] along the line through `origin`, where it is nearest to a ray; nothing: they are parallel, or that is behind.
+// [m] along the line through `origin`, at the point nearest to a ray; empty: parallel, or behind.
 std::optional<double> along_line(const ViewRay& ray, dvec3 origin, dvec3 along);
-// [m] where a ray meets a plane; nothing: it is seen edge-on, or behind.
+// [m] intersection of a ray and a plane; empty: edge-on, or behind.
 std::optional<dvec3> on_plane(const ViewRay& ray, dvec3 origin, dvec3 normal);
 
-// How far the hand has gone between two pixels, along the grip's axes [m].
-std::optional<dvec3> moved_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to);
-// By what angle about `axis` the hand has turned between two pixels [rad]; of a large turn, add small ones.
+// Displacement between two pixels, along the grip's axes [m].
+std::optional<dvec3> moved_by(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, dvec2 from, dvec2 to);
+// Rotation about `axis` between two pixels [rad]; add small ones for a large rotation.
 double turned_by(const GizmoPicture& picture, dvec3 pivot, dvec3 axis, dvec2 from, dvec2 to, double radius_pixels);
-// By what factor along each of the grip's axes it has scaled.
-std::optional<dvec3> scaled_by(const GizmoPicture& picture, const Grip& grip, GizmoPart part, dvec2 from, dvec2 to);
+// Factors along the grip's axes between two pixels.
+std::optional<dvec3> scaled_by(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, dvec2 from, dvec2 to);
 
-// Where the nodes stand then.
-std::vector<Placing> moved(const Grip& grip, dvec3 by);                   // `by` [m] world
-std::vector<Placing> turned(const Grip& grip, dvec3 axis, double angle);  // `axis` world
-std::vector<Placing> scaled(const Grip& grip, dvec3 factors);             // along the grip's axes
+// The resulting transforms.
+std::vector<Placing> moved(const GizmoGrip& grip, dvec3 by);                   // `by` [m] world
+std::vector<Placing> turned(const GizmoGrip& grip, dvec3 axis, double angle);  // `axis` world
+std::vector<Placing> scaled(const GizmoGrip& grip, dvec3 factors);             // along the grip's axes
 
 double snapped(double value, double step);  // to a multiple; step 0: as it is
 
-// What is typed while something is held: an axis' letter, then a quantity (editor/ui/quantity.h): "x 0.05", "-3mm".
+// Text typed during a drag: an axis' letter, then a quantity (editor/ui/quantity.h): "x 0.05", "-3mm".
 struct TypedValue {
-  GizmoPart axis = GizmoPart::kNone;  // none: as it was
-  std::optional<double> value;        // in `unit`; nothing: no number yet
+  GizmoPart axis = GizmoPart::kNone;  // none: unchanged
+  std::optional<double> value;        // in `unit`; empty: no number yet
   bool understood = true;
 };
 TypedValue typed_value(const std::string& text, const std::string& unit);
 
-// "12 mm", with the unit that suits its size.
+// "12 mm", with a suitable unit.
 std::string length_text(double metres, int digits = 4);
 
 }  // namespace pliant

@@ -5,7 +5,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kSlice = 12.0;  // [ms] of dabs between two looks of the interface
+constexpr double kSlice = 12.0;  // [ms] of dabs between two checks for new input
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// A stroke that is made on a thread of its own: no dab, however large, keeps the interface waiting. What is painted in
-// the end depends on what the hand did, not on how fast either of both was.
+// A stroke computed on a separate thread, so that large dabs do not block the interface. The result depends only on the
+// input, not on timing.
 #pragma once
 
 #include <condition_variable>
@@ -18,24 +18,24 @@ namespace pliant {
 
 class LiveStroke {
  public:
-  // `layers`: what is painted, one for each primitive, empty where nothing is. `wake` is called on the stroke's thread
-  // when there is something to take.
+  // `layers`: the current paint, one per primitive, empty if unpainted. `wake` is called on the stroke's thread when
+  // there are results.
   LiveStroke(std::shared_ptr<const PaintSurface> surface, std::vector<PaintLayer> layers, PaintAttribute attribute,
              const Brush& brush, std::function<void()> wake);
-  ~LiveStroke();  // what is not made yet never is
+  ~LiveStroke();  // discards pending dabs
   LiveStroke(const LiveStroke&) = delete;
   LiveStroke& operator=(const LiveStroke&) = delete;
 
   void move(const Ray& ray, double pressure);  // surface frame
-  void finish();                               // the hand has let go; what waits is still made
-  bool finished() const;                       // ... and it is: nothing new comes any more
-  bool idle() const;                           // all that the hand did so far is made, and taken
+  void finish();                               // end of input; pending dabs are still made
+  bool finished() const;                       // all dabs are made and taken
+  bool idle() const;                           // all input so far is processed and taken
 
   struct Made {
-    std::vector<std::pair<std::uint32_t, PaintLayer>> layers;  // of primitives that have changed, as they are now
+    std::vector<std::pair<std::uint32_t, PaintLayer>> layers;  // changed primitives in their current state
     std::optional<SurfaceHit> at;                              // the last dab
   };
-  // What has been made since the last call.
+  // Results since the last call.
   Made take();
 
  private:

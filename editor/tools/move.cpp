@@ -58,17 +58,17 @@ class MoveTool : public GizmoTool {
         text += fmt::format("{}{}  {}", text.empty() ? "" : "   ", "xyz"[i], length_text(by[i], 3));
     return text;
   }
-  GizmoPart pick(const GizmoPicture& picture, const Grip& grip, dvec2 mouse) const override {
+  GizmoPart pick(const GizmoPicture& picture, const GizmoGrip& grip, dvec2 mouse) const override {
     return gizmo::pick_arrows(picture, grip, mouse);
   }
-  void draw(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, ImDrawList& list,
+  void draw(const GizmoPicture& picture, const GizmoGrip& grip, ImVec2 corner, ImDrawList& list,
             GizmoPart bright) const override {
     gizmo::draw_arrows(picture, grip, corner, list, bright, false);
   }
   bool lengths() const override { return true; }
   void begun(Editor& editor) override {
     const auto active = std::find_if(grip_.held.begin(), grip_.held.end(),
-                                     [&](const Grip::Held& held) { return held.id == editor.active(); });
+                                     [&](const GizmoGrip::Held& held) { return held.id == editor.active(); });
     held_point_ = active == grip_.held.end() ? grip_.held.front().place : active->place;
     if (lowest_) held_point_ = lowest_point(editor.state(), editor.selected).value_or(held_point_);
   }

@@ -1,6 +1,6 @@
-// Painting with the mouse on the active node's mesh: dragging paints, Shift smooths, Ctrl says the value under the
-// mouse. What it does to the document is in painting.h. GLFW 3.3 tells nothing of a tablet's pressure: it counts as 1
-// until the window says more (ViewportInput::pressure).
+// Painting with the mouse on the active node's mesh: drag paints, Shift smooths, Ctrl shows the value under the mouse.
+// painting.h applies it to the document. GLFW 3.3 does not report a tablet's pressure: it counts as 1 until the window
+// provides it (ViewportInput::pressure).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace pliant {
 namespace {
 
 constexpr int kRingPoints = 56;
-constexpr double kLookEvery = 0.2;  // [s] whether the mesh under the mouse is too coarse
+constexpr double kLookEvery = 0.2;  // [s] between checks whether the mesh under the mouse is too coarse
 
 class PaintTool : public ViewTool {
  public:
@@ -34,7 +34,7 @@ class PaintTool : public ViewTool {
 
   bool use(Editor& editor, const ViewportInput& in) override {
     Painting& painting = *editor.painting;
-    if (taken_) {  // a click that has done its work already
+    if (taken_) {  // the click was already handled
       if (in.released || !in.held) taken_ = false;
       return true;
     }
@@ -56,7 +56,7 @@ class PaintTool : public ViewTool {
     Painting& painting = *editor.painting;
     if (!channel_before_) channel_before_ = editor.view.channel;
     editor.view.channel = painting.channel;
-    if (held_ && !ImGui::IsMouseDown(0)) let_go(painting);  // where `use` was not asked
+    if (held_ && !ImGui::IsMouseDown(0)) let_go(painting);  // if `use` was not called
     const bool escape = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
     if (escape && painting.stroking()) painting.give_up();
     if (escape) {
@@ -148,7 +148,7 @@ class PaintTool : public ViewTool {
     }
   }
 
-  // Something else stands before the place: a click there is meant for that.
+  // Another object is in front: the click is for that.
   static bool hidden(const Painting& painting, const SurfaceHit& hit, const ViewportInput& in) {
     if (in.under == kNoNode || in.under == painting.node()) return false;
     const auto there = on_picture(in.view, in.orthographic, in.width, in.height, in.under_at);
@@ -166,7 +166,7 @@ class PaintTool : public ViewTool {
         1e3 * painting.brush.radius, 100 * painting.brush.strength);
   }
 
-  // In the background, as the mouse goes.
+  // In the background, while the mouse moves.
   void look(const Editor& editor, Painting& painting, const SurfaceHit& hit) {
     if (painting.stroking() || editor.now - looked_ < kLookEvery) return;
     const double radius = painting.brush.radius;
@@ -246,7 +246,7 @@ class PaintTool : public ViewTool {
   bool held_ = false, taken_ = false;
   double looked_ = -1.0, looked_radius_ = 0.0;
   dvec3 looked_at_{0};
-  std::optional<std::optional<Channel>> channel_before_;  // what was shown as colour before this tool was taken
+  std::optional<std::optional<Channel>> channel_before_;  // the displayed channel before this tool was activated
 };
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kLeastRadius = 1e-3, kMostRadius = 1.0;  // [1] of the diagonal of what is painted on
+constexpr double kLeastRadius = 1e-3, kMostRadius = 1.0;  // [1] of the diagonal of the painted object
 
 constexpr ChannelText kTexts[] = {
     {"Stiffness", "How hard the surface is to press in: a factor on the stiffness, in its force and its own motion.",
@@ -25,13 +25,13 @@ constexpr ChannelText kTexts[] = {
     {"Handle", "Which part of a soft body is rigid and held by a device: from 0.5 up, unless the handle has a box.",
      "handle", "", ""}};
 
-// Two digits, so that the number that is shown is the number that holds.
+// Two digits, so that the displayed number is exact.
 double rounded(double value) {
   const double step = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
   return std::round(value / step) * step;
 }
 
-// [m] how far beyond the clip plane; 0 or less: it is shown.
+// [m] distance beyond the clip plane; 0 or less: visible.
 double cut_away(const Editor& editor, const dvec3& place) {
   const ClipPlane& plane = editor.view.clip;
   const Box box = editor.scene_box();
@@ -47,7 +47,7 @@ const ChannelText& text_of(Channel channel) {
   return kTexts[static_cast<std::size_t>(channel)];
 }
 
-// --- How is painted
+// --- Brush and channel
 
 Brush Painting::brush_now() const {
   Brush now = brush;
@@ -78,7 +78,7 @@ void Painting::add_strength(double by) {
   brush.strength = std::clamp(std::round(100.0 * (brush.strength + by)) / 100.0, 0.01, 1.0);
 }
 
-// --- What is painted on
+// --- Painted object
 
 NodeId Painting::node() const {
   const DocumentNode* const active = editor_.active_node();
@@ -151,7 +151,7 @@ std::vector<PaintLayer> Painting::layers(std::uint32_t mesh) const {
 double Painting::value_at(const PaintSurface& surface, const SurfaceHit& hit) const {
   const auto number = mesh();
   if (!number || !hit.valid()) return unpainted(channel);
-  // Where some primitives are painted and others not, those that are count at a seam.
+  // At a seam between painted and unpainted primitives, the painted ones count.
   const std::vector<PaintLayer> all = layers(*number);
   double value = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -249,7 +249,7 @@ void Painting::update() {
   if (!stroke_) return;
   const State& state = editor_.state();
   const Under& s = stroking_;
-  // Somebody else has changed what is painted here: undo, another file.
+  // The paint was changed from elsewhere: undo, another file.
   bool ours = s.mesh < state.meshes.size() && state.meshes[s.mesh] == s.of;
   for (std::uint32_t p = 0; ours && p < s.shown.size(); ++p) {
     const auto it = state.paint.find({s.mesh, p, s.channel});

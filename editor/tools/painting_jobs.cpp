@@ -1,4 +1,4 @@
-// What is done to a whole mesh, on threads: fills, gradients, refining, a mesh of one's own.
+// Operations on a whole mesh, on threads: fills, gradients, refinement, unsharing a mesh.
 #include <fmt/format.h>
 
 #include <numeric>
@@ -28,7 +28,7 @@ bool Painting::busy() const {
   return editor_.jobs.running(kJob);
 }
 
-// `make` runs on a thread; what it changes is applied unless the paint has become another one meanwhile.
+// `make` runs on a thread; its changes are applied unless the paint has changed meanwhile.
 void Painting::change(
     const std::string& what,
     std::function<PaintChanges(const MeshPaint&, const PaintSurface&, const std::atomic<bool>&)> make) {
@@ -96,7 +96,7 @@ void Painting::clear() {
     editor_.apply("Clear " + lower(text_of(channel).title), without_layer(editor_.state(), *number, channel));
 }
 
-// With all that is painted on it.
+// The mesh with all its paint.
 LevelMesh Painting::whole_mesh(std::uint32_t mesh) const {
   const State& state = editor_.state();
   LevelMesh whole = *state.meshes[mesh];
@@ -115,7 +115,7 @@ void Painting::refine(const SurfaceHit& at) {
   const auto number = mesh();
   const auto on = surface();
   if (!number || !on || !at.valid() || busy() || stroke_) return;
-  // The state shares everything, so that the thread can make the whole mesh of it.
+  // The state shares its data, so the thread can build the whole mesh from it.
   const auto of = editor_.state().meshes[*number];
   std::vector<std::pair<LayerKey, PaintLayer>> paint;
   for (const auto& [key, layer] : editor_.state().paint)

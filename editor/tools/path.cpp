@@ -1,4 +1,4 @@
-// Keys of a path set by clicking on what it touches; dragged over the surface, deeper and shallower by the wheel.
+// Path keys set by clicking on a touched surface; dragged along it; depth by the wheel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,11 +15,13 @@
 namespace pliant {
 namespace {
 
-constexpr double kReach = 10.0;          // [point] from a key within which the mouse has it
-constexpr double kWheel = 0.0005;        // [m] of depth a click
-constexpr std::size_t kMostLabels = 20;  // with more keys their times hide each other
+constexpr double kReach = 10.0;          // [point] picking distance of a key
+constexpr double kWheel = 0.0005;        // [m] of depth per click
+constexpr std::size_t kMostLabels = 20;  // with more keys, their times would overlap
 constexpr std::size_t kMostLines = 400;  // of the curve that is drawn
 constexpr std::size_t kMostGhosts = 12, kMostGhostEdges = 700;
+constexpr double kSeenSag = 0.005;            // [1] of a body's size: what sags farther is drawn where it rests
+constexpr std::size_t kMostRestEdges = 4000;  // of it
 
 class PathTool : public ViewTool {
  public:
@@ -93,6 +95,7 @@ class PathTool : public ViewTool {
   }
 
   void overlay(Editor& editor, const ViewportInput& in, ImDrawList& list) override {
+    find_sagging(editor);
     const ScriptKeys keys = keys_of_node(editor, path_node(editor));
     for (std::size_t i = 0; i < keys.keys.size(); ++i) {
       const auto at = on_picture(in.view, in.orthographic, in.width, in.height, keys.keys[i].position());
@@ -111,6 +114,7 @@ class PathTool : public ViewTool {
   }
 
   void lines(const Editor& editor, std::vector<ViewLine>& lines) const override {
+    for (const Sagging& each : sagging_) draw_resting(each, lines);
     const ScriptKeys keys = keys_of_node(editor, path_node(editor));
     if (keys.keys.size() < 2) return;
     const double begin = keys.keys.front().time, length = keys.keys.back().time - begin;
@@ -125,6 +129,49 @@ class PathTool : public ViewTool {
   }
 
  private:
+  // A body that rests elsewhere than it is drawn: keys are set on it where it rests.
+  struct Sagging {
+    std::shared_ptr<const PaintSurface> surface;
+    dvec3 origin{0};  // [m] world
+  };
+  void find_sagging(Editor& editor) {
+    sagging_.clear();
+    if (path_node(editor) == kNoNode || editor.playing) return;
+    for (const NodeId id : path_grounds(editor.state())) {
+      const Editor::Ground ground = editor.ground_of(id);
+      if (!ground.surface) continue;
+      const std::string name = "`" + editor.state().find(id)->node.name + "`";
+      const bool far = ground.sag > kSeenSag * static_cast<double>(ground.surface->mesh().box.diagonal());
+      if (far) sagging_.push_back({ground.surface, dvec3(editor.state().to_world(id)[3])});
+      const bool known = std::any_of(said_.begin(), said_.end(), [&](const auto& s) { return s == ground.surface; });
+      if (known || (!far && ground.held)) continue;
+      said_.push_back(ground.surface);
+      if (!ground.held)
+        editor.say(name +
+                       " finds no rest on what is pinned: keys are set on it as it is drawn, and the run may find it "
+                       "elsewhere; pin more of it",
+                   Severity::kWarning);
+      else
+        editor.say(fmt::format("{} sags {:.2g} mm on what is pinned: keys are set on it where it rests (the lines){}",
+                               name, 1e3 * ground.sag,
+                               ground.falls ? ", to which it falls when the run begins; `Settled` begins there" : ""),
+                   Severity::kWarning);
+    }
+  }
+  static void draw_resting(const Sagging& it, std::vector<ViewLine>& lines) {
+    const Mesh& mesh = it.surface->mesh();
+    const std::size_t every = 1 + 3 * mesh.triangles.size() / (2 * kMostRestEdges);
+    const ImVec4& c = ui::palette().warning;
+    std::size_t edge = 0;
+    for (const uvec3& t : mesh.triangles)
+      for (int i = 0; i < 3; ++i) {
+        const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+        if (a > b || edge++ % every != 0) continue;
+        lines.push_back({vec3(it.origin + dvec3(mesh.position(a))), vec3(it.origin + dvec3(mesh.position(b))),
+                         vec4(c.x, c.y, c.z, 0.4f), true});
+      }
+  }
+
   // The probe or tool as it is at each key: edges of its mesh, or its tip.
   static void ghosts(const Editor& editor, const ScriptKeys& keys, std::vector<ViewLine>& lines) {
     const DocumentNode* const it = editor.state().find(effector_of(editor.state(), path_node(editor)));
@@ -182,15 +229,15 @@ class PathTool : public ViewTool {
   struct PlaceUnder {
     dvec3 point, normal;
   };
-  // On the nearest surface under the mouse that can be touched.
+  // On the nearest touchable surface under the mouse.
   static std::optional<PlaceUnder> place_under(Editor& editor, const ViewportInput& in) {
     const ViewRay ray = in.ray();
     std::optional<PlaceUnder> found;
     double nearest = 1e300;
     for (const NodeId id : path_grounds(editor.state())) {
-      const auto surface = editor.surface_of(id);
+      const auto surface = editor.ground_of(id).surface;
       if (!surface) continue;
-      // The surface frame is the world's, but for where the node stands.
+      // The surface frame equals the world frame except for the node's position.
       const dvec3 origin(editor.state().to_world(id)[3]);
       const SurfaceHit hit = surface->hit({ray.from - origin, ray.along});
       if (!hit.valid()) continue;
@@ -202,11 +249,10 @@ class PathTool : public ViewTool {
     return found;
   }
 
-  // Begins to prepare what is not: every surface that a click may meet.
+  // Starts preparing every surface that a click may hit.
   static bool prepared(Editor& editor) {
     bool ready = true;
-    for (const NodeId id : path_grounds(editor.state()))
-      if (!editor.surface_of(id)) ready = ready && !editor.jobs.running("surface " + std::to_string(id));
+    for (const NodeId id : path_grounds(editor.state())) ready = editor.ground_of(id).ready && ready;
     return ready;
   }
 
@@ -228,7 +274,7 @@ class PathTool : public ViewTool {
     ScriptKeys next = keys;
     const double clear = path_clearance(editor, node);
     if (next.keys.empty()) next.along = true;
-    // Off the surface, heights are the middle's.
+    // Off the surface, heights refer to the centre.
     const double radius = next.along ? 0.0 : tip_of(editor.state(), node).value_or(PathTip{}).radius;
     PathKey key{0.0, place.point, place.normal, radius - editor.path_depth};
     if (next.keys.empty()) {  // it comes from the air
@@ -246,7 +292,9 @@ class PathTool : public ViewTool {
   std::optional<std::size_t> near_, grabbed_;
   bool dragging_ = false;
   double pressed_x_ = 0, pressed_y_ = 0;  // [pixel]
-  std::optional<ViewportInput> waiting_;  // a click that came before the surfaces were prepared
+  std::vector<Sagging> sagging_;
+  std::vector<std::shared_ptr<const PaintSurface>> said_;  // of which it was said
+  std::optional<ViewportInput> waiting_;                   // a click that came before the surfaces were prepared
 };
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kLeastSnapped = 1e-3;  // [1] a step never makes a node flat
+constexpr double kLeastSnapped = 1e-3;  // [1] snapping never flattens a node
 
 class ScaleTool : public GizmoTool {
  public:
@@ -44,10 +44,10 @@ class ScaleTool : public GizmoTool {
     if (is_axis(part_)) return fmt::format("{}  \u00d7 {:.4g}", "xyz"[axis_of(part_)], by[axis_of(part_)]);
     return fmt::format("\u00d7 {:.4g}", is_plane(part_) ? by[(axis_of(part_) + 1) % 3] : by.x);
   }
-  GizmoPart pick(const GizmoPicture& picture, const Grip& grip, dvec2 mouse) const override {
+  GizmoPart pick(const GizmoPicture& picture, const GizmoGrip& grip, dvec2 mouse) const override {
     return gizmo::pick_arrows(picture, grip, mouse);
   }
-  void draw(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, ImDrawList& list,
+  void draw(const GizmoPicture& picture, const GizmoGrip& grip, ImVec2 corner, ImDrawList& list,
             GizmoPart bright) const override {
     gizmo::draw_arrows(picture, grip, corner, list, bright, true);
   }

@@ -1,4 +1,4 @@
-// Clicking selects (the viewport itself sees to that); dragging with Ctrl selects what a frame holds.
+// Clicking selects (handled by the viewport); dragging with Ctrl selects by a frame.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Where the surfaces of a level meet a ray, without what is held: exactly, and without the picture.
+// Exact intersection of a ray with a level's surfaces, except the dragged ones, independent of the picture.
 #pragma once
 
 #include <optional>
@@ -12,11 +12,11 @@ struct SurfaceUnder {
   std::optional<dvec3> point;  // [m] world
   dvec3 normal{0, 1, 0};       // [1] world
   NodeId node = kNoNode;
-  bool waits = false;  // a surface that the ray may meet is being prepared
+  bool waits = false;  // a relevant surface is still being prepared
 };
-// What is shown, less `without` and what is below them.
+// Visible surfaces except `without` and their subtrees.
 SurfaceUnder surface_under(Editor& editor, const ViewRay& ray, std::span<const NodeId> without);
-// [m] world, of the meshes and probes of `ids` and what is below them.
+// [m] world, of the meshes and probes of `ids` and their subtrees.
 std::optional<dvec3> lowest_point(const State& state, std::span<const NodeId> ids);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Every tool of the viewport, each in a file of its own.
+// All tools of the viewport, each in its own file.
 #pragma once
 
 #include "editor/app/panel.h"

@@ -1,4 +1,4 @@
-// Turn: about an axis by its ring, about the line of sight by the outer ring.
+// Turn: about an axis by its ring, about the view direction by the outer ring.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ class TurnTool : public GizmoTool {
     const std::string about = is_axis(part_) ? std::string(1, "xyz"[axis_of(part_)]) + "  " : "";
     return fmt::format("{}{:.4g}\u00b0", about, glm::degrees(by.x));
   }
-  GizmoPart pick(const GizmoPicture& picture, const Grip& grip, dvec2 mouse) const override {
+  GizmoPart pick(const GizmoPicture& picture, const GizmoGrip& grip, dvec2 mouse) const override {
     GizmoPart found = GizmoPart::kNone;
     double nearest = static_cast<double>(ui::px(gizmo::kReach));
     for (const GizmoPart part : {GizmoPart::kX, GizmoPart::kY, GizmoPart::kZ, GizmoPart::kFree}) {
@@ -62,7 +62,7 @@ class TurnTool : public GizmoTool {
     }
     return found;
   }
-  void draw(const GizmoPicture& picture, const Grip& grip, ImVec2 corner, ImDrawList& list,
+  void draw(const GizmoPicture& picture, const GizmoGrip& grip, ImVec2 corner, ImDrawList& list,
             GizmoPart bright) const override {
     for (const bool behind : {true, false})
       for (const GizmoPart part : {GizmoPart::kFree, GizmoPart::kX, GizmoPart::kY, GizmoPart::kZ}) {
@@ -78,7 +78,7 @@ class TurnTool : public GizmoTool {
     const auto size = gizmo::unit(picture, grip);
     if (!size) return;
     for (int i = 0; i < 3; ++i) {
-      // Each letter where its ring comes nearest to the eye between the other two axes.
+      // Each letter where its ring is nearest to the eye, between the other two axes.
       const dvec3 u = grip.axes[(i + 1) % 3], v = grip.axes[(i + 2) % 3], back = -picture.forward();
       const dvec3 place =
           grip.pivot + static_cast<double>(gizmo::kRing) * *size *
@@ -101,13 +101,13 @@ class TurnTool : public GizmoTool {
   const char* snap_unit() const override { return "\u00b0"; }
 
  private:
-  static dvec3 axis(const GizmoPicture& picture, const Grip& grip, GizmoPart part) {
+  static dvec3 axis(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part) {
     if (is_axis(part)) return grip.axes[axis_of(part)];
     return picture.orthographic > 0.0 ? -picture.forward() : glm::normalize(picture.view.eye - grip.pivot);
   }
-  // Pieces of a ring in pixels, and whether each is on the eye's side.
+  // Segments of a ring in pixels, and whether each faces the eye.
   template <class Visit>
-  static void each_piece(const GizmoPicture& picture, const Grip& grip, GizmoPart part, Visit visit) {
+  static void each_piece(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, Visit visit) {
     const auto size = gizmo::unit(picture, grip);
     if (!size) return;
     const dvec3 n = axis(picture, grip, part);
@@ -126,7 +126,7 @@ class TurnTool : public GizmoTool {
   }
 
   double turned_ = 0.0;  // [rad] so far, without snapping
-  dvec3 axis_{0};        // [1] world, of the turn under way; 0: not known yet
+  dvec3 axis_{0};        // [1] world, of the current rotation; 0: not known yet
 };
 
 }  // namespace

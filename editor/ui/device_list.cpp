@@ -13,7 +13,7 @@ namespace pliant::ui {
 namespace {
 
 constexpr double kFresh = 0.1;               // [s]
-constexpr double kUsualReach = 0.1;          // [m] where a device says no workspace
+constexpr double kUsualReach = 0.1;          // [m] if a device specifies no workspace
 constexpr float kLabel = 62, kValue = 76;    // [point] columns
 constexpr float kTrack = 6, kDial = 62;      // [point]
 constexpr std::uint32_t kButtonsShown = 16;  // bits
@@ -41,7 +41,7 @@ const ImVec4& color_of(DeviceState state) {
   return p.dim;
 }
 
-// A shape for each state, so that colour alone says nothing: a broken ring, a ring, half a disc, a disc, an octagon.
+// A shape for each state, because colour alone is not enough: a broken ring, a ring, half a disc, a disc, an octagon.
 void state_sign(DeviceState state) {
   const float side = ImGui::GetTextLineHeight(), r = std::round(0.4f * side);
   const ImVec2 low = ImGui::GetCursorScreenPos(), c(low.x + 0.5f * side, low.y + 0.5f * side);
@@ -81,7 +81,7 @@ struct Row {
   float middle;
 };
 
-// What at the left, its figure at the right, and room for a track between; `wide` 0: all there is.
+// Label at the left, value at the right, and space for a track between; `wide` 0: the available width.
 Row row(const char* what, const std::string& value, float wide = 0, float label_wide = kLabel) {
   const Palette& p = palette();
   ImGui::PushFont(font(Type::kSmall));
@@ -105,7 +105,7 @@ void track(const Row& row) {
   list.AddRectFilled(row.low, row.high, color(palette().text, 0.10f), px(3));
 }
 
-// Where it stands between its ends, from the middle.
+// A position between two ends, from the centre.
 void axis(const char* what, double at, double most, const std::string& value, const ImVec4& of, bool known) {
   const Row r = row(what, value);
   track(r);
@@ -118,7 +118,7 @@ void axis(const char* what, double at, double most, const std::string& value, co
   list.AddRectFilled({x - px(1.5f), r.low.y - px(2)}, {x + px(1.5f), r.high.y + px(2)}, color(palette().text), px(1));
 }
 
-// From nothing to the most there is; beyond it, an arrow.
+// From zero to the maximum; beyond it, an arrow.
 void level(const char* what, double value, double most, const std::string& text, const ImVec4& of, float wide = 0,
            float label_wide = kLabel) {
   const Row r = row(what, text, wide, label_wide);
@@ -132,7 +132,7 @@ void level(const char* what, double value, double most, const std::string& text,
                          {r.high.x - px(2), r.high.y + px(3)}, color(palette().warning));
 }
 
-// The force as it is seen from the front: x to the right, y up; z, towards the eye or away, is the bar beside it.
+// The force seen from the front: x to the right, y up; z, towards the eye or away, is the bar beside it.
 void dial(dvec3 wanted, dvec3 sent, double most) {
   const Palette& p = palette();
   ImDrawList& list = *ImGui::GetWindowDrawList();

@@ -1,5 +1,5 @@
-// The devices of a run as both windows show them, `pliant run` and `pliant edit`: state, live axes, forces, rates, and
-// the buttons that arm and stop them.
+// The devices of a run, for the windows of `pliant run` and `pliant edit`: state, axes, forces, rates, and buttons to
+// arm and stop them.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace pliant::ui {
 
-// The action of the emergency stop in the table of keys (Settings::keys), and its keys unless it says others.
+// The emergency stop's action in the key table (Settings::keys), and its default key.
 inline constexpr const char *kStopAction = "device.stop", *kStopKeys = "F9";
 
-// Draws into the window that is open, as wide as it is. `stop_keys`: of the emergency stop, "F9".
+// Draws into the current window at its width. `stop_keys`: of the emergency stop, "F9".
 void device_list(const DevicesView& view, const std::string& stop_keys, DeviceOrders& orders);
 
-// In a word, "Tripped"; of what renders nothing, "Connected".
+// In one word, "Tripped"; for devices that render nothing, "Connected".
 const char* state_word(const DeviceView& device);
-// Beside the name of a panel that is not in front: "2 active", "1 stopped"; empty: no device.
+// Shown with the name of a hidden panel: "2 active", "1 stopped"; empty: no device.
 std::string devices_badge(const DevicesView& view);
 
 }  // namespace pliant::ui

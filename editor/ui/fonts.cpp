@@ -27,16 +27,16 @@ constexpr const char* kRegular[] = {"/usr/share/fonts/opentype/inter/Inter-Regul
 constexpr const char* kStrong[] = {"/usr/share/fonts/opentype/inter/Inter-SemiBold.otf",
                                    "/usr/share/fonts/truetype/inter/Inter-SemiBold.ttf",
                                    "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"};
-constexpr unsigned kMostLetters = 3000;   // beyond what is always there: an atlas has an end
-constexpr unsigned kLastLetter = 0xffff;  // that Dear ImGui draws
+constexpr unsigned kMostLetters = 3000;   // in addition to the permanent ones: the atlas is limited
+constexpr unsigned kLastLetter = 0xffff;  // the largest that Dear ImGui draws
 
 std::array<ImFont*, 4> g_fonts{};
-std::set<unsigned> g_letters;  // wanted beyond what is always there
+std::set<unsigned> g_letters;  // in addition to the permanent ones
 std::set<unsigned> g_looked_for, g_undrawable;
 std::set<std::string> g_said;
 bool g_short = false;
 
-// A font file in memory, shared by the sizes; it lives as long as the program.
+// A font file in memory, shared by the sizes; never freed.
 std::string* file_of(const std::string& path) {
   static std::map<std::string, std::unique_ptr<std::string>> files;
   auto& file = files[path];
@@ -53,7 +53,7 @@ struct FallbackFont {
   FcCharSet* letters = nullptr;
 };
 
-// Outline fonts in the order in which fontconfig would take them for plain text.
+// Outline fonts in fontconfig's order for plain text.
 const std::vector<FallbackFont>& fallback_fonts() {
   static const std::vector<FallbackFont> all = [] {
     std::vector<FallbackFont> found;
@@ -81,12 +81,12 @@ const std::vector<FallbackFont>& fallback_fonts() {
       found.push_back({reinterpret_cast<const char*>(path), index & 0xffff, letters});
     }
     FcPatternDestroy(wish);
-    return found;  // their sets of letters live in `sorted`
+    return found;  // their character sets are owned by `sorted`
   }();
   return all;
 }
 
-// The ranges of single letters, as Dear ImGui takes them; they live as long as the atlas.
+// Ranges of single letters in Dear ImGui's format; they live as long as the atlas.
 const ImWchar* ranges_of(const std::set<unsigned>& letters, std::deque<std::vector<ImWchar>>& kept) {
   std::vector<ImWchar>& ranges = kept.emplace_back();
   for (const unsigned letter : letters) {
@@ -97,7 +97,7 @@ const ImWchar* ranges_of(const std::set<unsigned>& letters, std::deque<std::vect
   return ranges.data();
 }
 
-// Of four bytes of UTF-8: Dear ImGui reads no such letter. 0: none stands here.
+// A four-byte UTF-8 letter, which Dear ImGui does not support. 0: none here.
 unsigned high_letter(const char* c, const char* end) {
   if (end - c < 4) return 0;
   const auto byte = [c](int i) -> unsigned { return static_cast<unsigned char>(c[i]); };
@@ -110,7 +110,7 @@ unsigned high_letter(const char* c, const char* end) {
   return letter > kLastLetter && letter <= 0x10ffff ? letter : 0;
 }
 
-// Which script a letter is of, and what brings it.
+// The script of a letter, and the package with a font for it.
 const char* package_for(unsigned letter) {
   if (letter >= 0x1f000 && letter < 0x20000) return "emoji are not drawn";
   if (letter > kLastLetter) return "letters above U+FFFF are not drawn";
@@ -128,7 +128,7 @@ const char* load_fonts(float scale) {
   ImGuiIO& io = ImGui::GetIO();
   io.Fonts->Clear();
   g_short = false;
-  // Latin with its accents, Greek, Cyrillic, punctuation, arrows, and the few signs that buttons wear.
+  // Latin with accents, Greek, Cyrillic, punctuation, arrows, and the symbols on buttons.
   static const ImWchar kRanges[] = {0x20,   0x17f,  0x370,  0x3ff,  0x400,  0x45f,  0x2010, 0x2044,
                                     0x2070, 0x209c, 0x2190, 0x21ff, 0x2200, 0x22ff, 0x2300, 0x23ff,
                                     0x25a0, 0x25ff, 0x2600, 0x26ff, 0x2713, 0x2718, 0};

@@ -13,9 +13,9 @@
 namespace pliant::ui {
 namespace {
 
-constexpr double kDoubleClick = 0.4;  // [s] between two presses, as they arrived
+constexpr double kDoubleClick = 0.4;  // [s] between two presses, by their arrival times
 
-// Tab is not among them: it goes through every widget (seen.h).
+// Tab is excluded: it moves through every widget (seen.h).
 constexpr struct {
   ImGuiKey_ ours;
   int theirs;
@@ -50,7 +50,7 @@ std::size_t imgui_button(MouseButton button) {
 Host::Host(Window& window) : window_(window) {
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;  // the layout is the editor's own
+  io.IniFilename = nullptr;  // the editor manages the layout
   io.LogFilename = nullptr;
   io.ConfigWindowsMoveFromTitleBarOnly = true;
   io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
@@ -94,7 +94,7 @@ void Host::feed(const ArrivedInput& arrived) {
       modifiers();
       const std::size_t button = imgui_button(event.button);
       io.MouseDown[button] = true;
-      // Twice is what the hand did twice, not what two slow frames saw.
+      // Double clicks are detected by arrival times, not by slow frames.
       const bool twice = pressed_[button] >= 0 && arrived.time - pressed_[button] < kDoubleClick;
       io.MouseDoubleClickTime = twice ? 1e9f : 0.0f;
       pressed_[button] = arrived.time;
@@ -112,11 +112,11 @@ void Host::feed(const ArrivedInput& arrived) {
       modifiers();
       const bool down = event.kind == InputKind::kKey;
       if (event.key >= 0 && event.key < static_cast<int>(std::size(io.KeysDown))) io.KeysDown[event.key] = down;
-      // Dear ImGui presses a button by Space alone.
+      // Dear ImGui activates buttons only with Space.
       if ((event.key == GLFW_KEY_ENTER || event.key == GLFW_KEY_KP_ENTER) &&
           (!down || (keyboard_leads() && !keyboard_is_on_field())))
         io.KeysDown[GLFW_KEY_SPACE] = down;
-      // GLFW says the state before a modifier's own key.
+      // GLFW reports the state before a modifier's own key.
       if (event.key == GLFW_KEY_LEFT_SHIFT || event.key == GLFW_KEY_RIGHT_SHIFT) io.KeyShift = down;
       if (event.key == GLFW_KEY_LEFT_CONTROL || event.key == GLFW_KEY_RIGHT_CONTROL) io.KeyCtrl = down;
       if (event.key == GLFW_KEY_LEFT_ALT || event.key == GLFW_KEY_RIGHT_ALT) io.KeyAlt = down;
@@ -162,7 +162,7 @@ std::vector<InputEvent> Host::begin(std::span<const InputEvent> events, double n
 void Host::end() {
   ImGui::Render();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glDisable(GL_FRAMEBUFFER_SRGB);  // its colours are encoded already
+  glDisable(GL_FRAMEBUFFER_SRGB);  // its colours are already encoded
   glViewport(0, 0, window_.width(), window_.height());
   const ImVec4& back = palette().window;
   glClearColor(back.x, back.y, back.z, 1.0f);

@@ -1,4 +1,4 @@
-// Dear ImGui in a window: fed with the window's events, drawn last into what the window shows.
+// Dear ImGui in a window: receives the window's events, and is drawn last.
 #pragma once
 
 #include <span>
@@ -11,16 +11,16 @@ namespace pliant::ui {
 
 class Host {
  public:
-  // On the window's thread, its context current, here and in every later call.
+  // On the window's thread with its context current, here and in every later call.
   explicit Host(Window& window);
   ~Host();
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
 
-  // Fonts are made anew: between two frames.
+  // Rebuilds the fonts: between two frames.
   void set_theme(Theme theme, float scale);
-  // Feeds what happened and begins a frame. `now` [s]; `dt` [s] since the last one. What of it counts in this frame:
-  // the rest waits, so that nothing is lost and nothing changes places in slow frames.
+  // Feeds the events and begins a frame. `now` [s]; `dt` [s] since the last one. Returns the events processed in this
+  // frame. The rest is deferred, so that slow frames neither lose nor reorder events.
   std::vector<InputEvent> begin(std::span<const InputEvent> events, double now, double dt);
   bool has_waiting() const { return !queue_.empty(); }
   void end();                              // draws into framebuffer 0
@@ -32,7 +32,7 @@ class Host {
 
   ImVec2 mouse_{-1, -1};
   InputQueue queue_;
-  double pressed_[3]{-1, -1, -1};  // [s] when each button went down last
+  double pressed_[3]{-1, -1, -1};  // [s] last press of each button
   const char* missing_ = nullptr;
 };
 

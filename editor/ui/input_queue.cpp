@@ -12,13 +12,13 @@ bool is_modifier(int key) {
   return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER;
 }
 
-// Leaves a character: its order among commands is the character's.
+// Produces a character: its order among commands is that of the character.
 bool leaves_character(const InputEvent& event) {
   return event.key >= GLFW_KEY_SPACE && event.key <= GLFW_KEY_GRAVE_ACCENT &&
          (event.modifiers & (kControl | kAlt | kSuper)) == 0;
 }
 
-// What a frame has taken so far.
+// Events taken for this frame so far.
 struct Taken {
   bool moved = false, button = false, wheel = false, text = false, command = false, plain = false, apart = false;
   std::vector<int> went_down, went_up;
@@ -31,14 +31,14 @@ struct Taken {
   }
 };
 
-// True: `event` has to wait for the next frame, or the order would be lost.
+// True: `event` must wait for the next frame to keep the order.
 bool waits(const InputEvent& event, const Taken& taken, bool typing) {
   if (taken.apart) return true;
   switch (event.kind) {
     case InputKind::kMove:
       return taken.button || taken.wheel || taken.keyboard();
     case InputKind::kPress:
-    case InputKind::kRelease:  // what is under the mouse is known a frame after it came there
+    case InputKind::kRelease:  // picking is known a frame after the mouse has moved there
       return taken.pointer() || taken.keyboard();
     case InputKind::kWheel:
       return taken.moved || taken.button || taken.keyboard();
@@ -52,7 +52,7 @@ bool waits(const InputEvent& event, const Taken& taken, bool typing) {
       if (Taken::holds(taken.went_down, event.key) || Taken::holds(taken.went_up, event.key)) return true;
       if (is_modifier(event.key)) return taken.command;
       if (taken.pointer() || taken.command) return true;
-      // Where nothing takes characters a key may be a tool's, and what follows is said to the tool.
+      // Without a text field the key may be a tool's, and what follows is for that tool.
       return taken.text || taken.plain;
     case InputKind::kFocus:
     case InputKind::kDrop:

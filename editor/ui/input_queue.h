@@ -1,6 +1,6 @@
-// What a hand does, in its order, however slow the frames are. Dear ImGui looks at the state of mouse and keys once a
-// frame: a press and its release within one frame, or a click before a character, would be lost or change places. Each
-// frame takes as much as keeps the order; the rest waits for the next.
+// Keeps input in order in slow frames. Dear ImGui samples mouse and keys once per frame: a press and release within one
+// frame, or a click before a character, would be lost or reordered. Each frame takes as many events as keep the order;
+// the rest is deferred.
 #pragma once
 
 #include <deque>
@@ -19,7 +19,7 @@ struct ArrivedInput {
 class InputQueue {
  public:
   void add(std::span<const InputEvent> events, double now);  // `now` [s]
-  // Of the next frame. `typing`: a field takes characters, so that a run of them may come at once.
+  // The events of the next frame. `typing`: a text field is active, so several characters may come at once.
   std::vector<ArrivedInput> take(bool typing);
   bool empty() const { return waiting_.empty(); }
 

@@ -1,5 +1,5 @@
-// A number that is dragged sideways, or typed: with a unit, as a sum (editor/ui/quantity.h). Dear ImGui's own field for
-// numbers takes what it can read of a text and leaves the rest: "5 mm" would be five metres.
+// A number field: dragged sideways, or typed with units and arithmetic (editor/ui/quantity.h). Dear ImGui's own field
+// ignores unreadable text: "5 mm" would be five metres.
 #include <fmt/format.h>
 #include <imgui_internal.h>
 
@@ -14,9 +14,9 @@
 namespace pliant::ui {
 namespace {
 
-constexpr double kRefusedShown = 4.0;  // [s] that a field whose text was refused is marked
+constexpr double kRefusedShown = 4.0;  // [s] duration of the mark on a rejected text
 
-// The one that is being typed into.
+// The field being edited.
 struct Typed {
   ImGuiID id = 0;
   std::array<char, 256> text{}, before{};
@@ -26,7 +26,7 @@ ImGuiID g_refused_field = 0;
 double g_refused_at = 0.0;
 std::optional<std::string> g_refused;
 
-// A unit behind # is understood and not shown.
+// A unit after # is understood and not shown.
 struct FieldUnit {
   std::string parsed, shown;
 };
@@ -52,7 +52,7 @@ void refuse(ImGuiID id, std::string_view label, const std::string& why) {
   g_refused = fmt::format("'{}' for {} {}", g_typed.text.data(), name, why);
 }
 
-// What was typed becomes the value, or is refused. True: it is another one.
+// Parses the typed text, or rejects it. True: the value has changed.
 bool take_typed(ImGuiID id, std::string_view label, double& value, double least, double most, const FieldUnit& unit) {
   g_typed.id = 0;
   if (std::strcmp(g_typed.text.data(), g_typed.before.data()) == 0) return false;
@@ -61,7 +61,7 @@ bool take_typed(ImGuiID id, std::string_view label, double& value, double least,
     refuse(id, label, read.error().what);
     return false;
   }
-  // A limit that was typed as it is shown is meant.
+  // A limit typed as displayed is the limit itself.
   const double slack = 1e-6 * std::abs(*read);
   double next = *read;
   if (next < least && next >= least - slack) next = least;
@@ -75,7 +75,7 @@ bool take_typed(ImGuiID id, std::string_view label, double& value, double least,
   return true;
 }
 
-// Steps follow the size of the value.
+// Steps are proportional to the value.
 float drag_speed(double value, double least, double most) {
   const double size = std::max(std::abs(value), 1e-6 * std::max(std::abs(least), std::abs(most)));
   const double decade = std::pow(10.0, std::floor(std::log10(std::max(size, 1e-9))));
@@ -104,7 +104,7 @@ bool number(const char* label, double& value, double least, double most, const c
   const bool seen = ImGui::ItemAdd(frame, id, &frame, ImGuiItemFlags_Inputable);
   known_as(label);
   bool changed = false;
-  if (g_typed.id == id && !ImGui::TempInputIsActive(id)) {  // left by a press elsewhere
+  if (g_typed.id == id && !ImGui::TempInputIsActive(id)) {  // ended by a press elsewhere
     changed = take_typed(id, label, value, least, most, unit);
     if (finished) *finished |= changed;
   }
@@ -134,7 +134,7 @@ bool number(const char* label, double& value, double least, double most, const c
   if (types) {
     ImGui::TempInputText(frame, id, hidden.c_str(), g_typed.text.data(), static_cast<int>(g_typed.text.size()),
                          ImGuiInputTextFlags_AutoSelectAll);
-    if (g.ActiveId != id) {  // Enter; Esc has brought the text before back
+    if (g.ActiveId != id) {  // Enter; Esc has restored the text
       const bool taken = take_typed(id, label, value, least, most, unit);
       changed |= taken;
       if (finished) *finished |= taken;

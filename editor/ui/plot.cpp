@@ -103,7 +103,7 @@ Plot::Plot(const char* name, const char* title, ImVec2 size, PlotAxis x, PlotAxi
   list_->PushClipRect(low_, high_, true);
 }
 
-// The title last: curves go behind it.
+// The title last: above the curves.
 Plot::~Plot() {
   ImGui::PushFont(font(Type::kSmall));
   text(low_.x + px(6), low_.y + px(3), title_);
@@ -133,7 +133,7 @@ void Plot::curve(std::size_t count, const std::function<dvec2(std::size_t)>& poi
   for (std::size_t i = 0; i < count; ++i) {
     const ImVec2 at = on(point(i));
     if (points.size() > 1 && i + 1 < count) {
-      // Of what falls into one column, the ends of its range are kept.
+      // Of the points in one pixel column, the extremes are kept.
       const ImVec2& last = points.back();
       if (std::abs(at.x - last.x) < 0.5f && std::abs(at.y - last.y) < 0.5f) continue;
     }

@@ -100,7 +100,7 @@ std::string spelled(std::string_view name) {
   return {};
 }
 
-// A value in SI, and whether a unit has been part of it.
+// A value in SI, and whether it contains a unit.
 struct Quantity {
   double value = 0.0;
   Dimension dimension = kNumber;
@@ -114,8 +114,8 @@ bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || static_cast<unsigned char>(c) >= 0x80;
 }
 
-// One reading of a text. `tight`: a unit belongs to the number before it ("1 N / 2 mm" is half a newton per
-// millimetre); else everything is worked off from the left ("1/10 mm" is a tenth of one).
+// One interpretation of a text. `tight`: a unit belongs to the number before it ("1 N / 2 mm" is half a newton per
+// millimetre). Otherwise evaluation is left to right ("1/10 mm" is a tenth of one).
 class Reading {
  public:
   Reading(std::string_view text, bool tight) : text_(text), tight_(tight) {}
@@ -181,7 +181,7 @@ class Reading {
         left = multiplied(left, factor(), over);
         continue;
       }
-      // What stands behind without a sign: a unit, or a bracket behind one.
+      // Implicit multiplication: a unit follows, or a bracket after one.
       if (at_ < text_.size() && wrong_.empty() && is_letter(text_[at_])) {
         left = multiplied(left, unit(), false);
         continue;
@@ -220,7 +220,7 @@ class Reading {
     return out;
   }
 
-  // In the tight reading, the units right behind a number: "5 N mm" too.
+  // In the tight interpretation, the units directly after a number: "5 N mm" too.
   Quantity with_units(Quantity out) {
     if (!tight_) return out;
     for (blanks(); wrong_.empty() && at_ < text_.size() && is_letter(text_[at_]); blanks())
@@ -250,13 +250,13 @@ class Reading {
       fail("has a point without digits; write a number");
       return 0;
     }
-    // A thousand, or one with three decimals?
+    // Ambiguous: a thousands separator, or a decimal comma with three digits?
     if (comma && behind == 3 && before >= 1 && before <= 3 && typed[0] != '0') {
       fail(fmt::format("can be {}{} or {}.{}; write one of them", typed.substr(0, before), typed.substr(before + 1),
                        typed.substr(0, before), typed.substr(before + 1)));
       return 0;
     }
-    // An exponent, where digits follow: "1e-3", but "5 eV" and "2e" are none.
+    // An exponent only if digits follow: "1e-3", but not "5 eV" or "2e".
     std::size_t end = at_;
     if (end < text_.size() && (text_[end] == 'e' || text_[end] == 'E')) {
       std::size_t k = end + 1;
@@ -277,7 +277,7 @@ class Reading {
   Quantity unit() {
     const std::size_t begin = at_;
     while (at_ < text_.size() && is_letter(text_[at_])) {
-      // A sign of an operation or an exponent in UTF-8 ends the word.
+      // A UTF-8 operator or exponent ends the word.
       const std::string_view rest = text_.substr(at_);
       if (rest.starts_with("\u00b7") || rest.starts_with("\u22c5") || rest.starts_with("\u00b2") ||
           rest.starts_with("\u00b3") || rest.starts_with("\u2212") || rest.starts_with("\u00a0"))
@@ -357,14 +357,14 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// The field's own unit: every reading of it is the same.
+// The field's own unit, which has only one interpretation.
 Unit unit_of_field(std::string_view unit) {
   if (unit.empty() || unit == "1" || unit == "linear RGB") return {};
   const Result<Quantity> read = Reading(unit == "%%" ? "%" : unit, false).read();
   return read ? Unit{read->value, read->dimension} : Unit{};
 }
 
-// Without the last bits that the way over SI units has left: 0.3 mm is 0.3 in a field of mm.
+// Removes rounding of the conversion through SI units: 0.3 mm is 0.3 in a field of mm.
 double as_typed(double value) {
   double rounded = value;
   const std::string text = fmt::format("{:.15g}", value);
@@ -374,7 +374,7 @@ double as_typed(double value) {
 
 bool fits(const Quantity& it, const Unit& field) {
   if (!it.has_unit || it.dimension == field.dimension) return true;
-  // Radians are numbers: N m is a stiffness of rotation, 1/s a rate of it. An angle itself asks for an angle.
+  // Radians are numbers: N m is a rotational stiffness, 1/s a rotational rate. An angle itself requires an angle.
   Dimension a = it.dimension, b = field.dimension;
   if (a[kAngle] != 0 || b == kTurn) return false;
   a[kAngle] = b[kAngle] = 0;

@@ -17,9 +17,9 @@
 namespace pliant::ui {
 namespace {
 
-constexpr double kScriptPatience = 60.0;  // [s] for what `await` waits for, and for the editor to come to rest
-constexpr int kLateFrames = 10;           // for what a click is to hit
-constexpr int kRestFrames = 3;            // a window that opens is drawn, laid out, and answered
+constexpr double kScriptPatience = 60.0;  // [s] limit for `await`, and for the editor to become idle
+constexpr int kLateFrames = 10;           // to wait for the target of a click
+constexpr int kRestFrames = 3;            // for an opened window to be drawn and laid out
 
 struct NamedKey {
   const char* name;
@@ -81,7 +81,7 @@ bool is_manner(const std::string& word) {
   return std::find(std::begin(kWords), std::end(kWords), word) != std::end(kWords);
 }
 
-// Addresses may hold blanks: everything up to a word that says how.
+// Addresses may contain blanks: everything up to a modifier word.
 std::string address_of(const std::vector<std::string>& words, std::size_t& i) {
   std::string address;
   for (; i < words.size() && !is_manner(words[i]); ++i) address += (address.empty() ? "" : " ") + words[i];
@@ -153,10 +153,10 @@ Result<Script> Script::load(const std::filesystem::path& file) {
     std::getline(words >> std::ws, step.rest);
     std::istringstream rest(step.rest);
     for (std::string word; rest >> word;) step.words.push_back(word);
-    constexpr const char* kVerbs[] = {"click",     "drag",    "press", "move",       "release", "wheel",
-                                      "key",       "type",    "set",   "wait",       "await",   "expect",
-                                      "expect-no", "say",     "hear",  "screenshot", "drop",    "figures",
-                                      "close",     "at-once", "now",   "apart",      "slow"};
+    constexpr const char* kVerbs[] = {"click",     "drag",  "press",   "move",       "release", "wheel",
+                                      "key",       "type",  "set",     "wait",       "await",   "expect",
+                                      "expect-no", "say",   "hear",    "screenshot", "drop",    "figures",
+                                      "felt",      "close", "at-once", "now",        "apart",   "slow"};
     if (std::find(std::begin(kVerbs), std::end(kVerbs), step.verb) == std::end(kVerbs))
       return Error{fmt::format("{}:{}", script.file_, row),
                    "'" + step.verb + "' is no step; write, say, `click Inspector/stiffness`"};
@@ -194,7 +194,7 @@ Result<std::pair<double, double>> Script::place(const std::string& text, bool& t
                y = static_cast<double>(found->low.y) + fy * static_cast<double>(found->high.y - found->low.y);
   if (fx < 0 || fx > 1 || fy < 0 || fy > 1 || need == Need::kThere) return std::pair{x, y};
   const auto px = static_cast<float>(x), py = static_cast<float>(y);
-  // A panel that would have to be scrolled hides nothing.
+  // A scrolled-out place counts as uncovered.
   const bool scrolled =
       px < found->seen_low.x || px > found->seen_high.x || py < found->seen_low.y || py > found->seen_high.y;
   if (need == Need::kUncovered && scrolled) return std::pair{x, y};
@@ -243,7 +243,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     frames_.push_back({at(InputKind::kMove, from->first, from->second)});
     frames_.push_back({});
     if (step.verb == "move") return Done{};
-    if (m.twice) {  // as fast as a hand does it, however slow the frames are
+    if (m.twice) {  // as fast as a user, however slow the frames are
       const InputEvent down = at(InputKind::kPress, 0, 0, m.button, m.modifiers),
                        up = at(InputKind::kRelease, 0, 0, m.button, m.modifiers);
       frames_.push_back({down, up, down, up});
@@ -286,7 +286,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   if (step.verb == "type" || step.verb == "set") {
     std::string text = step.rest;
     if (step.verb == "set") {
-      // The longest address that is a widget's: names and values may both hold blanks.
+      // The longest prefix that is a widget's address: names and values may both contain blanks.
       std::size_t last = step.rest.rfind(' ');
       if (last == std::string::npos) return wrong("says no value; write `set Inspector/stiffness 500`");
       for (std::size_t at = last; at != std::string::npos && at > 0; at = step.rest.rfind(' ', at - 1))
@@ -301,7 +301,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
       if (!from) return wrong(from.error().what);
       frames_.push_back({at(InputKind::kMove, from->first, from->second)});
       frames_.push_back({});
-      // Ctrl and a click opens a number to be typed, and selects a text.
+      // Ctrl-click edits a number, and selects a text.
       InputEvent down = at(InputKind::kPress, 0, 0, MouseButton::kLeft, kControl);
       frames_.push_back({down});
       frames_.push_back({at(InputKind::kRelease, 0, 0, MouseButton::kLeft, kControl)});
@@ -361,6 +361,10 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     now.figures(step.rest);
     return Done{};
   }
+  if (step.verb == "felt") {
+    const Status written = now.felt(step.rest);
+    return written ? written : wrong(written.error().message());
+  }
   if (step.verb == "screenshot") {
     now.screenshot(step.rest);
     frames_.push_back({});
@@ -396,17 +400,22 @@ Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {
     rest_ = 0;
     return Done{};
   }
-  if (steps_.empty()) return Done{};
+  if (steps_.empty()) {
+    ++rest_;
+    return Done{};
+  }
   const std::string& verb = steps_.front().verb;
-  const bool in_parts = verb == "move" || verb == "release";  // of a press: the hand does not wait
+  const bool in_parts = verb == "move" || verb == "release";  // of a press in parts: does not wait for idle
   if (++rest_ < kRestFrames) return Done{};
-  if (!now.under_way.empty() && !in_parts && verb != "wait" && verb != "await" && verb != "hear") {
+  const bool gives_up = awaited_.starts_with("Opening/");  // what is under way
+  if (!now.under_way.empty() && !in_parts && !gives_up && verb != "wait" && verb != "await" && verb != "hear") {
     if (until_ == 0.0) until_ = now.now + kScriptPatience;
     if (now.now < until_) return Done{};
     return Error{fmt::format("{}:{}", file_, steps_.front().line),
                  "the editor did not come to rest within 60 s: " + now.under_way + " is under way"};
   }
   until_ = 0.0;
+  line_ = steps_.front().line;
   if (const std::string both = shared_identity(); !both.empty())
     return Error{fmt::format("{}:{}", file_, steps_.front().line), both};
   bool waits = false;
@@ -414,6 +423,7 @@ Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {
   if (waits) return Done{};
   began_ = -1.0;
   const bool gathered = steps_.front().verb == "now";
+  if (verb != "screenshot") awaited_ = verb == "await" ? steps_.front().rest : "";
   steps_.pop_front();
   if (gathered) {
     std::vector<InputEvent> all;
@@ -421,6 +431,14 @@ Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {
     frames_.assign(1, std::move(all));
   }
   return Done{};
+}
+
+bool Script::done() const {
+  return steps_.empty() && frames_.empty() && rest_ > kRestFrames;
+}
+
+Error Script::ended(std::string why) const {
+  return {fmt::format("{}:{}", file_, line_), std::move(why)};
 }
 
 }  // namespace pliant::ui

@@ -24,6 +24,9 @@
 //   hear TEXT                                                until the console's text holds it
 //   say TEXT                                                 an error unless the console's text holds it
 //   screenshot FILE.png                                      into the folder of --out
+//   felt FILE.csv                                         writes what each probe and tool felt in the run that is
+//   played
+//                                                            or was played last, a row a tick, into the folder of --out
 //   figures NAME                                             prints how long frames took since the last of these
 //   drop FILE [| FILE...]
 //   close
@@ -50,11 +53,13 @@ class Script {
     std::function<void(const std::string&)> screenshot;  // of the next frame
     std::function<bool(const std::string&)> has_said;
     std::function<void(const std::string&)> figures;
+    std::function<Status(const std::string&)> felt;
     std::function<void(double)> slow;  // [s] each frame from now on takes at least
   };
   // Appends the events of the next frame. The error names the line.
   Status next(const Surroundings& at, std::vector<InputEvent>& events);
-  bool done() const { return steps_.empty() && frames_.empty(); }
+  bool done() const;                   // and what it did last has been answered
+  Error ended(std::string why) const;  // at its last line
 
  private:
   struct Step {
@@ -73,7 +78,9 @@ class Script {
   std::deque<std::vector<InputEvent>> frames_;  // of the step under way
   double until_ = 0.0, began_ = -1.0;           // [s]
   int rest_ = 0;                                // frames since the last event
+  std::size_t line_ = 0;                        // of the last step that was begun
   bool at_once_ = false;                        // steps gather in one frame
+  std::string awaited_;                         // by the step before; "": it was no `await`
 };
 
 // "Ctrl+Shift+S" -> modifiers and key as GLFW numbers it; false: not understood.

@@ -13,7 +13,7 @@ ImGuiWindow* window_of(const Place& place) {
   return ImGui::FindWindowByID(place.window);
 }
 
-// As a user would call it: by what is in it.
+// A name for the user: from its content.
 std::string name_of(const ImGuiWindow* window) {
   for (const Place& each : widgets()) {
     const ImGuiWindow* const its = window_of(each);
@@ -24,7 +24,7 @@ std::string name_of(const ImGuiWindow* window) {
   return name.substr(0, name.find_first_of("#/"));
 }
 
-// The one in front at a pixel; tooltips go away as soon as the mouse does.
+// The front window at a pixel; tooltips do not count.
 ImGuiWindow* front_at(float x, float y) {
   const ImGuiContext& g = *ImGui::GetCurrentContext();
   for (int i = g.Windows.Size - 1; i >= 0; --i) {
@@ -35,7 +35,7 @@ ImGuiWindow* front_at(float x, float y) {
   return nullptr;
 }
 
-// Below the popup that is open, if one is: pressing closes it, and does nothing else.
+// The open popup above it, if any: a press closes that and does nothing else.
 const ImGuiWindow* popup_over(const ImGuiWindow* window) {
   const ImGuiContext& g = *ImGui::GetCurrentContext();
   const ImGuiWindow* open = nullptr;
@@ -96,7 +96,7 @@ std::string shared_identity() {
 }
 
 std::string not_apart() {
-  constexpr float kSlack = 2.0f, kCut = 12.0f;  // [pixel] of borders; of what rows reach beyond their list
+  constexpr float kSlack = 2.0f, kCut = 12.0f;  // [pixel] tolerance at borders; for rows that extend beyond their list
   struct Shown {
     const Place* place;
     ImRect full, seen;
@@ -138,7 +138,7 @@ std::string not_apart() {
 
 void focus_next(bool back) {
   ImGuiContext& g = *ImGui::GetCurrentContext();
-  // A question, a menu or a dialog keeps the keys.
+  // A question, a menu or a dialog takes all keys.
   const ImGuiWindow* only = g.OpenPopupStack.Size > 0 ? g.OpenPopupStack.back().Window : nullptr;
   if (!only && g.NavWindow && (g.NavWindow->RootWindow->Flags & ImGuiWindowFlags_NoBringToFrontOnFocus) == 0)
     only = g.NavWindow->RootWindow;
@@ -148,7 +148,7 @@ void focus_next(bool back) {
     if (each.id == 0 || !each.enabled || !window || !window->WasActive) continue;
     if (only && window->RootWindow != only) continue;
     if (!order.empty() && order.back()->id == each.id) continue;  // two addresses
-    // A list whose rows the arrows choose is one stop.
+    // A list with arrow key selection is one Tab stop.
     const bool list = (window->Flags & ImGuiWindowFlags_NoNavInputs) != 0;
     if (list && std::any_of(order.begin(), order.end(), [&](const Place* p) { return p->window == each.window; }))
       continue;

@@ -1,5 +1,5 @@
-// Whether a hand can press what a widget's address names: what is covered, clipped, scrolled out, switched off or of no
-// size cannot be pressed. Also: widgets that share one identity, of which Dear ImGui answers only the first.
+// Whether the widget at an address can be pressed: not if it is covered, clipped, scrolled out, disabled or of zero
+// size. Also detects widgets with the same identity, of which Dear ImGui answers only the first.
 #pragma once
 
 #include <string>
@@ -8,23 +8,23 @@
 
 namespace pliant::ui {
 
-// Why the pixel x, y of `place` is not seen; "": it is. Of the frame drawn last.
+// Why the pixel x, y of `place` is not visible; "": it is. In the last frame.
 std::string why_unseen(const Place& place, float x, float y);
-// Why pressing there does not reach it: what is unseen, off, or behind an open menu or question; "": it does.
+// Why a press there does not reach it: invisible, disabled, or behind an open menu or question; "": it does.
 std::string why_unpressable(const Place& place, float x, float y);
 
 // Of the frame drawn last: the addresses of two widgets with one identity; "": none.
 std::string shared_identity();
 
-// The first widget that overlaps another one, is covered, or is cut off where nothing scrolls; "": all are apart.
+// The first widget that overlaps another one, is covered, or is cut off without scrolling; "": none.
 std::string not_apart();
 
-// --- The keyboard's way through the widgets
-// The next one in the order in which they are drawn, `back`: the one before. Fields begin to be typed into.
+// --- Keyboard navigation
+// Focuses the next widget in drawing order, or with `back` the previous one. Text fields start editing.
 void focus_next(bool back);
-bool keyboard_leads();        // a widget is marked as the one that Space and Enter press
-bool keyboard_is_on_field();  // that it would type into
-void lead_by_keyboard();      // the one that has the focus is marked, as if a key had led there
+bool keyboard_leads();        // a widget is marked as the target of Space and Enter
+bool keyboard_is_on_field();  // the marked widget is a text field
+void lead_by_keyboard();      // marks the focused widget, as after keyboard navigation
 bool popup_is_open();         // a menu, a list or a question
 
 }  // namespace pliant::ui

@@ -86,7 +86,7 @@ const char* set_theme(Theme theme, float scale) {
   s.IndentSpacing = 14;
   s.ScrollbarSize = 12;
   s.GrabMinSize = 10;
-  s.DisabledAlpha = 0.7f;  // what is off is still read
+  s.DisabledAlpha = 0.7f;  // disabled text stays readable
   const auto set = [&](ImGuiCol which, const ImVec4& to) { s.Colors[which] = to; };
   const auto faded = [](ImVec4 c, float alpha) { return ImVec4(c.x, c.y, c.z, alpha); };
   set(ImGuiCol_Text, p.text);
@@ -96,7 +96,7 @@ const char* set_theme(Theme theme, float scale) {
   set(ImGuiCol_PopupBg, p.raised);
   set(ImGuiCol_MenuBarBg, p.panel);
   set(ImGuiCol_Border, p.line);
-  // Lighter or darker than what they lie on, be it a panel, a popup or a strip.
+  // Lighter or darker than the background, be it a panel, a popup or a strip.
   const float shade = theme == Theme::kDark ? 0.06f : 0.05f;
   set(ImGuiCol_FrameBg, faded(p.text, shade));
   set(ImGuiCol_FrameBgHovered, faded(p.text, 1.7f * shade));

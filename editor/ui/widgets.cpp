@@ -36,7 +36,7 @@ Scope::~Scope() {
 void end_widgets() {
   g_before.swap(g_now);
   g_now.clear();
-  // A tab has no place in the first frame of its bar.
+  // A tab has no position in the first frame of its bar.
   std::erase_if(g_before, [](const Place& each) { return each.low.x == each.high.x && each.low.y == each.high.y; });
 }
 
@@ -197,7 +197,7 @@ bool icon_button(const char* label, Icon icon, bool down, const char* hint_text,
 }
 
 bool checkbox(const char* label, bool& value, const char* hint_text) {
-  // An empty box is seen as one.
+  // An empty box needs a visible frame.
   ImVec4 back = palette().text;
   back.w = 0.16f;
   ImGui::PushStyleColor(ImGuiCol_FrameBg, back);
@@ -212,8 +212,11 @@ bool text_field(const char* label, std::string& value, const char* placeholder, 
                 ImGuiInputTextFlags flags) {
   draws(value);
   ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
-  const bool changed = ImGui::InputTextWithHint(fmt::format("##{}", label).c_str(), placeholder, &value, flags);
+  const float wide = ImGui::CalcItemWidth() - 2 * ImGui::GetStyle().FramePadding.x;
+  const std::string shown = fitted(placeholder, *ImGui::GetFont(), wide, ImGui::GetFontSize());
+  const bool changed = ImGui::InputTextWithHint(fmt::format("##{}", label).c_str(), shown.c_str(), &value, flags);
   known_as(label);
+  if (shown != placeholder) hint(placeholder);
   return changed;
 }
 
@@ -269,13 +272,13 @@ bool menu_item(const char* label, const char* shortcut, bool checked, bool enabl
 
 bool begin_menu(const char* label, bool enabled) {
   const bool open = ImGui::BeginMenu(label, enabled);
-  // An open menu's item is the popup's; its own place is what the cursor left behind.
+  // The current item of an open menu is the popup; restore the menu's own rectangle.
   known_as(label);
   return open;
 }
 
 bool section(const char* label, bool open_at_first) {
-  // Calm: the accent is for what is selected or active.
+  // Subdued: the accent is for selected or active items.
   ImVec4 back = palette().text;
   back.w = 0.05f;
   ImGui::PushStyleColor(ImGuiCol_Header, back);
@@ -313,6 +316,25 @@ void title(const char* text) {
   ImGui::PushFont(font(Type::kTitle));
   ImGui::TextUnformatted(text);
   ImGui::PopFont();
+}
+
+std::string fitted(const std::string& text, const ImFont& font, float wide, float high) {
+  const auto fits = [&](const std::string& it) {
+    const ImVec2 size = font.CalcTextSizeA(font.FontSize, FLT_MAX, wide, it.c_str());
+    return size.x <= wide && size.y <= high;
+  };
+  if (fits(text)) return text;
+  std::vector<std::size_t> ends;  // of characters
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) ends.push_back(i);
+  const auto cut = [&](std::size_t end) {
+    std::string kept = text.substr(0, end);
+    while (kept.ends_with(' ')) kept.pop_back();
+    return kept + "\u2026";
+  };
+  const auto first_too_long =
+      std::partition_point(ends.begin(), ends.end(), [&](std::size_t end) { return fits(cut(end)); });
+  return first_too_long == ends.begin() ? std::string() : cut(*(first_too_long - 1));
 }
 
 void rows_end_at(float x) {

@@ -45,7 +45,7 @@ class SignPen {
   vec4 color_;
 };
 
-// The node's frame without scale, as spawned objects have it.
+// The node's rotation without scale, as in spawned objects.
 dmat3 turn_of(const dmat4& frame) {
   dvec3 x(frame[0]), y(frame[1]);
   if (!(length(x) > 0.0)) x = dvec3(1, 0, 0);
@@ -125,7 +125,7 @@ void draw_camera(SignPen& pen, const Camera& camera, dvec3 at, const dmat3& turn
   pen.line(above + 0.4 * wide * turn[0], above + 0.6 * half * turn[1]);
 }
 
-// A hand's device: a stand and an arm.
+// A haptic device: a stand and an arm.
 void draw_device(SignPen& pen, dvec3 at, const dmat3& turn, double small) {
   const dvec3 x = small * turn[0], y = small * turn[1], z = small * turn[2];
   const dvec3 foot = at - 0.8 * y;

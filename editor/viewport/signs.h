@@ -1,5 +1,4 @@
-// What nodes without a surface look like in the editor: probes by their shape, lights, cameras by what they see, haptic
-// devices; and the boxes that pin a body or make its handle.
+// Symbols for nodes without a surface: probes, lights, cameras, haptic devices; and boxes for pins and handles.
 #pragma once
 
 #include <vector>
@@ -11,7 +10,7 @@ namespace pliant {
 struct SignColors {
   vec4 plain{1}, selected{1}, pinned{1}, handle{1};  // encoded
 };
-// What has no size of its own is as large as the picture makes it easy to see. Appends lines, and nodes with a sign.
+// Nodes without a size get a constant size on screen. Appends lines, and nodes with a symbol.
 void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const std::vector<bool>& shown,
                const std::vector<bool>& selected, const SignColors& colors, std::vector<ViewLine>& lines,
                std::vector<ViewSign>& signs);

@@ -14,7 +14,8 @@ namespace {
 constexpr float kEncode = 1.0f / 2.2f;
 constexpr std::size_t kMostNormals = 20'000;          // more lines than that hide the mesh
 constexpr std::size_t kMostDots = 30'000;             // of what is pinned
-constexpr double kSignReach = 9.0, kLineReach = 5.0;  // [pixel] about a sign's place and its lines that picks its node
+constexpr double kSignReach = 9.0, kLineReach = 5.0;  // [pixel] picking distance of a symbol's position, and of its
+                                                      // lines
 
 struct SolidVertex {
   vec3 position, normal;
@@ -167,7 +168,7 @@ void SolidView::add_normals(MeshOnGpu& mesh) {
   }
 }
 
-// Dots where at least half is pinned, or a handle.
+// Dots where the value of pinned or handle is at least one half.
 void SolidView::add_regions(MeshOnGpu& mesh, std::size_t number, const SolidOrder& order, const mat4& world,
                             std::vector<LineEnd>& points) {
   for (std::uint32_t i = 0; i < mesh.primitives.size(); ++i)
@@ -191,7 +192,7 @@ void SolidView::add_regions(MeshOnGpu& mesh, std::size_t number, const SolidOrde
     }
 }
 
-// Sends the chunks that differ from those that are shown.
+// Uploads the chunks that differ from the displayed ones.
 void SolidView::show_values(MeshOnGpu& mesh, std::size_t number, const SolidOrder& order) {
   if (!order.settings.channel) return;
   for (std::uint32_t i = 0; i < mesh.primitives.size(); ++i) {
@@ -242,7 +243,7 @@ void SolidView::make_room(int width, int height) {
   glNamedFramebufferDrawBuffers(frame, 2, both);
 }
 
-// Lines a round number of metres apart on the floor, y = 0, as fine as the picture shows; they fade away.
+// Grid lines on the floor, y = 0, at a round spacing suited to the view; they fade out.
 void SolidView::add_grid(const SolidOrder& order, std::vector<LineEnd>& ends) {
   if (!order.settings.grid) return;
   const double step = grid_step(order.view, order.orthographic);
@@ -324,7 +325,7 @@ void SolidView::draw_scene(const SolidOrder& order, int width, int height) {
 
   for (auto& [ignored, mesh] : meshes_) mesh.seen = false;
   triangles_ = 0;
-  // What is selected gets the highest numbers, so that one comparison tells.
+  // Selected nodes get the highest numbers, so that one comparison identifies them.
   numbered_.clear();
   std::vector<std::size_t> to_draw;
   for (const bool these : {false, true})
@@ -364,7 +365,7 @@ void SolidView::draw_scene(const SolidOrder& order, int width, int height) {
     const auto here = static_cast<GLuint>(numbered_.size());
     if (first_selected_ == 0xffffffffu && selected[i]) first_selected_ = here;
     const mat4 world(frames[i]);
-    // The cofactors turn normals as the inverse does, and are there where a scale is 0.
+    // The cofactors transform normals like the inverse transpose, and also exist for a scale of 0.
     const dmat3 linear(frames[i]);
     const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
     dmat3 cofactors(side * cross(linear[1], linear[2]), side * cross(linear[2], linear[0]),
@@ -388,7 +389,7 @@ void SolidView::draw_scene(const SolidOrder& order, int width, int height) {
         base = glm::max(encoded(vec3(materials[static_cast<std::size_t>(material)].base_color)), vec3(0.18f));
       glUniform3fv(3, 1, &base.x);
       glBindVertexArray(primitive.layout.id());
-      // Behind its edges; what is selected before another surface in the same place, or its outline would be specks.
+      // Drawn behind its edges; and a selected surface in front of a coincident one, so that its outline is continuous.
       const bool moved = order.settings.wireframe || selected[i];
       if (moved) {
         glEnable(GL_POLYGON_OFFSET_FILL);
@@ -399,7 +400,7 @@ void SolidView::draw_scene(const SolidOrder& order, int width, int height) {
       if (moved) glDisable(GL_POLYGON_OFFSET_FILL);
       if (order.settings.wireframe) {
         add_edges(mesh.primitives[p], mesh.of->primitives[p]);
-        // Edges as dense as pixels would hide the surface.
+        // Edges about as dense as pixels would hide the surface.
         const double depth = std::max(dot(middle - order.view.eye, forward), 1e-3 * away),
                      pixel = order.orthographic > 0.0
                                  ? order.orthographic / height
@@ -470,7 +471,7 @@ void SolidView::draw(const SolidOrder& order, GLuint framebuffer, int width, int
 SolidPicked SolidView::pick(double x, double y, double pixel) const {
   const int px = static_cast<int>(x), py = height_ - 1 - static_cast<int>(y);
   if (px < 0 || py < 0 || px >= width_ || py >= height_) return {};
-  // Signs lie over everything, and are thin: the nearest one counts that is close by.
+  // Symbols are drawn on top and are thin: the nearest one within reach is picked.
   const double scale = pixel * std::max(1.0, height_ / (1080.0 * pixel));
   double nearest = 1.0;  // [1] of the reach
   SolidPicked sign;

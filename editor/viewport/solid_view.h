@@ -1,6 +1,5 @@
-// The editor's own picture of a document: every mesh where its node stands, plainly lit, with painted values as colour
-// and what is selected outlined. It follows the document at once; how a level looks when it is played is the renderer's
-// matter. Needs a current OpenGL 4.5 context.
+// The editor's own picture of a document: meshes with plain lighting, painted values as colour, the selection outlined.
+// It follows the document immediately; the final appearance is the renderer's. Needs a current OpenGL 4.5 context.
 #pragma once
 
 #include <map>
@@ -14,7 +13,7 @@
 
 namespace pliant {
 
-// A line in the world that stands over everything (`over`) or behind what is before it.
+// A line in the world, on top of everything (`over`) or depth-tested.
 struct ViewLine {
   vec3 from{0}, to{0};  // [m] world
   vec4 color{1};        // encoded
@@ -25,26 +24,26 @@ struct ViewLine {
 struct SolidOrder {
   State state;
   Viewpoint view;
-  double orthographic = 0.0;  // [m] height of what is seen; 0: perspective
+  double orthographic = 0.0;  // [m] height of the view; 0: perspective
   ViewSettings settings;
   std::vector<NodeId> selected;
   NodeId hovered = kNoNode;
   std::vector<ViewLine> lines;
-  // [m] mesh frame, pairs of ends; null or absent: not known yet.
+  // [m] mesh frame, pairs of ends; null or absent: unknown yet.
   std::map<const DocumentMesh*, std::shared_ptr<const std::vector<vec3>>> creases;
   vec4 above{0}, below{0}, grid{0};          // colours of the background and grid, encoded
   vec4 selected_color{0}, hovered_color{0};  // encoded
   vec4 axis[3]{}, sign{0};                   // of the grid's axes; of signs of nodes, encoded
 };
 
-// Where a node without a surface is drawn, and the lines that it is drawn with.
+// Position of a node without a surface, and its symbol's lines.
 struct ViewSign {
   NodeId node = kNoNode;
   dvec3 place{0};                            // [m] world
   std::vector<std::pair<vec3, vec3>> lines;  // [m] world
 };
 
-// What stands at a pixel.
+// The object at a pixel.
 struct SolidPicked {
   NodeId node = kNoNode;  // none: nothing
   dvec3 point{0};         // [m] world
@@ -53,12 +52,11 @@ struct SolidPicked {
 class SolidView {
  public:
   static Result<SolidView> make();
-  Status reload();  // its shaders; an error leaves those that it has
+  Status reload();  // its shaders; after an error the old ones are kept
 
-  // Into `framebuffer`, which has width x height pixels. What has been drawn before is not drawn again.
+  // Into `framebuffer`, which has width x height pixels. An unchanged picture is not drawn again.
   void draw(const SolidOrder& order, GLuint framebuffer, int width, int height);
-  // Of the picture drawn last; pixels count from the upper left corner. `pixel`: how many of the picture's make one of
-  // what is shown.
+  // In the last picture; pixels count from the upper left corner. `pixel`: picture pixels per displayed pixel.
   SolidPicked pick(double x, double y, double pixel = 1.0) const;
   std::size_t triangles() const { return triangles_; }  // drawn last
 
@@ -68,14 +66,14 @@ class SolidView {
     gpu::VertexArray layout, edge_layout;
     GLsizei index_count = 0, edge_count = 0;  // of edges: ends; 0: not made yet
     double mean_edge = 0.0;                   // [m] mesh frame
-    PaintLayer shown;                         // what `values` holds
-    PaintLayer regions[2];                    // pinned, handle: that `region_points` show
+    PaintLayer shown;                         // content of `values`
+    PaintLayer regions[2];                    // pinned, handle: those shown by `region_points`
     std::vector<vec3> region_points[2];       // [m] mesh frame
     gpu::Buffer values;
     bool has_values = false;
   };
   struct MeshOnGpu {
-    std::shared_ptr<const DocumentMesh> of;  // kept, so that its address stays its own
+    std::shared_ptr<const DocumentMesh> of;  // kept alive, so that its address stays unique
     std::vector<PrimitiveOnGpu> primitives;
     std::vector<vec3> normal_ends;  // [m] mesh frame, pairs
     bool seen = false, has_normals = false;
@@ -110,19 +108,19 @@ class SolidView {
   gpu::VertexArray empty_;
   int width_ = 0, height_ = 0;
   std::size_t triangles_ = 0;
-  std::vector<NodeId> numbered_;  // node of number - 1, in the picture drawn last
+  std::vector<NodeId> numbered_;  // node of number - 1, in the last picture
   std::uint32_t first_selected_ = 0xffffffffu;
   mat4 world_from_clip_{1};
-  std::vector<ViewSign> signs_;  // of the picture drawn last: they are picked, too
+  std::vector<ViewSign> signs_;  // of the last picture, for picking
   SolidOrder last_;
   bool drawn_ = false;
 };
 
-// clip_from_world of a view; `box` [m] world is what must be between near and far.
+// clip_from_world of a view; `box` [m] world must lie between near and far.
 mat4 clip_from_world(const Viewpoint& view, double orthographic, double aspect, const Box& box);
-// [m] between the grid's lines, a power of ten that suits what is seen.
+// [m] between the grid's lines, a power of ten suited to the view.
 double grid_step(const Viewpoint& view, double orthographic);
-// Whether both orders make the same picture, but for what the mouse is over.
+// Whether both orders give the same picture, except for hovering.
 bool same_scene(const SolidOrder& a, const SolidOrder& b);
 
 }  // namespace pliant

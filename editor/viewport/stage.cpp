@@ -11,8 +11,10 @@ namespace pliant {
 namespace {
 
 constexpr double kSlowDraw = 60.0, kFastDraw = 18.0, kWantedDraw = 35.0;  // [ms]
-constexpr double kTooLong = 1000.0;                            // [ms] what is drawn in full must not bar the hand
-constexpr auto kRefineAfter = std::chrono::milliseconds(160);  // of rest, a coarse picture is drawn in full
+constexpr double kTooLong = 1000.0;                            // [ms] limit for a full-resolution picture, to stay
+                                                               // responsive
+constexpr auto kRefineAfter = std::chrono::milliseconds(160);  // without changes, after which a coarse picture is
+                                                               // redrawn in full
 constexpr double kCoarsest = 0.25, kFinest = 2.0;  // [1] of the resolution, each way; above 1 edges are smoothed
 
 }  // namespace
@@ -42,7 +44,7 @@ Stage::~Stage() {
 
 std::uint64_t Stage::order(StageOrder order) {
   const std::lock_guard lock(mutex_);
-  // A question that has not been asked yet is asked with this order.
+  // A question not asked yet is added to this order.
   if (next_ && next_->question && !order.question) {
     order.question = next_->question;
     order.question_number = next_->question_number;
@@ -138,7 +140,7 @@ void Stage::run() {
   }
 }
 
-// What was asked, of the picture that is there.
+// Answers the question for the current picture.
 void Stage::answer(const StageOrder& order, std::uint64_t number) {
   StagePicture done;
   {
@@ -164,7 +166,7 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
     answer(order, number);
     return;
   }
-  // The same picture but for what is outlined is cheap, as fine as it is.
+  // If only outlines changed, the picture is cheap at its current resolution.
   const double share = refine ? 1.0 : same ? done_.share : share_;
   int at = 0;
   {
@@ -243,8 +245,8 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
 }
 
 void Stage::choose_share(double took) {
-  // A picture that comes late is worse than a coarse one, but only pixels can be spared: what the triangles cost is
-  // known from two pictures of different resolution.
+  // A late picture is worse than a coarse one, but only the pixel cost can be reduced. The triangle cost is estimated
+  // from two pictures of different resolution.
   const double pixels = share_ * share_;
   if (std::abs(pixels - sample_pixels_) > 0.05 && sample_pixels_ > 0.0)
     fixed_ms_ = std::clamp(took - pixels * (took - sample_ms_) / (pixels - sample_pixels_), 0.0, took);

@@ -1,5 +1,5 @@
-// The viewport's pictures, on a thread of their own with a context that shares textures with the window: however long
-// one takes, the interface goes on answering. The newest order counts; the newest finished picture is shown.
+// Draws the viewport's pictures on a separate thread, with a context that shares textures with the window, so that the
+// interface stays responsive. The newest order is drawn; the newest finished picture is shown.
 #pragma once
 
 #include <chrono>
@@ -15,63 +15,63 @@
 
 namespace pliant {
 
-// Something else than the document that the viewport may show: a level that is played. Made, called and destroyed on
-// the stage's thread, its context current.
+// An alternative to the document in the viewport: a played level. Created, used and destroyed on the stage's thread
+// with its context current.
 class Scenery {
  public:
   virtual ~Scenery() = default;
-  // Into a framebuffer of this size. An error is shown, and the document instead.
+  // Into a framebuffer of this size. After an error the document is shown instead, with the error.
   virtual Status draw(const SolidOrder& order, GLuint framebuffer, int width, int height) = 0;
-  // Before a picture: pick() will be called for this pixel of it.
+  // Before a picture: the pixel for which pick() will be called.
   virtual void ask(std::optional<dvec2>) {}
-  // Pixels count from the upper left corner, of the picture drawn last.
+  // In the last picture; pixels count from the upper left corner.
   virtual SolidPicked pick(double x, double y) = 0;
-  virtual Status reload() { return Done{}; }           // its shaders; an error leaves those that it has
-  virtual bool moves() const { return true; }          // another picture may be wanted without a new order
-  virtual bool wants_picture() const { return true; }  // and is, now
+  virtual Status reload() { return Done{}; }           // its shaders; after an error the old ones are kept
+  virtual bool moves() const { return true; }          // a new picture may be needed without a new order
+  virtual bool wants_picture() const { return true; }  // a new picture is needed now
 };
 
 struct StageOrder {
   SolidOrder solid;
   int width = 1, height = 1;      // [pixel]
-  std::optional<dvec2> question;  // [pixel] what stands there?
+  std::optional<dvec2> question;  // [pixel] to be picked
   std::uint64_t question_number = 0;
 };
 
 struct StagePicture {
   GLuint texture = 0;         // of the window's context; valid until the next picture is taken. Rows bottom to top
   int width = 0, height = 0;  // [pixel] of the texture
-  double share = 1.0;         // [1] of the resolution that was ordered
+  double share = 1.0;         // [1] of the ordered resolution
   double draw_ms = 0.0;
   std::size_t triangles = 0;
-  std::uint64_t number = 0;  // of pictures so far
-  std::uint64_t order = 0;   // that it answers
-  Viewpoint view;            // that it was drawn from
+  std::uint64_t number = 0;  // count of pictures so far
+  std::uint64_t order = 0;   // the order that it answers
+  Viewpoint view;            // its view
   double orthographic = 0.0;
-  std::uint64_t question = 0;  // that `picked` answers; 0: none yet
+  std::uint64_t question = 0;  // the question answered by `picked`; 0: none yet
   SolidPicked picked;
-  std::string trouble;  // why it is not what was wanted
+  std::string trouble;  // why it differs from the order
 };
 
 class Stage {
  public:
-  // On the window's thread. `wake` is called on the stage's thread when a picture is done.
+  // On the window's thread. `wake` is called on the stage's thread when a picture is finished.
   static Result<std::unique_ptr<Stage>> create(Window& window, std::function<void()> wake);
   ~Stage();
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
-  // Replaces an order that has not begun. Returns its number.
+  // Replaces an order that has not started. Returns its number.
   std::uint64_t order(StageOrder order);
-  // The newest finished picture; the one before may be drawn over from now on.
+  // The newest finished picture; the previous one may be overwritten from now on.
   StagePicture picture();
-  bool busy() const;  // an order has not been answered yet, or not in full
-  // On the stage's thread, before the next picture: `make` returns what is shown instead of the document, or null for
-  // the document again. What was shown before is destroyed first.
+  bool busy() const;  // an order is not answered yet, or not in full
+  // On the stage's thread, before the next picture: `make` returns the scenery to show, or null for the document. The
+  // previous scenery is destroyed first.
   void show(std::function<std::unique_ptr<Scenery>()> make);
-  // Shaders are read and compiled again; what is wrong with them is the trouble of the next pictures.
+  // Recompiles the shaders; errors are the trouble of the next pictures.
   void reload_shaders();
-  // Runs on the stage's thread before the next picture, its context current.
+  // Runs on the stage's thread before the next picture, with its context current.
   void post(std::function<void()> task);
 
  private:
@@ -91,11 +91,11 @@ class Stage {
   std::uint64_t ordered_ = 0, answered_ = 0;
   std::vector<std::function<void()>> tasks_;
   StagePicture done_;
-  int showing_ = -1, finished_ = -1;  // which target the window shows, and which was finished last
+  int showing_ = -1, finished_ = -1;  // the target shown by the window, and the last finished one
   bool stop_ = false;
-  bool coarse_ = false;  // the newest picture is, and will be drawn in full when nothing else is wanted
+  bool coarse_ = false;  // the newest picture is coarse, and will be redrawn in full when idle
   std::chrono::steady_clock::time_point drawn_at_{};  // the stage's thread's
-  // The stage's thread's own.
+  // For the stage's thread.
   struct Target {
     GLuint texture = 0, frame = 0;
     int width = 0, height = 0;
@@ -103,7 +103,7 @@ class Stage {
   Target targets_[3];
   std::unique_ptr<SolidView> solid_;
   std::unique_ptr<Scenery> scenery_;
-  std::optional<StageOrder> drawn_;               // of the document, that the newest picture shows
+  std::optional<StageOrder> drawn_;               // of the document, shown by the newest picture
   double share_ = 1.0;                            // [1] of the resolution, of the next picture
   double fixed_ms_ = 0.0;                         // of a picture, whatever its resolution
   double sample_pixels_ = 0.0, sample_ms_ = 0.0;  // [1] of all, [ms]: an earlier picture of another resolution

@@ -15,9 +15,9 @@
 namespace pliant {
 namespace {
 
-constexpr float kCross = 34, kEnd = 9.5f;  // [point] half its size; of an end
+constexpr float kCross = 34, kEnd = 9.5f;  // [point] half its size; radius of an end
 constexpr std::size_t kMostNames = 300;
-constexpr const char* kPaintTool = "Paint";  // it has a legend of its own
+constexpr const char* kPaintTool = "Paint";  // it has its own legend
 
 bool begin_over(const char* name, ImVec2 at, ImVec2 pivot, bool plain = false) {
   ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
@@ -121,7 +121,7 @@ void ViewBar::draw_over(const Editor& editor, const ViewportInput& in, ImDrawLis
     const ImVec2 at(in.corner.x + ui::px(ui::kPad), in.corner.y + static_cast<float>(in.height) - ui::px(26));
     const ImVec2 size = size_of(text), around(ui::px(ui::kGap), ui::px(2));
     list.AddRectFilled({at.x - around.x, at.y - around.y}, {at.x + size.x + around.x, at.y + size.y + around.y},
-                       ui::color(p.panel, 0.95f), ui::px(4));  // legible over any picture
+                       ui::color(p.panel, 0.95f), ui::px(4));  // readable over any picture
     text_at(list, at, ui::color(p.dim), text);
   }
   if (editor.view.channel && editor.view.shading == Shading::kSolid && editor.tool != kPaintTool)
@@ -134,7 +134,7 @@ void ViewBar::draw(Editor& editor, ViewTool* tool, ImVec2 low, ImVec2 high) {
   if (tool && tool->has_options() && tool->usable(editor)) {
     if (begin_over("tool options", {low.x + pad, top}, {0, 0})) {
       const ui::Scope scope(tool->name());
-      // Beside it stand the overlays and the cross.
+      // Overlays and axis cross are beside it.
       ui::rows_end_at(high.x - 2 * pad -
                       std::max(ImGui::CalcTextSize("Overlays  \u25be").x + ui::px(2 * ui::kSpace + 12),
                                2 * ui::px(kCross + kEnd + 2)));
@@ -329,7 +329,7 @@ void ViewBar::draw_cross(Editor& editor) {
               ui::color(each->positive ? p.window : p.text), text);
     }
   }
-  // Pressed once more, the end that is looked from leads to the one behind it.
+  // Pressed again, the end that faces the eye selects the opposite direction.
   if (pressed && dot(pressed->along, forward) < -0.999)
     pressed = std::find_if(std::begin(ends), std::end(ends), [&](const End& e) { return e.along == -pressed->along; });
   if (pressed) editor.camera.look_from(pressed->azimuth, pressed->elevation);

@@ -1,5 +1,5 @@
-// What lies over the picture: the tool's options at the upper left, overlays, standard views and the cross of axes at
-// the upper right, the grid's unit and the legend below, names of nodes.
+// Overlay of the picture: the tool's options at the upper left, overlays, standard views and the axis cross at the
+// upper right, the grid's unit and the legend below, names of nodes.
 #pragma once
 
 #include <imgui.h>
@@ -13,7 +13,7 @@ class ViewBar {
  public:
   // Windows over the viewport from `low` to `high` [pixel].
   void draw(Editor& editor, ViewTool* tool, ImVec2 low, ImVec2 high);
-  // What is only looked at, into the viewport's own list.
+  // Non-interactive parts, into the viewport's draw list.
   static void draw_over(const Editor& editor, const ViewportInput& in, ImDrawList& list);
 
  private:

@@ -1,4 +1,4 @@
-// The viewport's camera: it turns about a target; what it shows follows what is asked for smoothly.
+// The viewport's camera: it orbits a target and moves smoothly to its goal.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@ namespace pliant {
 class ViewCamera {
  public:
   ViewCamera() { home({}); }
-  void home(const Box& scene);  // sees all of it, from the front, slightly above, at once
-  void frame(const Box& box);   // goes there, from where it looks now
+  void home(const Box& scene);  // shows the whole scene from the front, slightly above, at once
+  void frame(const Box& box);   // moves there, with the current direction
   // `dx`, `dy` [pixel] of a picture `height` pixels high.
   void orbit(double dx, double dy, int height) { control_->orbit(dx, dy, height); }
   void pan(double dx, double dy, int height) { control_->pan(dx, dy, height); }
@@ -23,14 +23,14 @@ class ViewCamera {
   bool moving() const;
 
   Viewpoint viewpoint() const { return control_->viewpoint(); }
-  // [m] height of what an orthographic picture shows; at the target it equals the perspective one's.
+  // [m] height of the orthographic view; at the target it equals the perspective one's.
   double orthographic_height() const;
 
  private:
   std::optional<CameraControl> control_;
 };
 
-// Where a place is in a picture: pixels from the upper left corner, and depth along the view [m]; nothing: behind it.
+// Position of a point in a picture: pixels from the upper left corner, and depth along the view [m]; empty: behind it.
 std::optional<dvec3> on_picture(const Viewpoint& view, double orthographic, int width, int height, dvec3 place);
 // The ray through a pixel.
 ViewRay view_ray(const Viewpoint& view, double orthographic, double x, double y, int width, int height);

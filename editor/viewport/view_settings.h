@@ -1,4 +1,4 @@
-// How the viewport shows a level; remembered between sessions.
+// Display settings of the viewport, saved between sessions.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 namespace pliant {
 
 enum class Shading : std::uint8_t {
-  kSolid,     // the document as it stands, at once
-  kRendered,  // as it is played: materials, surroundings, shadows
+  kSolid,     // the current document, immediately
+  kRendered,  // as in play: materials, environment, shadows
 };
 
 struct ClipPlane {
@@ -32,11 +32,11 @@ struct ViewSettings {
   bool creases = false;
   bool tetrahedra = false;
   bool forces = true, contacts = false;       // while playing
-  bool nodes = true;                          // probes, lights, cameras, instruments' frames as signs
-  bool names = false;                         // of what has a sign or is selected
-  bool regions = true;                        // what is pinned or a handle, by box and by paint
+  bool nodes = true;                          // probes, lights, cameras, instruments' frames as symbols
+  bool names = false;                         // of selected nodes and those with a symbol
+  bool regions = true;                        // pinned and handle regions, by box and paint
   std::optional<Channel> channel;             // painted values as colour
-  double value_low = 0.25, value_high = 4.0;  // of a factor, the ends of the colours
+  double value_low = 0.25, value_high = 4.0;  // of a factor, range of the colours
   ClipPlane clip;
   std::vector<NodeId> isolated;  // only these and what is below them; empty: all
   bool operator==(const ViewSettings&) const = default;

@@ -12,7 +12,6 @@
 #include "devices/wrappers/chain.h"
 #include "engine/run/sources.h"
 #include "engine/run/stiffness_note.h"
-#include "pliant/drivers.h"
 #include "systems/device/devices.h"
 #include "systems/device/hands.h"
 
@@ -46,10 +45,7 @@ bool does(const std::function<void()>& work, const std::function<bool()>& stop) 
 }
 
 void open_wish(Opening& opening, const std::string& wish, bool list) {
-  if (list) {
-    register_all_drivers();
-    opening.there = list_devices();
-  }
+  if (list) opening.there = list_devices();
   opening.chosen = choose_device(wish, opening.there);
   if (!opening.chosen || opening.chosen->id.empty()) return;
   const std::string& id = opening.chosen->id;
@@ -68,8 +64,7 @@ void DeviceLinks::begin(World& world, Held opened, dvec3 middle, std::vector<std
   begin_anew(world, opened.hand);
   if (std::string sentence = stiffness_note(world, opened.hand, opened.name); !sentence.empty())
     notes.push_back(std::move(sentence));
-  if (opened.link.servo() && !opened.link.servo()->note().empty())
-    notes.push_back(fmt::format("`{}`: {}", opened.name, opened.link.servo()->note()));
+  if (!opened.link.note().empty()) notes.push_back(fmt::format("`{}`: {}", opened.name, opened.link.note()));
   links_.push_back(std::move(opened));
 }
 

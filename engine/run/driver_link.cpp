@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "devices/believable.h"
+#include "devices/guard/last_resort.h"
 #include "devices/servo/device_identity.h"
 #include "systems/device/device_model.h"
 #include "systems/device/softening.h"
@@ -27,6 +28,8 @@ DriverLink& DriverLink::operator=(DriverLink&& other) noexcept {
   longest_ = other.longest_;
   ready_ = other.ready_;
   state_ = std::move(other.state_);
+  watch_ = std::move(other.watch_);
+  note_ = std::move(other.note_);
   return *this;
 }
 
@@ -51,7 +54,14 @@ Status DriverLink::connect(std::unique_ptr<Driver> driver, const std::string& id
     opened = true;
     can = driver->capabilities();
     if (const std::string wrong = beyond_belief(can); !wrong.empty()) return failed(wrong);
-    if (can.simulated || !renders(can)) claim.release();  // any number of programs may read it
+    if (can.simulated || !renders(can)) {
+      claim.release();  // any number may read it
+    } else if (!claimed.empty()) {
+      if (Status taken = claim.take_opened(claimed, *driver); !taken) {
+        driver->close();
+        return taken;
+      }
+    }
     if (wants_servo(can)) {
       auto served = std::make_unique<Servo>(std::move(driver), guard);
       servo = served.get();
@@ -69,13 +79,19 @@ Status DriverLink::connect(std::unique_ptr<Driver> driver, const std::string& id
   driver_ = std::move(driver);
   servo_ = servo;
   can_ = can;
-  if (!servo_) state_ = std::make_unique<LinkState>(can);
+  if (servo_) return Done{};
+  state_ = std::make_unique<LinkState>(can);
+  watch_ = std::make_unique<LineWatch>();
+  note_ = watch_->start(*driver_, can_);
+  if (renders(can_) && !guard_to_the_last(*driver_)) note_ = "more devices are open than a crash handler knows";
   return Done{};
 }
 
 void DriverLink::close() noexcept {
   if (driver_) {
     zero();
+    if (!servo_) let_go_of(*driver_);
+    if (watch_) watch_->end();
     try {
       driver_->close();
     } catch (...) {  // closed regardless
@@ -83,6 +99,8 @@ void DriverLink::close() noexcept {
   }
   driver_.reset();
   state_.reset();
+  watch_.reset();
+  note_.clear();
   servo_ = nullptr;
   can_ = {};
   claim_.release();
@@ -133,7 +151,8 @@ void DriverLink::write(World& world, Entity effector, Entity entity, Tick tick) 
     const double share = state_->may_leave(wrench, tick.time);
     device.force_sent *= share;
     device.torque_sent *= share;
-    driver_->write({device.force_sent, device.torque_sent});
+    if (!all_made_safe()) driver_->write({device.force_sent, device.torque_sent});
+    watch_->beat(*driver_, tick.time);
     return;
   }
   if (device.status != DeviceStatus::kReady)
@@ -161,6 +180,11 @@ void DriverLink::idle() {
   const bool fresh = driver_->read(sample);
   if (state_) state_->rest(fresh ? &sample : nullptr);
   driver_->write({});
+  if (watch_) watch_->beat(*driver_, 0.0);
+}
+
+const std::string& DriverLink::note() const {
+  return servo_ ? servo_->note() : note_;
 }
 
 const DeviceReport& DriverLink::report() {

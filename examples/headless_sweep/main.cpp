@@ -1,4 +1,4 @@
-// Force against depth of a level file's surfaces, for several stiffnesses, without a window: a table for a plot.
+// Prints force against depth of a level's surfaces for several stiffnesses, without a window, as a table for plotting.
 // Usage: headless_sweep LEVEL.gltf [PROBE]
 #include <pliant/content.h>
 #include <pliant/pliant.h>

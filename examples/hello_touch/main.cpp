@@ -1,4 +1,4 @@
-// A flat piece of tissue, a probe that is pressed into it, and the force that a hand would feel.
+// Presses a probe into a flat piece of tissue and prints the force on the hand.
 #include <pliant/pliant.h>
 
 #include <cstdio>

@@ -1,7 +1,7 @@
-// The device's side of Pliant's network protocol, to be copied into the firmware of a device of one's own: this file
-// needs nothing of Pliant, only sockets, and libcrypto for the key (leave out what is between #ifdef PLIANT_KEY and
-// #endif where there is none). Where a real one reads encoders and drives motors, this one simulates a handle of 100 g
-// that a spring pulls down. docs/devices/protocols.md explains every byte.
+// The device side of Pliant's network protocol, to be copied into the firmware of a custom device. It needs nothing of
+// Pliant: only sockets, and libcrypto for the key (without it, remove the code between #ifdef PLIANT_KEY and #endif).
+// Instead of encoders and motors, it simulates a 100 g handle pulled down by a spring. docs/devices/protocols.md
+// documents every byte.
 //
 //   network_device [PORT [KEYFILE]]    then: pliant run LEVEL --probe NAME=device:network:PORT[,key=KEYFILE]
 #include <arpa/inet.h>
@@ -30,10 +30,11 @@
 namespace {
 
 enum Kind : std::uint8_t { kAsk = 1, kOpen, kDescription, kState, kForce, kClose, kBusy };
-constexpr double kSilence = 0.020;                             // [s] without a force frame: no force
-constexpr double kAnswer = 0.040;                              // [s] without an answer to one of our states: the same
-constexpr double kForget = 1.0;                                // [s] without any frame: another engine may come
-constexpr int kLength[] = {0, 32, 32, 104, 100, 344, 32, 96};  // of a frame of each kind, without a tag
+constexpr double kSilence = 0.020;                             // [s] watchdog: after this time without a force frame,
+                                                               // zero force
+constexpr double kAnswer = 0.040;                              // [s] the same without an answer to one of our states
+constexpr double kForget = 1.0;                                // [s] without any frame: another engine may connect
+constexpr int kLength[] = {0, 32, 32, 104, 100, 344, 32, 96};  // of each kind of frame, without a tag
 constexpr int kTag = 32;                                       // bytes of a tag
 constexpr float kMaxForce = 3.0f;                              // [N]
 
@@ -50,7 +51,7 @@ std::uint32_t crc32(const std::uint8_t* bytes, int size) {
   return ~value;
 }
 
-// A frame that is written or read from its beginning. Little-endian machines only, as nearly all are.
+// A frame being written or read from its start. Little-endian machines only, as nearly all are.
 struct Frame {
   std::uint8_t bytes[344 + kTag] = {};
   int at = 0;
@@ -74,10 +75,10 @@ struct Force {
 
 class Device {
  public:
-  // `key`: empty where there is none.
+  // `key`: empty: none.
   Device(int socket, std::string key) : socket_(socket), key_(std::move(key)) { begin_session(); }
 
-  // Takes every frame that has come; false frames change nothing.
+  // Receives all pending frames; invalid frames have no effect.
   void hear() {
     Frame frame;
     sockaddr_in from{};
@@ -90,11 +91,11 @@ class Device {
   }
   long wrong_key() const { return wrong_key_; }  // frames
 
-  // Where the handle is: position and velocity in metres, Y up.
+  // Sends the handle's position and velocity in metres, Y up.
   void tell(const float position[3], const float velocity[3]) {
     if (engine_ == 0) return;
     Frame frame = begin(kState, engine_);
-    frame.put(heard_);            // the newest frame of the engine
+    frame.put(heard_);            // the engine's newest frame
     frame.put(std::uint32_t{1});  // 1: ready; 2: stopped; 4: hot; 8: battery low
     frame.put(std::uint32_t{0});  // buttons
     for (int i = 0; i < 3; ++i) frame.put(position[i]);
@@ -105,10 +106,10 @@ class Device {
     send(frame, engine_address_);
   }
 
-  // What to render there: zero unless the engine was heard lately, and answers.
+  // The force to render: zero unless frames and answers from the engine are recent.
   void render(const float position[3], const float velocity[3], float force[3]) const {
     force[0] = force[1] = force[2] = 0.0f;
-    const std::uint32_t next = answered_ + 1;  // the first state that it has not heard of
+    const std::uint32_t next = answered_ + 1;  // the first state that it has not acknowledged
     const double unanswered = answered_ == sent_ ? 0.0 : sent_ - next < 1024 ? now() - sent_at_[next % 1024] : 1e9;
     if (engine_ == 0 || now() - force_at_ > kSilence || unanswered > kAnswer) return;
     float dx[3], far = 0.0f, most = 0.0f;
@@ -120,7 +121,7 @@ class Device {
     for (int i = 0; i < 3; ++i) {
       force[i] = force_.has_model ? force_.f0[i] : force_.now[i];
       if (!force_.has_model) continue;
-      for (int j = 0; j < 3; ++j)  // matrices by columns
+      for (int j = 0; j < 3; ++j)  // matrices in column-major order
         force[i] += force_.k[3 * j + i] * dx[j] * (far > force_.radius ? force_.radius / far : 1.0f) +
                     force_.b[3 * j + i] * velocity[j];
     }
@@ -163,7 +164,7 @@ class Device {
     do own_ = random();
     while (own_ == 0);
   }
-  // With a key each engine gets a session of its own: an open frame that somebody has kept opens nothing.
+  // With a key each engine gets a new session, so that a replayed open frame has no effect.
   void forget() {
     engine_ = 0;
     if (!key_.empty()) begin_session();
@@ -177,7 +178,8 @@ class Device {
     const bool newer = static_cast<std::int32_t>(sequence - heard_) > 0 && time >= heard_time_;
     const bool same = engine_ != 0 && session == engine_ && from.sin_port == engine_address_.sin_port &&
                       from.sin_addr.s_addr == engine_address_.sin_addr.s_addr;
-    const bool wants_it = kind == kOpen || (kind == kAsk && !key_.empty());  // with a key, only who may open it asks
+    const bool wants_it = kind == kOpen || (kind == kAsk && !key_.empty());  // with a key, only an engine allowed to
+                                                                             // open it may ask
     if (wants_it && engine_ != 0 && !same) return tell_busy(session, from);
     if (kind == kOpen && !key_.empty() && peer != own_) return;
     if (kind == kOpen && engine_ == 0) {
@@ -221,7 +223,7 @@ class Device {
     send(frame, address);
   }
 
-  // Another engine has it, and which.
+  // Replies that another engine has the device, and which.
   void tell_busy(std::uint32_t to, const sockaddr_in& address) {
     Frame frame = begin(kBusy, to);
     char host[INET_ADDRSTRLEN] = {}, by[64] = {};
@@ -269,7 +271,7 @@ class Device {
 };
 
 #ifdef PLIANT_KEY
-// "" and a sentence where it cannot be used: a key that everyone may read is none.
+// Returns "" and prints an error if unusable: a key file that everyone may read is rejected.
 std::string read_key(const char* path) {
   struct stat about {};
   char bytes[4098];

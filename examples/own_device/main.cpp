@@ -1,5 +1,5 @@
-// A device of one's own. Here it is simulated: a hand of 100 g on a spring that lowers it onto the tissue, moved by the
-// force that comes back. A real one would talk to its hardware in read and write.
+// A custom device driver. It simulates a 100 g hand on a spring that lowers it onto the tissue and is moved by the
+// rendered force. A real driver would access its hardware in read and write.
 #include <pliant/pliant.h>
 
 #include <atomic>
@@ -17,7 +17,7 @@ class SimulatedHand final : public pliant::Driver {
   }
   pliant::DeviceCapabilities capabilities() const override { return {.max_force = 3.0, .max_stiffness = 2000.0}; }
 
-  // Both on the touch clock, 1000 times a second: no waiting, no allocation.
+  // Both run on the touch clock, 1000 times a second: no waiting, no allocation.
   bool read(pliant::DeviceSample& sample) override {
     constexpr double kDt = 1e-3, kMass = 0.1, kSpring = 40.0, kDamping = 4.0,
                      kGoal = -0.01;  // [s] [kg] [N/m] [N s/m] [m]
@@ -49,7 +49,7 @@ int fail(const pliant::Error& error) {
 }  // namespace
 
 int main() {
-  // One line makes it known by name; `connect` then finds it.
+  // Registers it by name; `connect` then finds it.
   const auto registered = pliant::register_driver("simulated_hand", [] { return std::make_unique<SimulatedHand>(); });
   if (!registered) return fail(registered.error());
 
@@ -59,7 +59,7 @@ int main() {
   auto session = pliant::Session::open(scene);
   if (!session) return fail(session.error());
   if (auto done = session->connect("stylus", "simulated_hand:left"); !done) return fail(done.error());
-  if (auto done = session->start(); !done) return fail(done.error());  // 1 kHz, on a thread of its own
+  if (auto done = session->start(); !done) return fail(done.error());  // 1 kHz, on a separate thread
   for (int i = 0; i < 10; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     const auto felt = session->reading("stylus");

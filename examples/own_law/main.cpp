@@ -1,5 +1,5 @@
-// A spring law, a shape and a linear solver of one's own: a class each, and one line that makes it known by name, here
-// and in level files ("spring": "softening").
+// A custom spring law, shape and linear solver: a class each, and one line that registers it by name, for code and
+// level files ("spring": "softening").
 #include <pliant/linear_solver.h>
 #include <pliant/pliant.h>
 #include <pliant/surface_law.h>
@@ -10,7 +10,7 @@
 
 namespace {
 
-// Gives way more easily the deeper it is pressed: F = s tanh(h / s), s = 10 mm.
+// Softens with depth: F = s tanh(h / s), s = 10 mm.
 struct Softening final : pliant::SpringFunction {
   static constexpr double kScale = 0.01;  // [m]
   double force(double h, const pliant::SpringConstants&) const override { return kScale * std::tanh(h / kScale); }

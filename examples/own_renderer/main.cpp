@@ -1,7 +1,7 @@
-// A window of one's own: GLFW and OpenGL 3.3 draw what the engine feels. The mouse moves the probe over the ball, its
-// left button presses. Usage: own_renderer [FRAMES], to end by itself (then the probe presses by itself, too).
+// A custom window: GLFW and OpenGL 3.3 draw the deformed surface. The mouse moves the probe over the ball; its left
+// button presses. Usage: own_renderer [FRAMES], to stop after that many frames (the probe then presses automatically).
 #include <epoxy/gl.h>
-// GLFW after the loader.
+// GLFW must come after the OpenGL loader.
 #include <GLFW/glfw3.h>
 #include <pliant/pliant.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kRadius = 0.05f;  // [m]
 
-// P1's two lines: the height acts along the normal at rest, and corrects the normal.
+// P1's two lines: the height displaces along the rest normal, and corrects the normal.
 constexpr const char* kVertex = R"(#version 330
 layout(location = 0) in vec3 P0;
 layout(location = 1) in vec3 N0;
@@ -102,13 +102,13 @@ int main(int argc, char** argv) {
   attribute(0, 3, geometry->position, GL_STATIC_DRAW);
   attribute(1, 3, geometry->normal, GL_STATIC_DRAW);
   std::vector<pliant::vec4> stream, of_vertex(geometry->position.size());
-  attribute(2, 4, of_vertex, GL_STREAM_DRAW);  // stays bound: it is filled anew for every picture
+  attribute(2, 4, of_vertex, GL_STREAM_DRAW);  // stays bound: refilled for every frame
   glGenBuffers(1, &indices);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, GLsizeiptr(geometry->index.size() * 4), geometry->index.data(), GL_STATIC_DRAW);
   glEnable(GL_DEPTH_TEST);
 
-  const auto at = [&](int frame) {  // where the probe is wanted
+  const auto at = [&](int frame) {  // target of the probe
     double x, y;
     glfwGetCursorPos(window, &x, &y);
     const bool press = frames > 0 || glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
@@ -130,7 +130,7 @@ int main(int argc, char** argv) {
     glViewport(0, 0, width, height);
     glClearColor(0.12f, 0.13f, 0.15f, 1.0f);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    // Straight from the front: 12 cm wide, nearer is smaller in depth.
+    // Front view, orthographic: 12 cm wide; nearer has smaller depth.
     const float s = 1 / 0.06f;
     const float to_clip[16] = {s, 0, 0, 0, 0, s, 0, 0, 0, 0, -s, 0, 0, 0, 0, 1};
     glUseProgram(shaders);

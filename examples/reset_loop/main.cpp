@@ -1,5 +1,5 @@
-// A loop as learning programs run it: a cube on a table is pushed by a force of the program's own, the contact below it
-// is looked at, and each trial begins in the same saved state.
+// A loop as in reinforcement learning: an external force pushes a cube on a table, the contact below it is read, and
+// each trial starts from the same saved state.
 #include <pliant/pliant.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ int main() {
   const auto begin = session->save_state();
   if (!begin) return fail(begin.error());
 
-  for (const double force : {0.2, 0.6, 0.6}) {  // [N]; friction holds 0.4
+  for (const double force : {0.2, 0.6, 0.6}) {  // [N]; friction resists 0.4
     if (auto s = session->restore_state(*begin); !s) return fail(s.error());
     if (auto s = session->set_body_force("cube", {force, 0, 0}); !s) return fail(s.error());
     if (auto s = session->step(200); !s) return fail(s.error());

@@ -1,9 +1,9 @@
-// What stands between a program and a hand: the state of a device, why it changed, and how its servo runs.
+// The safety state machine of a device, the causes of its transitions, and the timing of its servo.
 //
 //   disconnected -> idle -> armed -> active -> tripped
 //
-// Force leaves in `active` alone. Whatever is not understood takes it away at once; what repeats or lasts, or is
-// dangerous at once, trips the device, and only a person arms it again (Session::arm).
+// The device renders force only in `active`. Any fault removes the force at once. A repeated, lasting or dangerous
+// fault trips the device; then only the user can arm it again (Session::arm).
 #pragma once
 
 #include <array>
@@ -15,43 +15,43 @@
 namespace pliant {
 
 enum class DeviceState : std::uint8_t {
-  kDisconnected,  // no sample comes
-  kIdle,          // samples come; it is not armed
-  kArmed,         // it waits until the wanted force is small, or for the dead-man button
-  kActive,        // force leaves
-  kTripped        // latched: no force until it is armed again
+  kDisconnected,  // no samples arrive
+  kIdle,          // samples arrive; not armed
+  kArmed,         // waits for a small wanted force, or for the dead-man button
+  kActive,        // renders force
+  kTripped        // latched: no force until armed again
 };
 
 enum class DeviceCause : std::uint8_t {
   kNone,
-  kConnected,        // samples come
+  kConnected,        // samples arrive
   kArmedByItself,    // fresh samples and a fresh model (Arming::kAutomatic)
   kArmedByHand,      // Session::arm
   kDisarmed,         // Session::disarm
-  kSmallForce,       // the gate opened on a small wanted force
+  kSmallForce,       // the gate opened at a small wanted force
   kDeadManHeld,      // the gate opened on the dead-man button
-  kDeadManReleased,  // it was let go
-  kLetGo,            // the session paused, stopped, or lost what moves the effector
+  kDeadManReleased,  // it was released
+  kLetGo,            // the session paused, stopped, or the effector lost its source
   kNoSample,         // none for 10 ms
   kLost,             // none for 100 ms
-  kNotReady,         // the device says that its state is not known
-  kNotANumber,       // a pose is none
+  kNotReady,         // the device reports an unknown state
+  kNotANumber,       // a pose has NaN or infinite values
   kOutside,          // a pose far outside its workspace: a wrong unit
-  kJumped,           // a pose no hand could reach in that time
-  kFrozen,           // the very same pose for half a second, under force
-  kTimeBack,         // a sample is older than the one before, or from the future
-  kTooFast,          // faster than its largest velocity
-  kRunaway,          // it gathers speed against the force
-  kGaveEnergy,       // the hand got more than it gave, in spite of damping
-  kBadForce,         // the wanted force is no number
+  kJumped,           // a pose that cannot be reached in that time
+  kFrozen,           // an identical pose for half a second, under force
+  kTimeBack,         // a sample older than the previous one, or in the future
+  kTooFast,          // faster than the maximum velocity
+  kRunaway,          // it accelerates against the force
+  kGaveEnergy,       // passivity violation: net energy was delivered despite damping
+  kBadForce,         // the wanted force is NaN or infinite
   kModelStale,       // no force model for 10 ms
   kModelLost,        // none for 100 ms
-  kClockGap,         // the servo was not run for 10 ms: the process was paused, or starved
+  kClockGap,         // the servo did not run for 10 ms: the process was paused or starved
   kSuspended,        // the machine slept
   kUnsteady,         // five losses in one second
   kBatteryLow,
   kEmergencyStop,
-  kDriverFailed,  // its driver threw
+  kDriverFailed,  // its driver threw an exception
   kClosed
 };
 
@@ -59,7 +59,7 @@ struct DeviceTransition {
   DeviceState from = DeviceState::kDisconnected, to = DeviceState::kDisconnected;
   DeviceCause cause = DeviceCause::kNone;
   double time = 0.0;   // [s] of the servo's clock
-  double force = 0.0;  // [N] that was written last
+  double force = 0.0;  // [N] written last
 };
 
 const char* name_of(DeviceState state);
@@ -68,89 +68,90 @@ std::string describe(DeviceCause cause);
 // "active -> tripped at 12.345 s from 1.20 N: no sample for 100 ms; check cable and power, then arm it again".
 std::string describe(const DeviceTransition& transition);
 
-// Who arms a device.
+// How a device becomes armed.
 enum class Arming : std::uint8_t {
-  kAutomatic,  // it arms itself once samples and models are fresh; never after a trip
-  kByHand      // Session::arm alone
+  kAutomatic,  // automatically once samples and models are fresh; never after a trip
+  kByHand      // only by Session::arm
 };
 
-// How a device is guarded. Whatever is said here, the device's own limits hold.
+// Safety parameters of a device. The device's own limits apply in addition.
 struct GuardParameters {
   Arming arming = Arming::kAutomatic;
-  std::uint32_t dead_man = 0;  // buttons: force only while one of them is down; 0: none is needed
+  std::uint32_t dead_man = 0;  // bit mask: force only while one of these buttons is pressed; 0: none needed
   double max_force = 0.0;      // [N] 0: the device's
   double max_torque = 0.0;     // [N m] the same
-  double max_velocity = 0.0;   // [m/s] the same; 2 where neither says one
-  double slew = 2000.0;        // [N/s] of force that comes in; what is let go falls at once
-  double ramp = 0.2;           // [s] in which force comes in, once the gate is open
+  double max_velocity = 0.0;   // [m/s] the same; 2 if neither specifies one
+  double slew = 2000.0;        // [N/s] limit for rising force; falling force is not limited
+  double ramp = 0.2;           // [s] fade-in of the force after the gate opens
 };
 
-// How a device's servo runs, since its start.
+// Statistics of a device's servo since its start.
 struct ServoFigures {
   std::uint64_t periods = 0;                          // run
-  std::uint64_t missed = 0;                           // deadlines: a period that could not begin in time
+  std::uint64_t missed = 0;                           // deadlines: a period that started late
   std::uint64_t samples = 0, without_sample = 0;      // periods with a new sample, and without one
-  std::uint64_t models = 0;                           // taken from the touch tick
-  double rate = 0.0;                                  // [Hz] of the last tenth of a second
-  double period_p50 = 0.0, period_p99 = 0.0;          // [us] between two beginnings
+  std::uint64_t models = 0;                           // received from the touch tick
+  double rate = 0.0;                                  // [Hz] over the last 0.1 s
+  double period_p50 = 0.0, period_p99 = 0.0;          // [us] between two period starts
   double period_max = 0.0;                            // [us]
-  double jitter = 0.0;                                // [us] |period - wanted|, 99 of 100 stay below it
-  double round_trip_p50 = 0.0, round_trip_max = 0.0;  // [us] from a write to the sample that answers it, if told
-  double oldest_model = 0.0;                          // [us] that a force was made from
+  double jitter = 0.0;                                // [us] 99th percentile of |period - nominal|
+  double round_trip_p50 = 0.0, round_trip_max = 0.0;  // [us] from a write to the sample that acknowledges it, if
+                                                      // reported
+  double oldest_model = 0.0;                          // [us] largest age of a force model in use
   std::uint64_t late_models = 0;                      // periods whose model was older than two ticks of 1 ms
-  double read_p50 = 0.0, read_max = 0.0;              // [us] from sensing to reading, if the driver tells when
+  double read_p50 = 0.0, read_max = 0.0;              // [us] from sensing to reading, if the driver reports the time
   bool has_priority = false;                          // SCHED_FIFO was granted
 };
 
-// What came from a device and was not used, by why; and its samples that say that its state is not known.
+// Counts of dropped frames by cause, and of samples marked as not ready.
 struct DroppedFrames {
-  std::uint64_t too_short = 0;  // cut on the way
-  std::uint64_t unknown = 0;    // no frame of this protocol, or of no kind or length that it has
+  std::uint64_t too_short = 0;  // truncated
+  std::uint64_t unknown = 0;    // not a frame of this protocol, or of unknown kind or length
   std::uint64_t version = 0;    // of another version
-  std::uint64_t checksum = 0;   // its check sum is wrong
-  std::uint64_t number = 0;     // holds a number that is none, or that cannot be
-  std::uint64_t rotation = 0;   // holds a rotation that is not of unit length
-  std::uint64_t key = 0;        // not of this key, or without one (docs/devices/protocols.md)
+  std::uint64_t checksum = 0;   // wrong checksum
+  std::uint64_t number = 0;     // contains a number that is not finite or out of range
+  std::uint64_t rotation = 0;   // contains a rotation that is not of unit length
+  std::uint64_t key = 0;        // authenticated with another key, or not at all (docs/devices/protocols.md)
   std::uint64_t foreign = 0;    // from another address or session
-  std::uint64_t late = 0;       // doubled, overtaken, replayed, or with a time that runs backwards
+  std::uint64_t late = 0;       // duplicated, reordered, replayed, or with a decreasing time
   std::uint64_t lost = 0;       // gaps in the count of frames
-  std::uint64_t not_ready = 0;  // samples, of all drivers
+  std::uint64_t not_ready = 0;  // samples, of any driver
 
   std::uint64_t damaged() const { return too_short + unknown + version + checksum + number + rotation; }
   std::uint64_t dropped() const { return damaged() + key + foreign + late; }
 };
-// "12 of another version, 3 with a wrong check sum"; "" where all were used. `not_ready` is not among them.
+// "12 of another version, 3 with a wrong check sum"; "" if none were dropped. `not_ready` is not included.
 std::string describe(const DroppedFrames& frames);
-// For people who make the device: what each kind that happened comes from. One sentence, or none.
+// For developers of devices: the cause of each kind that occurred. One sentence, or "".
 std::string cure_for(const DroppedFrames& frames);
 
-// A driver that counts what it does not use derives from this, too.
+// Base of drivers that count dropped frames.
 class CountsDropped {
  public:
   virtual ~CountsDropped() = default;
-  // On the thread that reads.
+  // Called on the thread that reads.
   virtual DroppedFrames dropped() const = 0;
 };
 
-// All that a person wants to know about a device. Of a driver without a rate, which has no servo: state, cause, sample,
-// forces and how often it is read; its force comes back through the gate of the touch tick.
+// Full status of a device. A driver without a rate has no servo: state, cause, sample, forces and read rate are then of
+// the touch tick, and its force returns through the touch tick's gate.
 struct DeviceReport {
   static constexpr std::size_t kKept = 32;
   DeviceState state = DeviceState::kDisconnected;
   DeviceCause cause = DeviceCause::kNone;  // of the last transition
-  double force = 0.0;                      // [N] as written last
-  double heat = 0.0;                       // [1] 1: its force is lowered to what it bears for ever
-  DeviceSample sample;                     // the newest, as the device says it
-  double sample_age = -1.0;                // [s] since it came; below 0: there was none
-  DeviceWrench wanted, sent;               // by the newest model where the device is; as written last
-  double max_force = 0.0;         // [N] that may leave now: the least of device, level, parameters and heat; 0:
-                                  // nobody says one
+  double force = 0.0;                      // [N] written last
+  double heat = 0.0;                       // [1] thermal load; 1: its force is lowered to its continuous limit
+  DeviceSample sample;                     // the newest, as reported by the device
+  double sample_age = -1.0;                // [s] since it arrived; below 0: none yet
+  DeviceWrench wanted, sent;               // from the newest model at the device's pose; as written last
+  double max_force = 0.0;         // [N] current limit: the least of device, level, parameters and thermal limit; 0:
+                                  // none specified
   std::uint64_t transitions = 0;  // since the start; the last kKept of them are in `kept`
   std::array<DeviceTransition, kKept> kept{};
   ServoFigures figures;
   DroppedFrames dropped;
 
-  // i of the newest min(transitions, kKept), oldest first.
+  // Transition i of the newest min(transitions, kKept), oldest first.
   DeviceTransition transition(std::uint64_t i) const {
     return kept[(transitions > kKept ? transitions + i : i) % kKept];
   }

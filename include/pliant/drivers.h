@@ -1,10 +1,10 @@
-// The drivers that ship, of the package's component `devices` (docs/devices.md): SpaceMouse, pads, Falcon, Haply and
-// on.
+// The shipped drivers, in the package's component `devices` (docs/devices.md): SpaceMouse, gamepads, Falcon, Haply and
+// others.
 #pragma once
 
 namespace pliant {
 
-// Registers each by its name (pliant/driver.h); a second call does nothing. Before Session::connect.
+// Registers each driver by its name (pliant/driver.h); a second call does nothing. Call before Session::connect.
 void register_all_drivers();
 
 }  // namespace pliant

@@ -1,8 +1,8 @@
-// Vectors are glm's. `vec3` is single precision (fields, pictures), `dvec3` double (contacts, solvers, studies).
-// SI units, right-handed, Y up, metres; normals point outward.
+// Vectors are glm's. `vec3` is single precision (fields, pictures), `dvec3` double (contacts, solvers, studies). SI
+// units, right-handed, Y up, metres; normals point outward.
 //
-// The library was compiled with glm as it comes. A program whose GLM_FORCE_... macros lay vectors and quaternions out
-// in another way would have its numbers read in the wrong order, without a word: it does not compile.
+// The library is compiled with glm's default configuration. A program whose GLM_FORCE_... macros change the memory
+// layout of vectors or quaternions would be incompatible without an error, so it does not compile.
 #pragma once
 
 #include <cstddef>
@@ -59,7 +59,7 @@ static_assert(std::is_trivially_copyable_v<vec3> && std::is_trivially_copyable_v
               "library was compiled for; compile this file without GLM_FORCE_CTOR_INIT, GLM_FORCE_CXX98 and "
               "GLM_FORCE_SWIZZLE");
 
-// An axis-aligned box; empty until something is added.
+// An axis-aligned box; initially empty.
 struct Box {
   vec3 min{std::numeric_limits<float>::max()};
   vec3 max{std::numeric_limits<float>::lowest()};

@@ -1,5 +1,5 @@
-// Pictures of a Session by the renderer of the command: materials, bump maps, surroundings, reflection, refraction,
-// shadows (component `visual`). A program with a renderer of its own takes Session::stream instead.
+// Pictures of a Session by the renderer of the command: materials, bump maps, environment maps, reflection, refraction,
+// shadows (component `visual`). A program with its own renderer uses Session::stream instead.
 //
 //   auto pictures = pliant::Pictures::headless(*session);
 //   auto picture = pictures->picture(pictures->view(), 1280, 720);
@@ -13,7 +13,7 @@
 
 namespace pliant {
 
-// Where a picture is taken from.
+// The camera of a picture.
 struct PictureView {
   dvec3 eye{0, 0, 1};  // [m] world
   dvec3 target{0};     // [m]
@@ -23,26 +23,27 @@ struct PictureView {
 
 struct Picture {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;  // sRGB, four bytes a pixel, rows from top to bottom
+  std::vector<std::uint8_t> rgba;  // sRGB, four bytes per pixel, rows from top to bottom
 };
 
-// Belongs to the thread that owns the session, and to one run of it: after Session::restart() or the session's end
-// every call is an error, and they are made anew. Made before start(); pictures may be taken while the clocks run.
+// Belongs to the thread that owns the session, and to one run of it. After Session::restart() or the session's end
+// every call is an error, and a new object is needed. Create it before start(); pictures may be taken while the clocks
+// run.
 class Pictures {
  public:
-  // With a context of its own, without a window (EGL): on the GPU, or by Mesa's software renderer.
+  // With its own context and no window (EGL): on the GPU, or by Mesa's software renderer.
   static Result<Pictures> headless(Session& session);
-  // In the OpenGL 4.5 core context that is current on this thread, here and in every later call of Pictures.
+  // Uses the OpenGL 4.5 core context that is current on this thread, here and in every later call.
   static Result<Pictures> in_current_context(Session& session);
   Pictures(Pictures&&) noexcept;
   Pictures& operator=(Pictures&&) noexcept;
   ~Pictures();
 
-  // The level's own, or one that sees every deformable surface.
+  // The level's camera, or one that shows every deformable surface.
   PictureView view() const;
   // At most 16384 pixels wide and high.
   Result<Picture> picture(const PictureView& view, int width, int height);
-  // Into a framebuffer of the current context: 0 is the window's.
+  // Draws into a framebuffer of the current context; 0 is the window's.
   Status draw(const PictureView& view, unsigned framebuffer, int width, int height);
 
  private:

@@ -1,4 +1,4 @@
-// All of the engine. docs/embedding.md walks through it.
+// Includes the whole engine interface. See docs/embedding.md.
 #pragma once
 
 #include "pliant/device_state.h"

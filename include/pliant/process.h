@@ -1,6 +1,5 @@
-// What the library does to the process that it is in. By itself: no signal handler is installed, and nothing is written
-// to stdout or stderr but warnings and the last sentence before an abort. A program that wants more, or less, says so
-// here.
+// Effects of the library on its process. By default it installs no signal handler, and writes only warnings and the
+// message of a failed assertion to stderr. The functions here change that.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +9,21 @@
 namespace pliant {
 
 enum class LogLevel : std::uint8_t {
-  kInfo,     // a call takes long; dropped unless there is a hook
-  kWarning,  // something was lost that no returned value can say; "pliant: SENTENCE" on stderr unless there is a hook
-  kFatal     // an assertion failed, and std::abort() follows; the same
+  kInfo,     // a long-running call; dropped unless there is a hook
+  kWarning,  // data was lost that no return value can report; "pliant: SENTENCE" on stderr unless there is a hook
+  kFatal     // an assertion failed, and std::abort() follows; output as for kWarning
 };
-// One sentence, without a line end. From any thread, but never from a tick; it must not throw.
+// One sentence, without a line end. Called from any thread, but never from a tick; must not throw.
 using LogHook = std::function<void(LogLevel level, const std::string& sentence)>;
-// From now on the library says everything to `hook`; an empty one: as above. From any thread.
+// Sends all messages to `hook`; an empty one restores the default. From any thread.
 void set_log(LogHook hook);
 
-// Every open device that has a servo is made safe (Driver::make_safe), and no servo writes any more until the program
-// ends. May be called from a signal handler. A program's normal exit() does it, too.
+// Makes every open device with a servo safe (Driver::make_safe), and stops all servos from writing until the program
+// ends. May be called from a signal handler. Also called by exit().
 void make_devices_safe() noexcept;
-// Opt-in: crashes (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT), and SIGTERM, SIGINT and SIGHUP where they have no handler
-// yet, first go through make_devices_safe(), then the way they would have gone. Once; handlers that the program
-// installs afterwards replace these and should call make_devices_safe() themselves.
+// Opt-in: crashes (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT), and SIGTERM, SIGINT and SIGHUP if they have no handler
+// yet, first call make_devices_safe(), then take their previous action. Call once. Handlers installed later replace
+// these and should call make_devices_safe() themselves.
 void make_devices_safe_on_signals();
 
 }  // namespace pliant

@@ -1,6 +1,5 @@
-// What a program asks about the geometry of a scene (Session::triangles, closest_point, ray, bounds): values of its
-// own, in metres, world frame. Triangles and vertices are numbered as the object's MeshData or file has them, its
-// primitives end to end.
+// Geometry queries of a scene (Session::triangles, closest_point, ray, bounds): copies, in metres, world frame.
+// Triangles and vertices are numbered as in the object's MeshData or file, its primitives in sequence.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +10,22 @@
 
 namespace pliant {
 
-// Which geometry is asked, and how far.
+// The geometry to query, and the range.
 struct QueryOptions {
   std::string object;  // of Session::objects(); empty: all that are not taken out
-  // True: the undeformed shape. A surface's where its object is now, a rigid body's and a tool's too; a soft body's
-  // without a handle where the scene put it.
+  // True: the undeformed shape, at the object's current pose. A soft body without a handle is at its pose in the scene.
   bool rest = false;
-  double within = std::numeric_limits<double>::infinity();  // [m] farther is not looked for; 0 or more
+  double within = std::numeric_limits<double>::infinity();  // [m] search radius; 0 or more
 };
 
 // A point of a flat triangle.
 struct QueryHit {
   static constexpr std::uint32_t kNone = 0xffffffff;
-  std::uint32_t object = kNone;    // into Session::objects(); kNone: nothing is there
+  std::uint32_t object = kNone;    // into Session::objects(); kNone: nothing found
   std::uint32_t triangle = kNone;  // into Session::triangles()
   dvec3 barycentric{0};            // [1] of the triangle's three corners
   dvec3 position{0};               // [m] world
-  dvec3 normal{0};                 // [1] world, unit, outward, of the flat triangle as it is now
+  dvec3 normal{0};                 // [1] world, unit, outward, of the flat triangle in its current state
   double distance = 0.0;           // [m] from the point, or along the ray
   bool found() const { return object != kNone; }
 };

@@ -1,5 +1,5 @@
-// Errors at the border (files, devices, arguments): a value, or one sentence that says where, what is wrong and what to
-// do. No function of the library throws.
+// Errors of files, devices and arguments: a value, or one sentence with place, fault and remedy. No function of the
+// library throws.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-// What is returned refers into the object that it is asked of: clang says where that is a temporary.
+// The return value refers into the object it was called on; clang warns if that is a temporary.
 #ifdef __clang__
 #define PLIANT_LIFETIMEBOUND [[clang::lifetimebound]]
 #else
@@ -19,19 +19,19 @@ namespace pliant {
 // One actionable sentence: "WHERE: what is wrong; what to do".
 struct Error {
   std::string where;       // file, JSON pointer, option or device
-  std::string what;        // what is wrong, and after a semicolon what to do
-  std::int32_t node = -1;  // of the level: index of the node that it is about; -1: of none
-  std::string pointer;     // JSON pointer within the file, where it has one; `where` names it too
+  std::string what;        // the fault, and after a semicolon the remedy
+  std::int32_t node = -1;  // index of the level node concerned; -1: none
+  std::string pointer;     // JSON pointer within the file, if there is one; `where` includes it too
   std::string message() const { return where.empty() ? what : where + ": " + what; }
 };
 
-// A value was taken from an Error without asking for it first (or the other way round): the program stops and says so
-// (LogLevel::kFatal, pliant/process.h).
+// Called when a value is taken from an Error without a check, or vice versa: aborts with a message (LogLevel::kFatal,
+// pliant/process.h).
 [[noreturn]] void unchecked_result(const std::string& message);
 
-// A T, or the Error that kept it from being made. Check it (`if (!result)`) before its value is taken. Of a temporary,
-// value(), operator* and error() return by value, so that `for (auto& x : session.findings().value())` holds what it
-// walks over; `->` of a temporary is for one expression: `session.reading("finger")->force`.
+// A T, or the Error that prevented it. Check it (`if (!result)`) before using its value. On a temporary, value(),
+// operator* and error() return by value, so that `for (auto& x : session.findings().value())` is safe. `->` on a
+// temporary is for one expression: `session.reading("finger")->force`.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -71,7 +71,7 @@ class [[nodiscard]] Result {
   std::variant<T, Error> state_;
 };
 
-// Done, or the Error that stopped it.
+// Success without a value.
 struct Done {};
 using Status = Result<Done>;
 

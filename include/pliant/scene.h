@@ -1,5 +1,5 @@
-// A level in code: deformable surfaces, soft and rigid bodies, tools, probes. A level file becomes one too
-// (pliant/content.h).
+// A level built in code: deformable surfaces, soft and rigid bodies, tools, probes. A level file can be loaded as one
+// too (pliant/content.h).
 #pragma once
 
 #include <memory>
@@ -15,15 +15,15 @@ namespace pliant {
 
 struct Level;
 
-// Triangles. Arrays beside `position` and `index` are empty or as long as `position`.
+// A triangle mesh. Other arrays are empty or as long as `position`.
 struct MeshData {
   std::vector<vec3> position;        // [m]
-  std::vector<std::uint32_t> index;  // three a triangle, counter-clockwise seen from outside
-  std::vector<vec3> normal;          // [1] to shade with; empty: made
+  std::vector<std::uint32_t> index;  // three per triangle, counter-clockwise from outside
+  std::vector<vec3> normal;          // [1] for shading; empty: computed
   std::vector<vec2> uv;
-  // Painted factors [1], 1 where nothing is painted.
+  // Painted factors [1]; 1 where unpainted.
   std::vector<float> stiffness, friction, damping, relaxation;
-  // [1] 0 to 1: vertices of a soft body that stand still, and those that belong to a tool's handle.
+  // [1] 0 to 1: pinned vertices of a soft body, and those rigidly attached to a tool's handle.
   std::vector<float> pinned, handle;
 };
 
@@ -33,9 +33,9 @@ struct Placement {
   dvec3 scale{1};  // [1]
 };
 
-// Copies are independent; one that was moved from may only be destroyed or assigned to. Names must differ: they are how
-// a Session is asked about its objects. What is wrong with a scene (a mesh without triangles, a parameter out of its
-// range, a name given twice) is said by Session::open.
+// Copies are independent. A moved-from one may only be destroyed or assigned to. Names must be unique: they identify
+// objects in a Session. Session::open reports errors in the scene (a mesh without triangles, a parameter out of range,
+// a duplicate name).
 class Scene {
  public:
   explicit Scene(std::string name = "scene");
@@ -46,7 +46,7 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
 
-  Simulation& simulation() & PLIANT_LIFETIMEBOUND;  // of the scene for as long as it lives
+  Simulation& simulation() & PLIANT_LIFETIMEBOUND;  // valid as long as the scene
 
   // A deformable surface (P1).
   void add_surface(const std::string& name, MeshData mesh, const DeformableParameters& parameters = {},
@@ -56,7 +56,7 @@ class Scene {
                      const Placement& placement = {});
   void add_rigid_body(const std::string& name, MeshData mesh, const RigidBodyParameters& parameters = {},
                       const Placement& placement = {});
-  // Makes a soft or rigid body that has been added a tool: a hand holds it by its handle.
+  // Makes an existing soft or rigid body a tool that is moved by its handle.
   Status add_handle(const std::string& body, const HandleParameters& parameters = {},
                     const DeviceParameters& device = {});
   void add_probe(const std::string& name, const ProbeParameters& parameters = {}, const DeviceParameters& device = {},

@@ -1,4 +1,4 @@
-// A scene that is touched: its clocks, its probes' sources, and what they feel.
+// A running scene: its clocks, the sources of its probes, and the resulting forces.
 //
 //   pliant::Scene scene;
 //   scene.add_surface("tissue", mesh);
@@ -9,15 +9,14 @@
 //   session->step();
 //   double newton = pliant::length(session->reading("finger").value().force);
 //
-// Two ways to run. Lockstep: step() runs ticks on the caller's thread in virtual time; the same input gives the same
-// bits. Real time: start() runs the touch clock (1 kHz) and, where a scene has bodies, the soft clock on threads of
-// their own until stop(). One thread owns a Session and calls all of its functions; in real time they exchange data
-// with the clocks and never make them wait. Whatever ends a run, the last force that leaves for a device is zero.
+// There are two modes. Lockstep: step() runs ticks on the caller's thread in virtual time; results are bitwise
+// reproducible. Real time: start() runs the touch clock (1 kHz) and, if the scene has bodies, the soft clock on
+// separate threads until stop(). One thread owns a Session and calls all of its functions; in real time they exchange
+// data with the clocks without blocking them. The last force written to a device is always zero.
 //
-// Misuse is an Error with a sentence: an unknown name, two sources for one probe, step() while the clocks run. No
-// function throws. What is returned is a copy; notes() and objects() refer into the session until the next call of a
-// function that is not const. A session that was moved from may only be destroyed or assigned to. World frame: metres,
-// right-handed, Y up.
+// Misuse returns an Error: an unknown name, two sources for one probe, step() while the clocks run. No function throws.
+// Return values are copies; notes() and objects() return references that are valid until the next non-const call. A
+// moved-from session may only be destroyed or assigned to. World frame: metres, right-handed, Y up.
 #pragma once
 
 #include <cstdint>
@@ -42,35 +41,35 @@ struct ContactReading {
   double depth = 0.0;  // [m] below the undeformed surface
   bool sliding = false;
   std::uint32_t object = 0;  // into Session::objects()
-  // Of the object, as Session::triangles numbers them: where `position` lies, and the corner that is nearest to it.
+  // Of the object, numbered as in Session::triangles: the triangle that contains `position`, and its corner nearest to
+  // it.
   std::uint32_t triangle = 0xffffffff, vertex = 0xffffffff;
 };
 
-// One of the two that touch.
+// One side of a contact.
 struct ContactSide {
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::uint32_t object = kNone;    // into Session::objects(); kNone: a probe
   std::uint32_t effector = kNone;  // into Session::effectors(); kNone: neither a probe nor a tool
-  // Of the object, as Session::triangles numbers them: where it is touched, and the corner that is nearest; kNone: of a
-  // probe.
+  // Of the object, numbered as in Session::triangles: the touched triangle, and its nearest corner; kNone: of a probe.
   std::uint32_t triangle = kNone, vertex = kNone;
 };
 
-// Where soft and rigid bodies, tools and probes among them, press on each other and on surfaces.
+// A contact between soft or rigid bodies (including tools and probes), or between one and a surface.
 struct BodyContact {
   dvec3 position{0};  // [m] world
   dvec3 normal{0};    // [1] world, unit, towards the body that `force` is on
   dvec3 force{0};     // [N] world, on `a`, with friction; its reaction is on `b`
   bool sliding = false;
-  double depth = 0.0;  // [m] of `a` in `b` along the normal, at the step's begin; below 0: they are still so far apart
-  ContactSide a, b;    // the same object twice: it folds onto itself
+  double depth = 0.0;  // [m] of `a` in `b` along the normal, at the start of the step; below 0: distance
+  ContactSide a, b;    // the same object twice: self-contact
 };
-// What tissue and contacts did to a tool's handle in a soft step.
+// The wrench of tissue and contacts on a tool's handle in a soft step.
 struct HandleReading {
   std::string tool;
   dvec3 position{0};  // [m] world
   dquat rotation{1, 0, 0, 0};
-  dvec3 force{0}, torque{0};  // [N], [N m] world, about its middle
+  dvec3 force{0}, torque{0};  // [N], [N m] world, about its centre
 };
 
 // One probe or tool after a tick.
@@ -81,44 +80,44 @@ struct Reading {
   double time = 0.0;   // [s]
   bool ready = false;  // its device's state is known; false: the force is zero
   bool touching = false;
-  dvec3 position{0};             // [m] world: of a probe; of a tool's device
-  dvec3 force{0};                // [N] world, on the hand that holds it, as sent
-  dvec3 torque{0};               // [N m] world, on the hand that holds it, as sent; of tools
+  dvec3 position{0};             // [m] world: of a probe; for a tool, of its device
+  dvec3 force{0};                // [N] world, on the hand, as sent
+  dvec3 torque{0};               // [N m] world, on the hand, as sent; only tools
   double depth = 0.0;            // [m] below the undeformed surface, of the strongest contact
   dvec3 normal{0};               // [1] world, of the strongest contact
   std::uint32_t object = kNone;  // into Session::objects(): of the strongest contact
-  std::uint32_t contacts = 0;    // of a probe with deformable surfaces: how many `contact` holds
+  std::uint32_t contacts = 0;    // number of a probe's contacts with deformable surfaces: entries of `contact`
   std::array<ContactReading, kMostContacts> contact;
 };
 
-// What a run was like so far.
+// Statistics of a run so far.
 struct SessionFigures {
   std::uint64_t ticks = 0;
   double p50_us = 0.0, p99_us = 0.0, max_us = 0.0;  // of a tick
-  std::uint64_t overruns = 0;                       // in real time: ticks that could not begin in time
+  std::uint64_t overruns = 0;                       // in real time: ticks that started late
   std::uint64_t soft_steps = 0;
 };
 
-// The surface of an object as it is drawn. Vertices of the collision mesh are split where shading needs it.
+// The drawn surface of an object. Vertices of the collision mesh are split where shading needs it.
 struct Geometry {
   std::vector<vec3> position;        // [m] P0, at rest, object frame
-  std::vector<vec3> normal;          // [1] N0 of the collision mesh: the height acts along it
+  std::vector<vec3> normal;          // [1] N0 of the collision mesh; the height displaces along it
   std::vector<vec3> shading_normal;  // [1]
   std::vector<vec2> uv;
-  std::vector<std::uint32_t> stream_vertex;  // of each: its place in the stream
-  std::vector<std::uint32_t> index;          // three a triangle
+  std::vector<std::uint32_t> stream_vertex;  // per vertex: its index in the stream
+  std::vector<std::uint32_t> index;          // three per triangle
 };
 
 class Session {
  public:
-  // Prepares everything a tick will need. The scene is copied. Of a large scene this takes seconds: `progress` is told,
-  // on this thread, and may end it with an Error.
+  // Copies the scene and allocates everything a tick needs. For a large scene this takes seconds: `progress` is called
+  // on this thread and may cancel with an Error.
   static Result<Session> open(const Scene& scene, const OpenProgress& progress = {});
   Session(Session&&) noexcept;
   Session& operator=(Session&&) noexcept;
   ~Session();  // stop()
 
-  // What was read or made differently than one might expect.
+  // Unexpected conversions and defaults.
   const std::vector<std::string>& notes() const& PLIANT_LIFETIMEBOUND;
   std::vector<std::string> notes() &&;
   std::vector<std::string> effectors() const;  // probes, then tools
@@ -126,138 +125,137 @@ class Session {
   const std::vector<std::string>& objects() const& PLIANT_LIFETIMEBOUND;
   std::vector<std::string> objects() &&;
 
-  // --- What moves a probe or tool. Each has one source: a second one is an error until release().
-  // Where it is from now on. In real time it goes there in the time since it was last set (at most 0.1 s), so
-  // that a program may set it once a picture; after 0.25 s without a new pose it counts as lost.
+  // --- The source of a probe or tool. Each has one; a second one is an error until release().
+  // Sets the target pose. In real time, the motion towards it takes the time since the last call (at most 0.1 s), so
+  // one call per frame suffices. After 0.25 s without a new pose the source counts as lost.
   Status move(const std::string& effector, dvec3 position, dquat rotation = {1, 0, 0, 0});
   Status follow(const std::string& effector, Path path);
-  Status orbit(const std::string& effector);  // a path over the scene's surfaces; not while the clocks run
-  // "NAME" or "NAME:ID" of a registered driver; or a driver of one's own.
+  Status orbit(const std::string& effector);  // a generated path over the scene's surfaces; not while the clocks run
+  // "NAME" or "NAME:ID" of a registered driver; or a custom driver.
   Status connect(const std::string& effector, const std::string& driver);
   Status connect(const std::string& effector, std::unique_ptr<Driver> driver, const std::string& id = {});
-  Status release(const std::string& effector);  // nobody moves it: no force
+  Status release(const std::string& effector);  // removes the source: no force
 
-  // --- What stands between the session and a hand (pliant/device_state.h). Drivers that say a rate and render anything
-  // have a servo each. In real time it runs on a thread of its own; in lockstep in step(), in virtual time, the same
-  // periods for the same ticks, and a device that is run by its answers or by its maker's library is refused. How the
-  // next driver that is connected to it is guarded.
+  // --- Safety of devices (pliant/device_state.h). Drivers with a rate that render anything have their own servo. In
+  // real time it runs on its own thread. In lockstep it runs in step(), in virtual time, with the same periods for the
+  // same ticks; devices with kReply or kCallback are rejected there.
+  // Safety parameters for the next driver connected to this effector.
   Status guard(const std::string& effector, const GuardParameters& parameters);
   Result<DeviceReport> device_state(const std::string& effector) const;
-  Status arm(const std::string& effector);     // after a trip, or where it does not arm itself
-  Status disarm(const std::string& effector);  // until it is armed
-  // No device gives force until it is armed. From any thread, while no other connects, releases or restarts.
+  Status arm(const std::string& effector);     // after a trip, or with manual arming
+  Status disarm(const std::string& effector);  // until armed again
+  // Disarms all devices. From any thread, unless another one connects, releases or restarts.
   void emergency_stop();
 
   // --- Time
-  Status step(std::uint64_t ticks = 1);  // what a driver was written last it keeps until the next
+  Status step(std::uint64_t ticks = 1);  // a driver keeps its last written force until the next call
   Status start();
-  Status pause(bool paused);  // devices are let go, in a tick of their own; they come back through the gate
-  Status stop();              // the error says what ended a clock before stop()
+  Status pause(bool paused);  // devices ramp down in a separate tick, and return through the gate
+  Status stop();              // the error tells what ended a clock before stop()
   bool running() const;
-  // As it was opened, at time 0; sources and parameters stay as they are. Where it fails, only restart() works.
+  // Back to the initial state at time 0; keeps sources and parameters. After an error only restart() works.
   Status restart();
   double time() const;  // [s]
 
   // --- Recordings: the pose of every probe and tool at every tick
-  // From the next tick on; before the clocks start. A file that is there is refused, unless it is a recording and
-  // `replace` is set. The file appears whole with end_recording(), restart() or the session's end; without a tick it is
-  // not written, which is an error of the first two.
+  // Starts at the next tick; call before the clocks start. An existing file is an error, unless it is a recording and
+  // `replace` is set. The file is written atomically by end_recording(), restart() or the session's end. Without a tick
+  // nothing is written, which is an error of the first two.
   Status record(const std::filesystem::path& file, bool replace = false);
   Status end_recording();
-  // Every source is the recording from now on, in lockstep; its settings hold. A recording of a lockstep run gives the
-  // same bits in the same scene; one of real time gives the same poses, while its bodies' steps may fall elsewhere.
-  // notes() say where scene or settings differ. step() fails behind its last tick. Not after a tick has run.
+  // Makes the recording the source of every effector, in lockstep, with its settings. A recording of a lockstep run
+  // reproduces the same bits in the same scene. One of a real-time run reproduces the poses, but its soft steps may
+  // fall on other ticks. notes() report differences of scene or settings. step() fails after its last tick. Call before
+  // the first tick.
   Status replay(const std::filesystem::path& file);
 
-  // --- Parameters, between ticks: keys of a surface, a body, a probe, a tool or its device by the level format's names
-  // (docs/embedding.md says which are live, and why the others are not). An error says whether the name, the key or the
-  // type of the value is wrong. `word`: of keys that are words, such as `shape`; `values`: of those that are pairs.
+  // --- Parameters, set between ticks: keys of a surface, body, probe, tool or its device by the level format's names
+  // (docs/embedding.md lists the live ones). The error tells whether the name, the key or the type of the value is
+  // wrong. `word`: for keys with words, such as `shape`; `values`: for keys with pairs.
   Status set(const std::string& object, const std::string& key, double value);
   Status set(const std::string& object, const std::string& key, const std::string& word);
   Status set(const std::string& object, const std::string& key, const std::vector<double>& values);
   Result<double> get(const std::string& object, const std::string& key) const;
 
-  // --- What is felt and seen
+  // --- Results
   Result<Reading> reading(const std::string& effector) const;
   SessionFigures figures() const;
-  // Whatever kept a force from what the law says so far, or was left out: forces that were clipped, withheld, gated or
-  // slewed, poses that were no numbers, contacts that were dropped, each in a sentence with its cure. Not while the
-  // clocks run.
+  // All deviations from the force law so far, one sentence each with its remedy: clipped, withheld, gated or
+  // slew-limited forces, invalid poses, dropped contacts. Not while the clocks run.
   Result<std::vector<std::string>> findings() const;
-  // Of the newest soft step: at most 512 contacts, of probes among bodies too; every tool's handle. Empty in a scene
-  // without bodies. A surface is felt by probes without these: Reading::contact.
+  // Of the newest soft step: at most 512 contacts, including those of probes with bodies; and every tool's handle.
+  // Empty in a scene without bodies. Contacts of probes with surfaces are in Reading::contact.
   Status body_contacts(std::vector<BodyContact>& out);
   Status handles(std::vector<HandleReading>& out);
-  // Deformed vertices, world frame [m], in the order in which the object's MeshData or file has them. One that no
-  // triangle uses is at the object's origin.
+  // Deformed vertices, world frame [m], in the order of the object's MeshData or file. An unused vertex is at the
+  // object's origin.
   Status vertices(const std::string& object, std::vector<vec3>& out);
-  // The force on each of these vertices, world frame [N]: that of the contacts of probes (Reading::kMostContacts each),
-  // by their barycentric coordinates. Of deformable surfaces.
+  // The force on each of these vertices, world frame [N]: from the contacts of probes (Reading::kMostContacts each),
+  // distributed by barycentric coordinates. Only deformable surfaces.
   Status vertex_forces(const std::string& object, std::vector<vec3>& out);
-  // What a renderer of one's own draws: geometry once, the stream (nx, ny, nz, h) every frame, to_world every frame.
-  // position = P0 + h N0, normal = N0 + (nx, ny, nz), object frame (P1). Of deformable surfaces; of a soft or rigid
-  // body only the rest shape, whose `stream_vertex` counts the body's own vertices (Session::vertices).
+  // For a custom renderer: geometry once; the stream (nx, ny, nz, h) and to_world every frame. position = P0 + h N0,
+  // normal = N0 + (nx, ny, nz), object frame (P1). For deformable surfaces. For a soft or rigid body it is only the
+  // rest shape, and `stream_vertex` indexes the body's own vertices (Session::vertices).
   Result<Geometry> geometry(const std::string& object) const;
   Status stream(const std::string& object, std::vector<vec4>& out);
   Result<mat4> to_world(const std::string& object);
 
-  // --- Forces of the program's own, constant until they change; zero takes them away. From the next tick, or of bodies
-  // the next soft step, on, in lockstep and in real time; recordings hold them. They hold beyond restart().
-  // On the hand that holds a probe or tool, beside what it touches: [N], [N m] world, a torque on tools alone. It goes
-  // through the same safety: clipped, slewed, withheld where the hand would get more energy than it gave. While the
-  // gate is closed it is nothing; behind it, it comes in over half a second.
+  // --- External forces, constant until changed; zero removes them. They apply from the next tick on (bodies: the next
+  // soft step), in lockstep and in real time. They are recorded, and kept by restart().
+  // On the hand that holds a probe or tool, in addition to its contact force: [N], [N m] world; torques only for tools.
+  // The same safety applies: clipped, slew-limited, withheld on a passivity violation. It is zero while the gate is
+  // closed, and fades in over half a second after it opens.
   Status set_hand_force(const std::string& effector, dvec3 force, dvec3 torque = dvec3(0));
-  // On a soft or rigid body that moves and no hand holds: at its centre of mass [N], and a torque [N m], world; a soft
-  // body's nodes take them by their mass. At a vertex of its own (Session::vertices), that goes with it: [N] world.
+  // On a moving soft or rigid body without a handle: a force [N] at its centre of mass and a torque [N m], world;
+  // distributed by mass over a soft body's nodes. Or a force [N], world, on one vertex (Session::vertices), which moves
+  // with it.
   Status set_body_force(const std::string& body, dvec3 force, dvec3 torque = dvec3(0));
   Status set_point_force(const std::string& body, std::uint32_t vertex, dvec3 force);
-  // The same as impulses, once, in the next soft step: [N s], [N m s].
+  // The same as impulses, applied once in the next soft step: [N s], [N m s].
   Status push(const std::string& body, dvec3 impulse, dvec3 angular_impulse = dvec3(0));
   Status push_at(const std::string& body, std::uint32_t vertex, dvec3 impulse);
 
-  // --- Objects, between ticks, in lockstep and in real time; recordings hold what is done. Not of tools, which a hand
-  // holds.
-  // To another place of its frame, at rest: a rigid body; a soft one, undeformed; a surface that no bodies may press
-  // and no motion carries, whose contacts end. [m] world. restart() puts it back to where the scene has it.
+  // --- Objects, changed between ticks, in lockstep and in real time; changes are recorded. Not for tools.
+  // Moves the object's frame, at rest: a rigid body; a soft one, undeformed; a surface without motion that bodies
+  // cannot press, whose contacts end. [m] world. restart() restores its pose in the scene.
   Status place(const std::string& object, dvec3 position, dquat rotation = {1, 0, 0, 0});
-  // Out of the world: nothing meets it, what pressed it lets go, and it stands still where it is (it is drawn on). Back
-  // into it: at rest, where it was, whatever has come there. Everything else goes on as it is. Beyond restart().
+  // Takes the object out of the simulation: its contacts end, and it stays where it is (and is still drawn). Putting it
+  // back: at rest, at the same place, whatever is there now. Other objects are unaffected. Kept by restart().
   Status take_out(const std::string& object);
   Status put_back(const std::string& object);
   Result<bool> is_out(const std::string& object) const;
-  // The objects of another scene, no probes or tools, named otherwise than those that are there. In lockstep:
-  // everything there goes on where it is, as after restore_state(), whose time it takes and whose limits it has. For
-  // real time, open a session with them and take them out before start(). To be rid of one, take it out.
+  // Adds the objects of another scene (no probes or tools), with names not yet in use. In lockstep: the run continues
+  // as after restore_state(), with the same duration and limits. For real time, open a session with the objects and
+  // take them out before start(). To remove one, take it out.
   Status add(const Scene& more);
 
-  // --- States, of lockstep runs: to go back to, in this session or in another one of the same scene.
-  // A state is what the session was given since its time 0 - poses, forces, pushes, parameters - up to the next tick;
-  // some 70 bytes a tick for each probe that moves. Not of a run in real time, nor of a replay.
+  // --- States of lockstep runs, to return to in this session or another one of the same scene.
+  // A state contains all inputs since time 0 (poses, forces, pushes, parameters) up to the next tick: some 70 bytes per
+  // tick for each moving probe. Not for real-time runs or replays.
   Result<std::vector<std::uint8_t>> save_state() const;
-  // From here on every tick has the bits that it would have had there, given the same poses. What was given is run
-  // again in a new world, without a word to any driver: it takes as long as those ticks take to run, and restart()
-  // beside. A pose that was set and a path that is followed go on; a device of a driver comes back through its gate, as
-  // after any jump. Not while something is recorded. Bytes are checked; they may come from anywhere. Where it fails
-  // before it began, nothing has changed.
+  // Restores a state: given the same poses, all further ticks are bitwise identical. The inputs are run again in a new
+  // world without calling any driver, which takes the time of those ticks plus that of restart(). Set poses and
+  // followed paths continue; a driver's device returns through its gate, as after any jump. Not while recording. The
+  // bytes may be untrusted: they are checked. If it fails before it has started, nothing has changed.
   Status restore_state(const std::vector<std::uint8_t>& state);
 
-  // --- Geometry, as the program or the file has given it, of every kind of object; in real time of the newest state
-  // that the clocks have shown. Answers come from a tree that follows the vertices; they are those of trying every
-  // triangle of triangles() at vertices().
-  // Three vertices of vertices() a triangle, in the order of the object's own triangles, counter-clockwise seen from
-  // outside: one that is given the other way round is turned.
+  // --- Geometry as given by the program or file, of every kind of object; in real time, of the newest published state.
+  // Queries use a tree that follows the vertices; results equal a test of every triangle of triangles() at vertices().
+  // Three indices into vertices() per triangle, in the object's order, counter-clockwise from outside: triangles with
+  // wrong winding are turned.
   Status triangles(const std::string& object, std::vector<std::uint32_t>& out) const;
-  // The nearest point to `point`; nothing is found beyond `within`.
+  // The nearest point to `point`, at most `within` away.
   Result<QueryHit> closest_point(dvec3 point, const QueryOptions& options = {});
-  // The first point that a ray meets, from either side. `direction` [1] need not be of unit length.
+  // The first intersection of a ray, from either side. `direction` [1] need not be normalised.
   Result<QueryHit> ray(dvec3 from, dvec3 direction, const QueryOptions& options = {});
-  // Of all vertices that a triangle uses. `within` is not asked.
+  // Of all vertices used by a triangle. Ignores `within`.
   Result<Bounds> bounds(const QueryOptions& options = {});
 
-  // --- Every tick's readings, in lockstep and in real time. The last `ticks` of each probe and tool wait to be taken
-  // from the next tick on; what finds no room is lost. 0: none. Not while the clocks run. It holds beyond restart().
+  // --- The readings of every tick, in lockstep and in real time
+  // Buffers the last `ticks` readings of each probe and tool from the next tick on; older ones are lost. 0: none. Not
+  // while the clocks run. Kept by restart().
   Status keep_readings(std::size_t ticks);
-  // Those that wait, oldest first; says how many were lost since the last call.
+  // Takes the buffered readings, oldest first; returns how many were lost since the last call.
   Result<std::uint64_t> take_readings(const std::string& effector, std::vector<Reading>& out);
 
   struct Parts;  // engine/session/session_parts.h; not part of the public interface

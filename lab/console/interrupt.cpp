@@ -22,16 +22,27 @@ constexpr int kRemoveAttempts = 5;  // a thread may still write into a folder th
 
 // Process-global, because a signal handler takes no state argument.
 std::atomic<bool> g_requested{false};
-std::atomic<bool> g_pressed{false};  // SIGINT arrived since the watcher last checked
-sem_t g_arrived;                     // wakes the watcher
+std::atomic<bool> g_pressed{false};    // SIGINT came since the watcher looked
+std::atomic<bool> g_signalled{false};  // any of them came
+sem_t g_arrived;                       // wakes the watcher
+// Of presses after the run.
+std::atomic<int> g_late{0};
+std::atomic<std::uint64_t> g_late_at{0};  // [ns]
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 void on_signal(int signal) {
   const int kept = errno;
-  g_requested = true;
+  g_requested = g_signalled = true;
   if (signal == SIGINT) g_pressed = true;
   sem_post(&g_arrived);
   errno = kept;
+}
+
+// The run has ended as it was asked to, and so will the process: a signal more does not change how. Where it hangs, as
+// many presses as ever end it.
+void on_late_signal(int signal) {
+  const std::uint64_t now = now_ns(), before = g_late_at.exchange(now);
+  if (signal == SIGINT && now - before > kOnePress && ++g_late == kForcedPress) ::_exit(128 + SIGINT);
 }
 
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
@@ -77,7 +88,7 @@ struct Interrupt::State {
 
 Interrupt::Interrupt(InterruptWords words) : state_(std::make_unique<State>()) {
   state_->words = words;
-  g_requested = g_pressed = false;
+  g_requested = g_pressed = g_signalled = false;
   sem_init(&g_arrived, 0, 0);
   state_->watcher = std::thread([state = state_.get()] { state->watch(); });
   struct sigaction action = {};
@@ -91,7 +102,17 @@ Interrupt::Interrupt(InterruptWords words) : state_(std::make_unique<State>()) {
 }
 
 Interrupt::~Interrupt() {
-  for (std::size_t i = 0; i < std::size(kSignals); ++i) sigaction(kSignals[i], &state_->before[i], nullptr);
+  struct sigaction late = {};
+  late.sa_handler = on_late_signal;
+  late.sa_flags = SA_RESTART;
+  const bool signalled = g_signalled;
+  g_late = 0;
+  for (std::size_t i = 0; i < std::size(kSignals); ++i) {
+    struct sigaction now = {};
+    sigaction(kSignals[i], nullptr, &now);
+    const bool ours = now.sa_handler == on_signal;
+    if (ours) sigaction(kSignals[i], signalled ? &late : &state_->before[i], nullptr);
+  }
   state_->over = true;
   sem_post(&g_arrived);
   state_->watcher.join();

@@ -41,10 +41,10 @@ class EachPlace {
  public:
   EachPlace(const PressBodies& bodies, const Interrupt& interrupt, Progress& progress)
       : bodies_(bodies), interrupt_(interrupt), progress_(progress) {}
-  // Calls work(i, body) with the body to press at place i. Fails if a body cannot be made, or on interruption. `share`
-  // [1]: of the total work.
-  Status operator()(const std::vector<PressPlace>& places, double finer, double share,
-                    const std::function<void(std::size_t, TissuePress&)>& work) {
+  // work(i, body): the body to press at place i. Errors: of a body or of work; interrupted. `share`: of all that there
+  // is to do.
+  Status operator()(const std::vector<PressPlace>& places, PressKind kind, double finer, double share,
+                    const std::function<Status(std::size_t, TissuePress&)>& work) {
     std::mutex mutex;
     std::optional<Error> error;
     std::size_t done = 0;
@@ -54,10 +54,10 @@ class EachPlace {
           const std::lock_guard lock(mutex);
           if (error || interrupt_.requested()) return;
         }
-        auto body = bodies_.at(places[i], finer);
-        if (body) work(i, **body);
+        auto body = bodies_.at(places[i], kind, finer);
+        const Status worked = body ? work(i, **body) : Status(body.error());
         const std::lock_guard lock(mutex);
-        if (!body && !error) error = body.error();
+        if (!worked && !error) error = worked.error();
         progress_.update(so_far_ + share * static_cast<double>(++done) / static_cast<double>(places.size()));
       }
     });
@@ -155,10 +155,14 @@ Result<StiffnessMap> map_stiffness(const PressBodies& bodies, EachPlace& each_pl
   }
   std::vector<double> stiffness(places.size());
   std::vector<std::size_t> tets(places.size());
-  const Status pressed = each_place(places, 1.0, 0.4, [&](std::size_t i, TissuePress& body) {
-    stiffness[i] = body.punch(mesh, places[i], bodies.radius()).stiffness();
-    tets[i] = body.tets().tets.size();
-  });
+  const Status pressed =
+      each_place(places, PressKind::kSmall, 1.0, 0.4, [&](std::size_t i, TissuePress& body) -> Status {
+        const auto punch = body.punch(mesh, places[i], bodies.radius());
+        if (!punch) return punch.error();
+        stiffness[i] = punch->stiffness();
+        tets[i] = body.tets().tets.size();
+        return Done{};
+      });
   if (!pressed) return pressed.error();
   StiffnessMap out;
   std::vector<PressPlace> at;
@@ -181,12 +185,14 @@ Status press_all(const PressBodies& bodies, EachPlace& each_place, double depth,
   std::vector<PressPlace> at;
   for (const PressedPlace& each : places) at.push_back(each.place);
   const double radius = bodies.radius();
-  return each_place(at, 1.0, share, [&](std::size_t i, TissuePress& body) {
+  return each_place(at, PressKind::kDeep, 1.0, share, [&](std::size_t i, TissuePress& body) -> Status {
     PressedPlace& each = places[i];
-    const TissuePress::Punch punch = body.punch(mesh, each.place, radius);
-    each.stiffness = punch.stiffness();
+    const auto punch = body.punch(mesh, each.place, radius);
+    if (!punch) return punch.error();
+    each.stiffness = punch->stiffness();
     each.seen = samples_around(mesh, each.place, kAroundPress * radius, kSeenApart * radius);
-    each.presses = body.press_to(punch, each.seen, depth, kDepths);
+    each.presses = body.press_to(*punch, each.seen, depth, kDepths);
+    return Done{};
   });
 }
 
@@ -199,10 +205,14 @@ Status extrapolate(const PressBodies& bodies, EachPlace& each_place, const std::
        i += std::max<std::size_t>(1, places.size() / kRefined))
     if (!places[i].presses.empty()) at.push_back(places[i].place), coarse.push_back(places[i].stiffness);
   std::vector<double> share(at.size());
-  const Status pressed = each_place(at, kFiner, 0.2, [&](std::size_t i, TissuePress& body) {
-    const double fine = body.punch(bodies.surface(), at[i], bodies.radius()).stiffness();
-    share[i] = coarse[i] / (fine - (coarse[i] - fine) * kFiner * kFiner / (1 - kFiner * kFiner));
-  });
+  const Status pressed =
+      each_place(at, PressKind::kSmall, kFiner, 0.2, [&](std::size_t i, TissuePress& body) -> Status {
+        const auto punch = body.punch(bodies.surface(), at[i], bodies.radius());
+        if (!punch) return punch.error();
+        const double fine = punch->stiffness();
+        share[i] = coarse[i] / (fine - (coarse[i] - fine) * kFiner * kFiner / (1 - kFiner * kFiner));
+        return Done{};
+      });
   if (!pressed || at.empty()) return pressed;
   out.too_stiff = median(share);
   double squares = 0.0;

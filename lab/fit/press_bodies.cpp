@@ -95,7 +95,7 @@ Result<PressBodies> PressBodies::make(const Level& level, std::int32_t number, c
     if (!tets) return tets.error();
     out.cell_ = cell_of(*tets);
     if (options.radius <= 0) out.radius_ = kCells * out.cell_, out.why_ = "two cells";
-    Result<TissuePress> press = TissuePress::make(std::move(*tets), out.material_);
+    Result<TissuePress> press = TissuePress::make(std::move(*tets), out.material_, PressKind::kDeep);
     if (!press) return press.error();
     out.one_ = std::make_shared<TissuePress>(std::move(*press));
   }
@@ -159,7 +159,7 @@ std::vector<std::uint8_t> PressBodies::is_free(const Mesh& mesh, double within) 
   return out;
 }
 
-Result<std::shared_ptr<TissuePress>> PressBodies::at(const PressPlace& place, double share) const {
+Result<std::shared_ptr<TissuePress>> PressBodies::at(const PressPlace& place, PressKind kind, double share) const {
   if (one_) return one_;
   const dvec3 side = std::abs(place.normal.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
   const dvec3 x = normalize(cross(side, place.normal));
@@ -170,7 +170,7 @@ Result<std::shared_ptr<TissuePress>> PressBodies::at(const PressPlace& place, do
                   LatticeFocus{place.position, kFocusRadii * radius_, dmat3(x, cross(place.normal, x), place.normal)});
   if (!filled) return filled.error();
   put_in_order(filled->tets, filled->group);
-  Result<TissuePress> press = TissuePress::make(std::move(filled->tets), material_);
+  Result<TissuePress> press = TissuePress::make(std::move(filled->tets), material_, kind);
   if (!press) return press.error();
   return std::make_shared<TissuePress>(std::move(*press));
 }

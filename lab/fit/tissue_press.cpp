@@ -8,6 +8,7 @@
 #include <deque>
 
 #include "content/tets/tet_embed.h"
+#include "runtime/assert.h"
 
 namespace pliant {
 namespace {
@@ -18,7 +19,8 @@ constexpr double kRestTolerance = 1e-4;    // [1] residual at equilibrium, relat
 constexpr std::size_t kMemory = 6;         // iterates in Anderson's acceleration
 constexpr double kFinest = 6.0;            // samples per indenter radius
 constexpr std::size_t kMoments = 6;        // 1, x, y, x^2, xy, y^2
-constexpr double kFlattestTissue = 1e-6;   // [1] smallest eigenvalue, relative to the largest
+constexpr double kFlattestTissue = 1e-6;   // [1] of the largest eigenvalue
+constexpr double kSmallTolerance = 1e-6;   // [1] of the solution: a small press' stiffness is right to its square
 
 std::vector<Embedding> embedding_of(const std::vector<SurfaceSample>& samples, const TetMesh& tets) {
   std::vector<dvec3> points, normals;
@@ -31,23 +33,42 @@ std::vector<Embedding> embedding_of(const std::vector<SurfaceSample>& samples, c
 
 }  // namespace
 
-Result<TissuePress> TissuePress::make(TetMesh tets, const TissueMaterial& material) {
+Result<TissuePress> TissuePress::make(TetMesh tets, const TissueMaterial& material, PressKind kind) {
   if (tets.free_count == tets.node_count())
     return Error{"mesh `" + tets.name + "`", "is held nowhere, so that a press would push it away; say --pin SIDE"};
   TissuePress out;
   out.tets_ = std::make_unique<const TetMesh>(std::move(tets));
   out.tissue_ = std::make_unique<Tissue>(*out.tets_, material, out.tets_->free_count);
   out.tissue_->assemble(kForever, dvec3(0));
-  out.solver_ = make_solver(SolverKind::kBlockCholesky, out.tissue_->inner().size);
-  out.solver_->analyse(out.tissue_->inner());
-  out.solver_->place(out.tissue_->position());
-  if (!out.solver_->factorise(out.tissue_->inner()))
-    return Error{"mesh `" + out.tets_->name + "`",
-                 "has tetrahedra whose stiffness cannot be solved for; try another --cell"};
+  if (!(kind == PressKind::kSmall ? out.take_iterative() : out.take_factor())) return out.unsolved();
   return out;
 }
 
-TissuePress::Punch TissuePress::punch(const Mesh& surface, const PressPlace& place, double radius) const {
+Error TissuePress::unsolved() const {
+  return {"mesh `" + tets_->name + "`", "has tetrahedra whose stiffness cannot be solved for; try another --cell"};
+}
+
+bool TissuePress::factorise() {
+  solver_->analyse(tissue_->inner());
+  solver_->place(tissue_->position());
+  return solver_->factorise(tissue_->inner());
+}
+
+bool TissuePress::take_iterative() {
+  auto solver = std::make_unique<ConjugateGradient>();
+  solver->tolerance = kSmallTolerance;
+  iterative_ = solver.get();
+  solver_ = std::move(solver);
+  return factorise();
+}
+
+bool TissuePress::take_factor() {
+  iterative_ = nullptr;
+  solver_ = make_solver(SolverKind::kBlockCholesky, tissue_->inner().size);
+  return factorise();
+}
+
+Result<TissuePress::Punch> TissuePress::punch(const Mesh& surface, const PressPlace& place, double radius) {
   const dvec3 side = std::abs(place.normal.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
   const dvec3 ex = normalize(cross(side, place.normal)), ey = cross(place.normal, ex);
   const std::uint32_t moving = tissue_->moving();
@@ -69,11 +90,28 @@ TissuePress::Punch TissuePress::punch(const Mesh& surface, const PressPlace& pla
               held[i].weight[k] * carried * basis[m] * place.normal[axis];
     }
   }
-  Rows columns = out.loads * (kForever * kForever);  // the matrix is T^2 K
+  const double scale = kForever * kForever;  // the matrix is T^2 K
+  Rows columns = out.loads * scale;
   solver_->solve_many(columns);
+  if (iterative_ && !iterative_->converged()) {
+    if (!take_factor()) return unsolved();
+    columns = out.loads * scale;
+    solver_->solve_many(columns);
+  }
   out.yields = columns;
-  const Eigen::MatrixXd gram = out.loads.transpose() * out.yields;
-  // A patch of few elements cannot distinguish all moments: singular directions are left out.
+  Eigen::MatrixXd gram = out.loads.transpose() * out.yields;
+  if (iterative_) {
+    // X^T W + W^T X - X^T K X: its error is the square of X's.
+    Eigen::MatrixXd product(out.yields.rows(), out.yields.cols());
+    Vector x, y;
+    for (Eigen::Index m = 0; m < product.cols(); ++m) {
+      x = out.yields.col(m);
+      tissue_->inner().multiply(x, y);
+      product.col(m) = y / scale;
+    }
+    gram = (gram + gram.transpose() - out.yields.transpose() * product).eval();
+  }
+  // A patch of few elements does not tell all moments apart: those it cannot are left out.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (gram + gram.transpose()));
   const Vector& values = eigen.eigenvalues();
   Vector over = Vector::Zero(values.size());
@@ -90,7 +128,7 @@ double TissuePress::settle(const Punch& punch, double depth, Vector& u) {
     ++iterations_;
     for (std::uint32_t i = 0; i < tissue_->moving(); ++i)
       tissue_->position()[i] = tets_->nodes[i] + dvec3(u[3 * i], u[3 * i + 1], u[3 * i + 2]);
-    tissue_->assemble(kForever, dvec3(0));
+    tissue_->find_forces();
     rest = tissue_->elastic_force().head(u.size());
     solver_->solve(kForever * kForever * rest, step);
     const Vector pressure = punch.inverse * (depth * punch.whole - punch.loads.transpose() * (u + step));
@@ -122,6 +160,7 @@ double TissuePress::settle(const Punch& punch, double depth, Vector& u) {
 
 std::vector<PressedTissue> TissuePress::press_to(const Punch& it, const std::vector<SurfaceSample>& seen, double depth,
                                                  int steps) {
+  ASSERT(!iterative_);
   const std::vector<Embedding> held = embedding_of(seen, *tets_);
   std::vector<PressedTissue> out;
   const Vector one = it.yields * (it.inverse * it.whole);  // displacement of a small press over its depth

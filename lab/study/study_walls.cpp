@@ -43,7 +43,7 @@ class GuardOnWall {
   double operator()(double position, double wanted, double time) {
     now_ = begin_ + time;
     const double sent = step(position, wanted);
-    const bool less = std::abs(wanted) > kGateForce && std::abs(sent) < kFadedShare * std::abs(share() * wanted);
+    const bool less = std::abs(wanted) > kEngageForce && std::abs(sent) < kFadedShare * std::abs(share() * wanted);
     less_ = less ? less_ + T_ : 0.0;
     *faded_ = *faded_ || less_ > kFadedFor;
     return sent;

@@ -34,6 +34,7 @@ constexpr std::pair<const char*, const char*> kRefused[] = {
     {"--frames", "takes pictures, and a sweep's runs take none; leave it out"},
     {"--fps", "takes pictures, and a sweep's runs take none; leave it out"},
     {"--size", "is of pictures, and a sweep's runs take none; leave it out"},
+    {"--soft-store", "is the sweep's own; leave it out"},
     {"--field", "is of pictures, and a sweep's runs take none: forces come from the CPU; leave it out"}};
 
 std::string argument(const std::string& name, const PlanJson& value) {

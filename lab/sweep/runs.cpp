@@ -143,6 +143,10 @@ Result<RunsDone> do_runs(const SweepPlan& plan, const ExpandedPlan& expanded, co
   auto work = WorkFolder::create(folder, shard);
   if (!work) return work.error();
   interrupt.remove_if_forced(work->path());
+  const fs::path bodies = work->path() / "bodies";
+  std::error_code error;
+  fs::create_directory(bodies, error);
+  if (error) return Error{folder.string(), "cannot be written to: " + error.message()};
   Progress progress(fmt::format("{} runs", wanted.size()));
   std::vector<Slot> slots;
   std::size_t next = 0;
@@ -150,11 +154,11 @@ Result<RunsDone> do_runs(const SweepPlan& plan, const ExpandedPlan& expanded, co
     while (next < wanted.size() && slots.size() < jobs) {
       const std::size_t run = wanted[next];
       const fs::path place = work->path() / std::to_string(run);
-      std::error_code error;
       fs::create_directory(place, error);
       if (error) return Error{folder.string(), "cannot be written to: " + error.message()};
-      auto child = Child::start(command_of(plan, expanded.runs[run], (place / "out").string(), jobs), run_folder(plan),
-                                place, plan.timeout);
+      std::vector<std::string> command = command_of(plan, expanded.runs[run], (place / "out").string(), jobs);
+      command.push_back("--soft-store=" + bodies.string());
+      auto child = Child::start(command, run_folder(plan), place, plan.timeout);
       if (!child) return child.error();
       slots.push_back({run, std::move(child).value()});
       ++next;

@@ -13,6 +13,7 @@
 #include "player/level/window_run.h"
 #include "player/run/duration.h"
 #include "player/run/run_findings.h"
+#include "pliant/drivers.h"
 #include "pliant/process.h"
 #include "systems/device/hands.h"
 #include "systems/hash_state.h"
@@ -82,6 +83,7 @@ Outcome LevelRun::plan_ticks() {
 // Devices need real time. A simulated device, or one sampled by the clock, may run in lockstep.
 Outcome LevelRun::open_devices() {
   if (run_.replay) return {};
+  register_all_drivers();
   std::vector<std::string> notes;
   const Status opened = devices_.open(
       world_, run_.hands, shown_, [this] { return interrupt_.requested(); }, notes);

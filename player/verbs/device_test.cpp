@@ -50,14 +50,19 @@ class HeldDevice {
     const DeviceCapabilities can = driver_->capabilities();
     if (const std::string wrong = beyond_belief(can); !wrong.empty())
       return Error{"device `" + chosen->id + "`", wrong};
-    if (can.simulated || !renders(can)) claim_.release();
-    if (wants_servo(driver_->capabilities())) {
+    if (can.simulated || !renders(can))
+      claim_.release();
+    else if (Status s = claim_.take_opened(chosen->id, *driver_); !s)
+      return s;
+    if (wants_servo(can)) {
       auto served = std::make_unique<Servo>(std::move(driver_));
       servo_ = served.get();
       driver_ = std::move(served);
       servo_->adopt();
       if (Status s = servo_->start(); !s) return s;
       if (!servo_->note().empty()) note(servo_->note());
+    } else if (const std::string sentence = watch_.start(*driver_, can); !sentence.empty()) {
+      note(sentence);
     }
     return Done{};
   }
@@ -79,6 +84,7 @@ class HeldDevice {
   DeviceClaim claim_;
   std::unique_ptr<Driver> driver_;
   Servo* servo_ = nullptr;
+  LineWatch watch_;  // without a servo
 };
 
 // x to the right, y up; z in a separate bar.

@@ -2,6 +2,7 @@
 #include <optional>
 #include <utility>
 
+#include "content/level/soft_store.h"
 #include "player/level/level_run.h"
 #include "player/level/window_run.h"
 #include "player/verbs/verbs.h"
@@ -36,6 +37,7 @@ Outcome run_level(Prepared& run, Shown* shown, const Interrupt& interrupt, std::
 
 int run(const RunOptions& options) {
   set_thread_count(options.threads);
+  set_soft_store(options.soft_store);
   if (Outcome wrong = check(options)) return fail(wrong->status, wrong->error);
   std::optional<Shown> shown;
   if (Outcome wrong = open_window(options, shown)) return fail(wrong->status, wrong->error);

@@ -28,17 +28,26 @@ dvec3 rendered(dvec3 wanted, bool renders) {
   return renders ? wanted : dvec3(0);
 }
 
-// A tool's wrench passes the same safety layer: torque is treated like force, with work counted over rotation angles.
-// If force or torque is unknown, both are; both are released and engaged together. They share one energy account: a
-// push at a fingertip is a force and a torque about the wrist, whose work is only meaningful together.
+// [s] In which a tool's force comes back after a stall: soft matter that was left behind catches up, and a longer way
+// takes it longer.
+double ease_of_tool(double skipped) {
+  constexpr double kShare = 0.6, kLongest = 0.3;  // [1] of the stall, [s]
+  return std::clamp(kShare * skipped, kToolEase, kLongest);
+}
+
+// A tool's wrench, by the same layer: its torque as if it were a force, work counted over the angles turned. What is
+// unknown of the one is unknown of the other, so that both are let go and engaged together. They share one account of
+// energy: a push at a fingertip is a force and a torque about the wrist, which give and take only together.
 void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   HapticDevice& device = world.registry.get<HapticDevice>(tool.device);
   const Handle6& handle = world.registry.get<Handle6>(tool.entity);
   const bool posed = tool.sensing || device.status != DeviceStatus::kReady;  // ready without a pose: unknown pose
   const bool known = posed && tool.device_wrench.allFinite();
   const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
-  soften(world, tool.entity, device, tool.force_safety);
   SafetyLimits limits = force_limits(device), turning = torque_limits(device, handle);
+  limits.touched = soften(world, tool.entity, device, tool.force_safety);
+  turning.touched = tool.force_safety.share * handle.rotation[0];
+  limits.ease = turning.ease = ease_of_tool(tick.skipped);
   limits.weight = tool.force_safety.share * tool.weight;
   turning.weight = cross(tool.sensed.pose.rotation * tool.balance, limits.weight);
   limits.jumped = turning.jumped = jumps(tool.force_safety, device, limits, device.position, tick.dt) ||
@@ -109,10 +118,11 @@ void write_devices(World& world, Tick tick) {
   for (ProbeState& state : world.touch->probes) {
     const Probe& probe = world.registry.get<Probe>(state.entity);
     HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
-    soften(world, state.entity, device, state.safety);
     SafetyLimits limits = force_limits(device);
+    limits.touched = soften(world, state.entity, device, state.safety);
     limits.carried = surface_displacement(world, state.entity, tick.elapsed());
     const ToolTouchState* const among_bodies = find_tool(world, state.entity);
+    if (among_bodies) limits.ease = ease_of_tool(tick.skipped);
     const dvec3 pressed = with_own(
         state.safety, limits,
         state.safety.share * (probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0))), tick.dt);

@@ -26,6 +26,7 @@ void read_mouse(World& world, Tick tick) {
     mouse.lasts = mouse.heard ? std::clamp(tick.time - mouse.heard_at, tick.dt, kMouseSlowestFrame) : tick.dt;
     mouse.heard = true;
     mouse.heard_at = tick.time;
+    mouse.began_at = tick.time - tick.skipped;
     take_over(world, mouse.samples.read().takes, mouse);
     const bool free_now = mouse.samples.read().free, arrived = mouse.position == mouse.to;
     mouse.to = mouse.samples.read().position;
@@ -38,7 +39,7 @@ void read_mouse(World& world, Tick tick) {
     mouse.lasts = std::max(mouse.lasts, length(mouse.to - mouse.from) / kMouseFastest);
   }
   if (!mouse.heard || tick.time - mouse.heard_at > kMouseSilence) return;
-  const double share = std::min(1.0, (tick.time - mouse.heard_at + tick.dt) / mouse.lasts);
+  const double share = std::min(1.0, (tick.time - mouse.began_at + tick.dt) / mouse.lasts);
   mouse.position = share < 1.0 ? mouse.from + share * (mouse.to - mouse.from) : mouse.to;
   for (auto [entity, device] : world.registry.view<HapticDevice>()) {
     if (device.driver != DriverKind::kMouse) continue;

@@ -22,8 +22,9 @@ struct MouseSample {
   ProbeHold hold;            // of a probe
 };
 
-// One mouse. While it presses, its probe moves in a straight line from pose to pose, each in the time since the
-// previous pose. It is at most one frame late, unless that exceeds kMouseFastest.
+// One mouse. While it presses, its probe runs straight from pose to pose, each in the time since the pose before: at
+// most a frame late, where that is no faster than kMouseFastest. Ticks that are skipped are no reason to wait: the way
+// began before them.
 struct MouseInput {
   explicit MouseInput(dvec3 start) : from(start), position(start), to(start) {}
 
@@ -31,8 +32,9 @@ struct MouseInput {
   // Owned by the touch clock.
   bool heard = false;
   bool free = true;          // the newest pose hovers
-  double heard_at = 0.0;     // [s] arrival of the newest pose
-  double lasts = 1e-3;       // [s] duration of the motion to it
+  double heard_at = 0.0;     // [s] when the newest pose came
+  double began_at = 0.0;     // [s] when the way to it began
+  double lasts = 1e-3;       // [s] how long that takes
   dvec3 from, position, to;  // [m] world
 };
 

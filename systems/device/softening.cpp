@@ -31,14 +31,14 @@ double felt_stiffness(const World& world, Entity effector) {
   return stiffness + at_least_largest(sum);
 }
 
-void soften(const World& world, Entity effector, const HapticDevice& device, SafetyState& state) {
-  const double most = device.can.max_stiffness;
-  const double felt = most > 0.0 ? felt_stiffness(world, effector) * device.workspace : 0.0;
-  if (!(felt > 0.0))
+double soften(const World& world, Entity effector, const HapticDevice& device, SafetyState& state) {
+  const double most = device.can.max_stiffness, felt = felt_stiffness(world, effector) * device.workspace;
+  if (!(felt > 0.0) || !(most > 0.0))
     state.share = 1.0;
   else if (felt * state.share > most)
     state.share = most / felt;
   state.least_share = std::min(state.least_share, state.share);
+  return felt * state.share;
 }
 
 SafetyState* safety_of(World& world, Entity hand) {

@@ -16,8 +16,9 @@ namespace pliant {
 // contacts along their normals; bristles are left out, since friction bounds their force. Tool: its coupling.
 double felt_stiffness(const World& world, Entity effector);
 
-// Writes state.share for this tick. Called before the force enters the safety layer.
-void soften(const World& world, Entity effector, const HapticDevice& device, SafetyState& state);
+// Writes state.share for this tick. Before the force goes into the safety layer. [N/m] of the hand's metres: how
+// steeply the share grows, at most (SafetyLimits::touched).
+double soften(const World& world, Entity effector, const HapticDevice& device, SafetyState& state);
 
 // SafetyState of the force of a prepared probe or tool; null for others.
 SafetyState* safety_of(World& world, Entity hand);

@@ -32,20 +32,35 @@ double stoppable(double budget, double step, double fall) {
   return std::max(std::min(mean, fall), over_ticks);
 }
 
-// Passivity controller: reduces the component of the force along the motion where the hand would get more energy than
-// it gave. It opposes the motion only to dissipate excess energy, in proportion to the speed of a slow hand. It never
-// exceeds the wanted force: in free space there is no drag. Components across the motion are unchanged.
-dvec3 damp_excess(const SafetyState& state, const SafetyLimits& limits, dvec3 wanted, dvec3 weight, dvec3 dx,
-                  double dt) {
+// [N] What of `wanted`, beside the weight, is kept back: outwards it is at most the force of a spring that holds
+// `budget`. Inwards, or at rest, it comes back as the spring is pressed; nothing is kept back of a force that has never
+// been too large.
+double kept_back(const SafetyState& state, const SafetyLimits& limits, dvec3 wanted, dvec3 dx, double budget) {
+  const double size = length(wanted), way = length(dx);
+  if (!(size > 0.0)) return 0.0;
+  const double spring = limits.touched > 0.0 ? kSpentSpring * limits.touched : limits.spring;
+  const double left = std::sqrt(2.0 * spring * std::max(0.0, budget)), out = way > 0.0 ? dot(wanted, dx) / way : 0.0;
+  if (out > 0.0) return std::max(0.0, out - left);
+  const double back = std::max(left, length(state.force - state.weight) + spring * way);
+  return std::min(state.kept_back, std::max(0.0, size - back));
+}
+
+// Reduces the component of the force along the motion where the hand would get more energy than it gave. Beyond zero
+// only to take out what was given too much, in proportion to the speed of a slow hand, and never by more than the
+// wanted force: in free space nothing drags. Components across the motion stay.
+dvec3 damp_excess(SafetyState& state, const SafetyLimits& limits, dvec3 wanted, dvec3 weight, dvec3 dx, double dt) {
   const double way = length(dx);
+  const dvec3 last = state.force - state.weight, change = wanted - weight - state.wanted;
+  const double given = state.work + dot(last + 0.5 * change, dx);
+  // The trapezoid of a spring that the hand leaves in the middle of a step is off by up to |df| step / 8, and by as
+  // much where the hand came in: what sampling does is not taken for the law's.
+  const double sampling = 0.25 * length(change) * way;
+  const double budget = kPassivityShare * state.stored + kPassivityFloor + sampling - given;
+  state.kept_back = kept_back(state, limits, wanted - weight, dx, budget);
+  if (state.kept_back > 0.0) wanted -= (wanted - weight) * std::min(1.0, state.kept_back / length(wanted - weight));
   if (!(way > 0.0)) return wanted;
   const dvec3 along = dx / way;
   const double step = kPassivityReserve * way;
-  const double given = state.work + 0.5 * dot(state.force - state.weight, dx);
-  // The trapezoid of a spring that the hand leaves in the middle of a step has an error of up to |df| step / 8, and the
-  // same on entry. This sampling error is not attributed to the law.
-  const double sampling = 0.25 * length(wanted - weight - state.wanted) * way;
-  const double budget = kPassivityShare * state.stored + kPassivityFloor + sampling - given;
   const double beside = dot(wanted - weight, along), total = dot(wanted, along), size = length(wanted);
   double most = 0.0;
   if (budget > 0) {
@@ -69,13 +84,39 @@ dvec3 let_fall(dvec3 force, dvec3 wanted, double most) {
   return kept < size ? force * (std::max(kept, size - most) / size) : force;
 }
 
-// The smaller of a level's limit and a driver's; 0: none given.
+// `force` as a spring of `stiffness` at most, as long as more is wanted: in and out. One that rose by it and fell as
+// the stiffer law does would push the hand out with more than it gave.
+dvec3 no_stiffer(const SafetyState& state, double stiffness, dvec3 force, dvec3 weight, dvec3 dx) {
+  const dvec3 beside = force - weight;
+  const double size = length(beside), last = length(state.force - state.weight);
+  if (!(size > last * (1 + 1e-9))) return force;
+  const double allowed = std::max(0.0, last - stiffness * dot(dx, beside) / size);
+  return allowed < size ? weight + beside * (allowed / size) : force;
+}
+
+// [N] The limit of the force: one that is raised under a hand comes in over kRaise.
+double limit_now(SafetyState& state, const SafetyLimits& limits, double dt) {
+  const bool rises = state.engaged && state.most > 0.0 && limits.force > state.most;
+  state.most = rises ? std::min(limits.force, state.most + limits.force * dt / kRaise) : limits.force;
+  return state.most;
+}
+
+// [J] What the hand would have given to a spring of the stiffness that is touched from `before` [N] to `most`, where
+// `whole` is wanted. It has gone that way against less; without it a force that is let in would owe the account.
+double given_beyond(const SafetyLimits& limits, double before, double most, double whole) {
+  const double force = std::min(most, whole);
+  if (!(limits.touched > 0.0) || !(force > before)) return 0.0;
+  return (force - before) * (whole - 0.5 * (before + force)) / limits.touched;
+}
+
+// Of a level's limit and a driver's, where 0 is: not said.
 double smaller(double level, double driver) {
   return driver > 0.0 ? std::min(level, driver) : level;
 }
 
-void book(SafetyState& state, dvec3 force, dvec3 weight, dvec3 dx) {
-  state.work += 0.5 * dot(state.force - state.weight + force - weight, dx);
+void book(SafetyState& state, dvec3 force, dvec3 weight, dvec3 dx, dvec3 change) {
+  const dvec3 last = state.force - state.weight;
+  state.work += dot(last, dx) + 0.5 * std::max(dot(change, dx), dot(force - weight - last, dx));
   state.stored = std::max(state.stored, -state.work);
 }
 
@@ -87,14 +128,19 @@ double missed_before(SafetyState& state, double now, double dt) {
   return missed > 0.5 * dt ? missed : 0.0;
 }
 
-// After `missed` [s]: `force` has risen meanwhile; it fades in from the last force sent. The hand's work is counted as
-// if the force had been present, so that the rise creates no energy deficit.
-void ease_in(SafetyState& state, dvec3 force, dvec3 weight, dvec3 dx, double missed) {
+// After `missed` [s]: the law went on, and the way that the hand has gone, `dx`, is counted as if its force had been
+// there, so that it owes nothing for the rise; it is counted here alone. What `force` has risen by, from what the
+// device still has, comes in over `ease` [s].
+void ease_in(SafetyState& state, dvec3 force, dvec3 weight, dvec3& dx, double missed, double ease, double dt) {
+  if (missed < kEasedFrom) return;
+  state.work += 0.5 * dot(state.wanted + force - weight, dx);
+  state.stored = std::max(state.stored, -state.work);
+  dx = dvec3(0);
+  if (missed + dt > kForceHolds) state.force = state.weight = dvec3(0);
   const double size = length(force), has = length(state.force);
-  if (missed < kEasedFrom || !(size > has)) return;
+  if (!(size > has)) return;
   state.eased = has / size;
-  state.easing = (1.0 - state.eased) / kEase;
-  state.work += std::min(0.0, 0.5 * (1.0 - state.eased) * dot(force - weight, dx));
+  state.easing = (1.0 - state.eased) / ease;
 }
 
 // Counts a difference of `missing` [N] from what was wanted, `size` [N].
@@ -135,6 +181,7 @@ SafetyLimits torque_limits(const HapticDevice& device, const HandleParameters& h
   limits.force = device.can.renders_torque ? smaller(handle.max_torque, device.can.max_torque) : 0.0;
   limits.slew = of_torque(device.max_slew);
   limits.fall = of_torque(kLeastFall);
+  limits.spring = kUsualTurnSpring;
   limits.slow = kSlowTurn;
   limits.fastest = kFastestTurn;
   return limits;
@@ -175,26 +222,30 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
     result.event = device.status == DeviceStatus::kReady ? SafetyEvent::kStale : SafetyEvent::kNone;
   } else {
     const bool jumped = limits.jumped || jumps(state, device, limits, position, dt);
-    const dvec3 dx = state.placed && !jumped ? at - state.position - limits.carried / limits.scale : dvec3(0);
+    dvec3 dx = state.placed && !jumped ? at - state.position - limits.carried / limits.scale : dvec3(0);
     if (jumped) {
       result.event = SafetyEvent::kJumped;
       state.engaged = false;
-    } else if (!state.engaged) {
+    }
+    const bool gated = !state.engaged;
+    const double before = gated ? 0.0 : state.most, most_now = limit_now(state, limits, dt);
+    if (gated && !jumped) {
       state.hidden = length(wanted - limits.weight) < length(wanted) ? 1.0 : 0.0;
       state.engaged = length(wanted - state.hidden * limits.weight) < kEngageForce;
     }
     const dvec3 felt = wanted - state.hidden * limits.weight;
     dvec3 force(0), weight(0);
     if (state.engaged) {
-      force = clamp_norm(felt, limits.force);
-      weight = clamp_norm((1.0 - state.hidden) * limits.weight, limits.force);
+      force = clamp_norm(felt, most_now);
+      weight = clamp_norm((1.0 - state.hidden) * limits.weight, most_now);
+      if (gated || most_now > before)
+        state.work -= given_beyond(limits, before, most_now, length(felt - (1.0 - state.hidden) * limits.weight));
       state.hidden = std::max(0.0, state.hidden - dt / kWeightTime);
-      if (length(felt) > limits.force * (1 + 1e-9))
-        state.tally.add(SafetyLimit::kClipped, 1.0 - limits.force / length(felt));
+      if (length(felt) > most_now * (1 + 1e-9)) state.tally.add(SafetyLimit::kClipped, 1.0 - most_now / length(felt));
     } else {
       count(state.tally, SafetyLimit::kGated, length(felt), length(felt));
     }
-    if (missed > 0.0) ease_in(state, force, weight, dx, missed);
+    if (missed > 0.0) ease_in(state, force, weight, dx, missed, limits.ease, dt);
     if (state.eased < 1.0) {
       count(state.tally, SafetyLimit::kSlewed, (1.0 - state.eased) * length(force), length(force));
       force *= state.eased;
@@ -202,23 +253,27 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
       state.eased = std::min(1.0, state.eased + state.easing * dt);
     }
     const dvec3 passive = damp_excess(state, limits, force, weight, dx, dt);
+    const dvec3 change = force - weight - state.wanted;
     state.wanted = force - weight;
     count(state.tally, SafetyLimit::kWithheld, length(force - passive), length(force));
     double most = limits.slew * dt;
+    dvec3 rendered = passive;
     if (limits.stiffness > 0) {
-      // The force may grow with displacement no faster than the device can render stably; it may always fall. The
-      // fade-in of a weight is not a response to displacement.
-      const double rise = limits.stiffness * length(dx) + length(weight - state.weight) + limits.own_rise;
-      if (length(passive) > length(state.force)) most = std::min(most, rise);
+      // What comes in of a weight is no answer to displacement.
+      const double other = length(weight - state.weight) + limits.own_rise;
+      if (length(passive) > length(state.force)) most = std::min(most, limits.stiffness * length(dx) + other);
+      if (state.own == dvec3(0)) rendered = no_stiffer(state, limits.stiffness, passive, weight, dx);
     }
     dvec3 last = state.force;
-    if (limits.fall > limits.slew) {
-      last = let_fall(state.force, passive, limits.fall * dt);
-      most = std::min(most, limits.fall * dt - length(state.force - last));  // the rest is left for the rise
+    if (missed > 0.0) {  // what is let go has had the time
+      last = let_fall(state.force, rendered, std::max(limits.fall, limits.slew) * (missed + dt));
+    } else if (limits.fall > limits.slew) {
+      last = let_fall(state.force, rendered, limits.fall * dt);
+      most = std::min(most, limits.fall * dt - length(state.force - last));  // what comes in has the rest
     }
-    force = last + clamp_norm(passive - last, most);
+    force = last + clamp_norm(rendered - last, most);
     count(state.tally, SafetyLimit::kSlewed, length(passive - force), std::max(length(passive), length(force)));
-    book(state, force, weight, dx);
+    book(state, force, weight, dx, change);
     result.force = force;
     state.position = at;
     state.sensed_at = device.sensed_at;
@@ -231,6 +286,7 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
   state.engaged = false;
   state.placed = false;
   state.eased = 1.0;
+  state.kept_back = 0.0;
   state.force = state.weight = state.wanted = state.own = dvec3(0);
   return result;
 }

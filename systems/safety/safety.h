@@ -3,10 +3,13 @@
 // to the device unchanged, so the work account is that of the hand. Any reduction of the wanted force while the pose is
 // known is counted (SafetyTally), so that a run can report it.
 //
-// Passivity (methods.md 1.9). An observer integrates the work on the hand over the whole history, by trapezoids. The
-// force may return the energy that it received, plus kPassivityShare of the largest stored energy. Any excess is
-// dissipated by damping: only the component along the motion is reduced, and early enough that the slew limit suffices.
-// Rejected: setting the force to zero, since in the middle of a contact that is a jump, felt as a hole.
+// Passivity (methods.md 1.9). An observer adds up the work on the hand over the whole history, trapezoidal. The force
+// may give back what it took, and kPassivityShare of the most that the hand had stored beside. What would go beyond is
+// taken out by damping: only the component along the motion is reduced, and early enough that the slew limit suffices.
+// Setting the force to zero instead lost: in the middle of a contact that is a jump, and the hand feels a hole.
+// Where the account is spent (a surface that stiffens under a hand, a gate that opened in contact) the force is that of
+// a spring, kSpentSpring as stiff as what is touched, which holds what is left of it, and it comes back as that spring
+// is pressed. Damping alone switched it with the sign of the last step for as long as the hand rested there.
 //
 // A tool without weight compensation hangs in the hand: on reconnection of a device, the wanted force is never small.
 // Its weight is known beforehand, so the gate opens on the wanted force without the weight. The weight then fades in
@@ -21,8 +24,10 @@
 // The slew limit applies to rising force. Force that is no longer wanted falls at least at kLeastFall: a low limit must
 // neither hold the hand back nor delay a lowered max_force.
 //
-// After missed ticks the force may rise by one tick's slew only. After kEasedFrom, the force that rose meanwhile fades
-// in over kEase, from the last force sent.
+// A tick that comes late has not had the time of those that it missed: its force may rise by one tick's slew, and after
+// kEasedFrom what rose meanwhile comes in over kEase (of a tool, kToolEase), from what the device still has: the force
+// that left last, and after kForceHolds none. What is let go has had the time: it falls by as much as in the ticks that
+// were missed.
 //
 // A surface with prescribed motion may push a hand, as a motor would: passivity and the stiffness limit apply to the
 // hand's motion relative to that surface. Clamp and slew bound the rest.
@@ -31,35 +36,25 @@
 #include <array>
 #include <cstddef>
 
+#include "components/hand_limits.h"
 #include "components/haptic_device.h"
 
 namespace pliant {
 
 // Tunables of the safety layer. Unit, usual value, and what changing it does.
-inline constexpr double kEngageForce = 0.2;        // [N] the gate opens once the computed force has been below this
-inline constexpr double kWeightTime = 0.5;         // [s] in which a weight fades in, once the gate is open
-inline constexpr double kStaleAfter = 0.010;       // [s] a pose older than this counts as lost
-inline constexpr double kPassivityReserve = 1.05;  // [1] the next step is assumed this much longer than the last
-inline constexpr double kPassivityShare = 1e-3;    // [1] of the largest stored energy: what the hand may get in
-                                                   // addition
-inline constexpr double kPassivityFloor = 1e-12;   // [J] what rounding may add
-inline constexpr double kCountedShare = 0.01;      // [1] of the wanted force: less missing is not counted
-inline constexpr double kCountedForce = 1e-3;      // [N] less missing is not counted
-inline constexpr double kSlowHand = 0.01;          // [m/s] a slower hand is damped in proportion to its speed
-inline constexpr double kSlowTurn = 0.2;           // [rad/s] the same for rotation
-
-inline constexpr double kFastestHand = 20.0;   // [m/s] a faster motion is a jump, not a hand's
-inline constexpr double kFastestTurn = 200.0;  // [rad/s] the same for rotation
+inline constexpr double kWeightTime = 0.5;        // [s] in which a weight fades in, once the gate is open
+inline constexpr double kPassivityFloor = 1e-12;  // [J] what rounding may add
+inline constexpr double kCountedShare = 0.01;     // [1] of the wanted force: less missing is not counted
+inline constexpr double kCountedForce = 1e-3;     // [N] less missing is not counted
 
 inline constexpr double kLeastFall = 1000.0;  // [N/s] least rate at which force that is no longer wanted falls
 
-inline constexpr double kEasedFrom = 0.0105;  // [s] without a tick, after which the force fades in
-inline constexpr double kEase = 0.015;        // [s] over this time
+inline constexpr double kEasedFrom = 0.0105;  // [s] without a tick, then what rose meanwhile comes in slowly,
+inline constexpr double kForceHolds = 0.020;  // [s] that devices and their drivers' threads go on with a force
+inline constexpr double kToolEase = 0.06;     // [s] of a tool: until the soft clock has seen where it went
+inline constexpr double kEase = 0.015;        // [s] in this time
 
-inline constexpr double kFarthest = 1e6;  // [m] a pose farther from the origin is invalid
-
-// [1] Largest deviation of a rotation from unit length: within it, it is normalised; beyond, it is invalid.
-inline constexpr double kUnitWithin = 0.01;
+inline constexpr double kRaise = 0.2;  // [s] in which a limit that is raised comes in
 
 // A valid rotation: finite and of about unit length.
 bool plausible_rotation(dquat rotation);
@@ -105,13 +100,15 @@ struct SafetyState {
   double sensed_at = 0.0;    // [s] of the last tick's pose
   dvec3 position{0};         // [m] last tick's, in the hand's metres
   dvec3 force{0};            // [N] last tick's, as sent
-  dvec3 added{0};            // [N] world: the program's additional force
-  double added_share = 0.0;  // [1] share of it that has faded in, once the gate is open
-  dvec3 own{0};              // [N] its currently wanted part
-  dvec3 wanted{0};           // [N] last tick's without the weight, clamped to the device's limit
-  double work = 0.0;         // [J] done on the hand so far, without the weight: sum of (f0 + f1)/2 . dx
-  double stored = 0.0;       // [J] the maximum of -work so far
-  bool ticked = false;       // `ticked_at` is valid
+  dvec3 added{0};            // [N] world: the program's own, wanted beside what is touched
+  double added_share = 0.0;  // [1] of it that may have come in, once the gate is open
+  dvec3 own{0};              // [N] as much of it as is wanted now
+  dvec3 wanted{0};           // [N] last tick's beside the weight, clamped to the device's limit
+  double most = 0.0;         // [N] last tick's limit; 0: there was none
+  double kept_back = 0.0;    // [N] of it, while the account is spent
+  double work = 0.0;         // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx
+  double stored = 0.0;       // [J] the largest that -work has been
+  bool ticked = false;       // `ticked_at` means something
   double ticked_at = 0.0;    // [s] the last tick
   double eased = 1.0;        // [1] share of the wanted force allowed since missed ticks
   double easing = 0.0;       // [1/s] its rate of growth
@@ -139,7 +136,10 @@ struct SafetyLimits {
   bool jumped = false;            // the device is elsewhere, regardless of `position`
   double fall = kLeastFall;       // [N/s] rate of fall of force that is no longer wanted, if `slew` is lower
   double scale = 1.0;             // [1] world metres per metre of the hand
-  double own_rise = 0.0;          // [N] change of the program's part in this tick: not a response to displacement
+  double own_rise = 0.0;          // [N] change of the program's own part in this tick: no answer to displacement
+  double ease = kEase;            // [s] in which it comes back after a stall
+  double touched = 0.0;           // [N/m] of the hand's metres: how stiff what is felt is at most; 0: not known
+  double spring = kUsualSpring;   // [N/m] of a spent account where `touched` is not known
 };
 
 // `pressed` [N] plus the program's part (SafetyState::added). The gate depends on the contact force only. While it is

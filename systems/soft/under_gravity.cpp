@@ -39,10 +39,17 @@ void begin_body(const SoftBody& body, dvec3 gravity, TetMesh& tets) {
     return say("is not pinned, so it falls whatever `under_gravity` says; pin it");
   if (body.under_gravity == UnderGravity::kModelled) {
     Unloaded unloaded = find_unloaded(tets, body, gravity);
-    if (!unloaded.found) return say(sag_doubt(body, {.held = true}, &unloaded));
-    tets.start = std::move(tets.nodes);
-    tets.nodes = std::move(unloaded.nodes);
-    return;
+    if (unloaded.found) {
+      tets.start = std::move(tets.nodes);
+      tets.nodes = std::move(unloaded.nodes);
+      return;
+    }
+    Equilibrium rest = find_equilibrium(tets, body, gravity);
+    if (rest.converged) tets.start = std::move(rest.nodes);
+    return say(sag_doubt(body, {.held = true}, &unloaded) +
+               (rest.converged
+                    ? fmt::format(" (it begins where it rests, {:.3g} mm from where it is drawn)", 1e3 * rest.most)
+                    : std::string(" (it falls)")));
   }
   Equilibrium rest = find_equilibrium(tets, body, gravity);
   if (rest.converged) tets.start = std::move(rest.nodes);

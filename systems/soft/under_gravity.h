@@ -9,7 +9,8 @@
 namespace pliant {
 
 // Before bodies are made: sets TetMesh::start. If the mesh is modelled under load, its nodes become the unloaded shape.
-// A body for which this fails begins as modelled and falls; TetReport::findings of its tetrahedra report it.
+// A body that cannot keep its shape begins at rest in its sag; one without an equilibrium falls. TetReport::findings
+// of its tetrahedra report both.
 void begin_under_gravity(World& world);
 
 // For inspection of a level before it runs: large sag, rotation, or lack of equilibrium is reported in

@@ -1,4 +1,4 @@
-// Nothing on the tick path of a wrapper or of the simulated device takes memory.
+// The tick path of wrappers and of the simulated device does not allocate.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// One axis of a device in a hand, against closed forms.
+// One axis of a device held by a hand, against closed forms.
 #include "devices/simulated/axis.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(Axis, AmplifierLagsByItsTimeConstant) {
   EXPECT_NEAR(axis.motor(), 3.0 * (1 - std::exp(-1.0)), 1e-12);
 }
 
-// A hand of one mass on the arm's spring, the device riding on a stiff grip: the sum oscillates as one.
+// A hand of one mass on the arm's spring, the device on a stiff grip: both oscillate as one mass.
 TEST(Axis, StepLengthDoesNotChangeWhereTheHandGoes) {
   const AxisParameters parameters{
       .mass = 0.1, .damping = 0.5, .friction = 0.2, .lag = 0.4e-3, .hand = hand_impedances()[3]};
@@ -47,7 +47,7 @@ TEST(Axis, StepLengthDoesNotChangeWhereTheHandGoes) {
   }
 }
 
-// Against a sampled spring as fine as wanted: each half-swing loses 2c/k.
+// Against a finely sampled spring: each half-swing loses 2c/k.
 TEST(Axis, CoulombFrictionTakesTheSameFromEverySwing) {
   const double k = 200.0, c = 0.05, dt = 1e-6;
   Axis axis({.mass = 0.1, .friction = c});
@@ -78,7 +78,7 @@ TEST(Axis, DeviceSticksExactlyUntilFrictionIsOvercome) {
   EXPECT_NEAR(axis.position(), 0.003 - 0.5 * 0.0001 / 0.1, 1e-12);
 }
 
-// Breaking loose in the middle of a step: the amplifier's force passes c at a known instant.
+// Break-away within a step: the amplifier's force passes c at a known time.
 TEST(Axis, BreaksLooseInTheMiddleOfAStep) {
   const double tau = 1e-3, c = 0.5, u = 1.0, m = 0.2;
   Axis axis({.mass = m, .friction = c, .lag = tau});
@@ -90,7 +90,7 @@ TEST(Axis, BreaksLooseInTheMiddleOfAStep) {
   EXPECT_NEAR(axis.position(), x, 1e-10);
 }
 
-// Kelvin and Voigt: from the stop's surface the mass is a damped oscillator, until the stop would have to pull.
+// Kelvin-Voigt: in the end stop the mass is a damped oscillator, until the stop would have to pull.
 TEST(Axis, EndStopThrowsBackAsADampedSpringAndNeverPulls) {
   const double m = 0.1, k = 2e4, reach = 0.05, v0 = 0.8;
   for (const double ratio : {0.0, 0.1, 0.5}) {

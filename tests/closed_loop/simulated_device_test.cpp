@@ -17,7 +17,7 @@ namespace {
 
 TEST(SimulatedDevice, EveryProfileIsListedAndOpensByItsName) {
   register_simulated();
-  register_simulated();  // again, to no harm
+  register_simulated();  // a second call has no effect
   std::size_t found = 0;
   for (const DeviceInfo& info : list_devices()) {
     if (info.driver != "simulated") continue;
@@ -90,7 +90,7 @@ TEST(SimulatedDevice, HandFollowsItsPathInFreeSpaceAndLagsInAWall) {
       ASSERT_TRUE(device.read(sample));
       device.write({dvec3(0, std::max(0.0, -K * sample.position.y), 0), dvec3(0), 0.0});
     }
-    // Springs in series: wall K, grip and arm, within what friction holds.
+    // Springs in series: wall K, grip and arm, within the bound of friction.
     const HandImpedance& hand = device.options().hand;
     const double k = 1.0 / (1.0 / hand.arm_stiffness + 1.0 / hand.grip_stiffness), rest = -0.02 * k / (k + K);
     EXPECT_NEAR(sample.position.y, rest, device.options().profile.friction / (k + K) + 1e-4) << K;
@@ -98,7 +98,7 @@ TEST(SimulatedDevice, HandFollowsItsPathInFreeSpaceAndLagsInAWall) {
   std::filesystem::remove(file);
 }
 
-// No timing is asserted: only that its samples are those of its own clock, whenever it is asked.
+// Asserts no timing, only that samples are those of its own clock, whenever it is read.
 TEST(SimulatedDevice, OnTheWallClockSamplesComeAtItsRateHoweverOftenItIsAsked) {
   SimulatedDevice device;
   ASSERT_TRUE(device.open("omega.7"));

@@ -24,7 +24,8 @@ TEST(Wall, ExactStabilityLimitIsTheKnownOne) {
   }
 }
 
-// Of the linear wall the polynomial is the truth; where roots are within 0.02 % of the unit circle a run is too short.
+// For the linear wall the characteristic polynomial is exact; if roots are within 0.02 % of the unit circle a run is
+// too short.
 TEST(Wall, SimulationAgreesWithTheCharacteristicPolynomialCellByCell) {
   int stable = 0, unstable = 0, left_out = 0;
   for (const double delay : {0.0, 0.4e-3, 1e-3, 2.5e-3, 10e-3}) {
@@ -64,7 +65,7 @@ TEST(Wall, PassivityIsSufficientForStabilityAtEveryDelay) {
   EXPECT_GT(passive_cells, 60);
 }
 
-// Whoever holds it: b > KT/2 + |B| does not know the hand.
+// In any hand: b > KT/2 + |B| does not depend on the hand.
 TEST(Wall, PassiveWallIsStableInEveryHand) {
   for (const HandImpedance& hand : hand_impedances()) {
     WallLoop loop;
@@ -76,7 +77,7 @@ TEST(Wall, PassiveWallIsStableInEveryHand) {
   }
 }
 
-// Energy balance of a sampled wall that holds both ways with neither friction nor counts: it leaks.
+// Energy balance of a bilateral sampled wall without friction or quantisation: it generates energy.
 TEST(Wall, SampledSpringGivesEnergyAndFrictionOfTheDeviceTakesIt) {
   WallLoop loop;
   loop.plant = {.mass = 0.1, .damping = 0.0};
@@ -88,7 +89,7 @@ TEST(Wall, SampledSpringGivesEnergyAndFrictionOfTheDeviceTakesIt) {
   EXPECT_EQ(run_wall(loop, {.depth = 1e-3}, 1.0).verdict, Verdict::kStable);
 }
 
-// The largest start that comes to rest, as its speed. [m/s]
+// The largest initial speed that comes to rest. [m/s]
 double largest_start(const WallLoop& loop, double high) {
   double low = 0.0;
   for (int i = 0; i < 24; ++i) {
@@ -98,8 +99,8 @@ double largest_start(const WallLoop& loop, double high) {
   return low;
 }
 
-// Diolaiti: Coulomb friction makes an unstable wall stable for what is slower than s. Of a sine the exact share of
-// friction is 4/pi; the balance, which takes it at the largest speed, is on the safe side of it.
+// Diolaiti: Coulomb friction stabilises an unstable wall for speeds below s. For a sine the exact friction term has
+// 4/pi; the balance uses the largest speed, which is conservative.
 TEST(Wall, CoulombFrictionHoldsWhatIsSlowerThanTheBalanceSays) {
   for (const double K : {600.0, 1000.0, 2000.0}) {
     WallLoop loop;
@@ -114,7 +115,7 @@ TEST(Wall, CoulombFrictionHoldsWhatIsSlowerThanTheBalanceSays) {
   }
 }
 
-// Without friction the counts of the encoder keep a passive wall moving, slower than the balance's s.
+// Without friction, encoder quantisation keeps a passive wall moving, more slowly than the balance's s.
 TEST(Wall, CountsWithoutFrictionMakeALimitCycleSlowerThanTheBalanceSays) {
   int cycles = 0;
   for (const double K : {500.0, 1000.0, 2000.0, 3000.0}) {
@@ -122,7 +123,7 @@ TEST(Wall, CountsWithoutFrictionMakeALimitCycleSlowerThanTheBalanceSays) {
     loop.plant = {.mass = 0.2, .damping = 2.0, .encoder = 50e-6};
     loop.wall = {K, 0.0};
     loop.both_ways = true;
-    loop.push = 20.5 * K * loop.plant.encoder;  // between two counts: no force of the wall holds it at rest
+    loop.push = 20.5 * K * loop.plant.encoder;  // between two counts: no wall force gives equilibrium
     const WallBalance expected = balance(loop.plant, K);
     ASSERT_EQ(expected.regime, WallRegime::kCycle);
     const WallResult result = run_wall(loop, {.depth = 1.013e-3}, 4.0);

@@ -1,4 +1,4 @@
-// Wrappers: each does what it says to every driver, and nothing else.
+// Wrappers: each applies exactly its documented effect to every driver.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace pliant {
 namespace {
 
-// What the device inside has been told and says; sample n is n millimetres along x.
+// What the inner device receives and returns; sample n is n millimetres along x.
 struct InsideDriver {
   std::vector<DeviceWrench> written;
   DeviceSample next;
@@ -141,7 +141,7 @@ TEST(Wrappers, QuantiseRoundsToTheNearestCount) {
   EXPECT_EQ(inside.written.back().force, dvec3(0.5, -0.25, 0.0));
 }
 
-// Work that the hand does on the device, against work of the probe on the world.
+// Work of the hand on the device, against work of the probe on the world.
 TEST(Wrappers, GainKeepsPowerWhereBothNumbersAreTheSameAndElseSaysThatItDoesNot) {
   for (const auto& [words, kept] : {std::pair("gain=3", true), {"gain=3,force=1", false}, {"scale=3", false}}) {
     InsideDriver inside;
@@ -161,7 +161,7 @@ TEST(Wrappers, GainKeepsPowerWhereBothNumbersAreTheSameAndElseSaysThatItDoesNot)
   }
 }
 
-// A world spring at the limit that the wrapper says is, at the device, one at the device's own limit.
+// A world spring at the wrapper's limit corresponds to one at the device's own limit.
 TEST(Wrappers, GainSaysTheLimitsOfTheWorld) {
   InsideDriver inside;
   for (const char* words : {"gain=2", "gain=4,force=0.5", "scale=3"}) {
@@ -284,7 +284,7 @@ TEST(Wrappers, TwoDevicesDoNotRecordIntoOneFileHoweverItIsSpelled) {
   ASSERT_TRUE(rows) << rows.error().message();
   EXPECT_EQ(rows->size(), 10u);
   std::filesystem::remove(file);
-  // A device that senses nothing leaves no empty file behind.
+  // A device without samples leaves no empty file.
   { const auto idle = opened(b, "record=" + file.string()); }
   EXPECT_FALSE(std::filesystem::exists(file));
 }

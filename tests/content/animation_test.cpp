@@ -1,4 +1,4 @@
-// glTF animations and motion scripts: read, refused, carried into the world, saved.
+// glTF animations and motion scripts: read, rejected, spawned, saved.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 const std::vector<float> kTimes = {0, 1, 2};
 const std::vector<float> kTurn = {0, 0, 0, 1, 0, 0.70710678f, 0, 0.70710678f, 0, 1, 0, 0};  // 0, 90, 180 deg about y
 
-// A square that an animation turns and shifts: channel 0 turns, channel 1 shifts.
+// A square that an animation rotates and translates: channel 0 rotates, channel 1 translates.
 Gltf turning() {
   Gltf gltf;
   gltf.primitive({{"POSITION", gltf.positions(kSquare)}});
@@ -73,7 +73,7 @@ TEST(Animation, ChannelsBecomeTracksThatLastAsLongAsTheirAnimation) {
 
 TEST(Animation, CarriesTheNodeInTheWorldFromWhereItBegins) {
   Level level = loaded(turning());
-  level.nodes[0].local.translation = {9, 9, 9};  // overridden: the motion says where it is
+  level.nodes[0].local.translation = {9, 9, 9};  // overridden by the motion
   level.animations[0].channels[1].track.values[0] = {0.5, 0, 0, 0};
   make_touchable(level);
   const World world = spawned(level);
@@ -221,7 +221,7 @@ class MotionFiles : public ::testing::Test {
     fs::create_directories(folder_);
   }
   void TearDown() override { fs::remove_all(folder_); }
-  // A ball that a script of this text carries.
+  // A ball moved by a script with this text.
   Level scripted(const std::string& text, const std::string& name = "turn.csv") {
     std::ofstream(folder_ / "turn.csv") << text;
     Level level = level_of(icosphere(1));

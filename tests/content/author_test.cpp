@@ -1,5 +1,4 @@
-// What `pliant author` and the editor make of a bare mesh: levels that spawn, with what was asked for where it was
-// asked for.
+// Levels that `pliant author` and the editor make of a bare mesh: they spawn, and the requested parts are in place.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +21,7 @@ namespace {
 
 constexpr double kRadius = 0.1;  // [m]
 
-// A ball, its node turned and scaled.
+// A ball with a rotated and scaled node.
 Level ball(quat turn = quat(1, 0, 0, 0), vec3 scale = vec3(1)) {
   const solids::Solid solid = [](dvec3 p) { return length(p) - kRadius; };
   Level level;
@@ -64,7 +63,7 @@ TEST(Author, EveryPresetIsWithinTheRangesOfItsKeysAndOfItsSource) {
     EXPECT_GE(preset.high, preset.young);
     Level level = ball();
     ASSERT_TRUE(make_soft(level, 0, soft_body_of(preset)).ok());
-    // The table of keys takes what is written, and gives it back.
+    // The key table reads what was written and writes it again.
     LevelNode read;
     const Json json = node_extensions(level.nodes[0], Json());
     ASSERT_TRUE(parse_node_extensions(json, "", {}, read).ok());
@@ -72,7 +71,7 @@ TEST(Author, EveryPresetIsWithinTheRangesOfItsKeysAndOfItsSource) {
     ASSERT_TRUE(make_touchable_surface(level, 0, surface_of(preset)).ok());
     const Json surface = node_extensions(level.nodes[0], Json());
     ASSERT_TRUE(parse_node_extensions(surface, "", {}, read).ok());
-    // Hertz: a flat punch of radius a on a half-space meets 2 E a / (1 - nu^2).
+    // Hertz: a flat punch of radius a on a half-space has stiffness 2 E a / (1 - nu^2).
     EXPECT_NEAR(read.deformable->stiffness, 2 * preset.young * 0.004 / (1 - preset.poisson * preset.poisson), 1e-6);
   }
 }
@@ -84,7 +83,7 @@ TEST(Author, ASideIsPinnedAlongGravityHoweverTheNodeIsTurnedAndScaled) {
       Level level = ball(turn, scale);
       ASSERT_TRUE(make_soft(level, 0).ok());
       ASSERT_TRUE(pin(level, 0, Side::kBottom, 0.2).ok());
-      // By the definition: vertices in the lowest fifth of the world's box, and only they, are in the box.
+      // By definition: exactly the vertices in the lowest fifth of the world's box are in the box.
       const ObjectFrame frame = object_frame(level, 0);
       const Box world = world_box(level);
       const double limit = static_cast<double>(world.min.y) + 0.2 * static_cast<double>(world.size().y);
@@ -114,6 +113,33 @@ TEST(Author, TwoPinnedSidesHoldBothAndUnpinningHoldsNone) {
   ASSERT_TRUE(pin(level, 0, Side::kTop).ok());
   unpin(level, 0);
   EXPECT_TRUE(level.nodes[0].soft_body->pinned.empty());
+  // Vertices on either side, and only they, are in the box or painted; what is between two sides stays free.
+  const Side all[] = {Side::kBottom, Side::kTop, Side::kLeft, Side::kRight, Side::kFront, Side::kBack};
+  for (const Side first : all)
+    for (const Side second : all) {
+      Level both = ball();
+      ASSERT_TRUE(make_soft(both, 0).ok());
+      ASSERT_TRUE(pin(both, 0, first, 0.2).ok());
+      ASSERT_TRUE(pin(both, 0, second, 0.2).ok());
+      const ObjectFrame frame = object_frame(both, 0);
+      const Primitive& primitive = both.meshes[0].primitives[0];
+      const dvec3 middle = 0.5 * (dvec3(frame.box.min) + dvec3(frame.box.max)), half = 0.5 * dvec3(frame.box.size());
+      for (std::size_t i = 0; i < primitive.position.size(); ++i) {
+        const dvec3 local(frame.to_object * glm::dvec4(dvec3(primitive.position[i]), 1.0));
+        double farthest = -1.0;  // [1] of the way out to a side
+        for (const Side side : {first, second})
+          farthest = std::max(
+              farthest, dot((local - middle) / half, glm::conjugate(frame.pose.rotation) * direction_of(both, side)));
+        if (std::abs(farthest - 0.6) < 1e-4) continue;
+        const Box& box = both.nodes[0].soft_body->pinned;
+        const bool in_box =
+            glm::all(glm::greaterThanEqual(vec3(local), box.min)) && glm::all(glm::lessThanEqual(vec3(local), box.max));
+        const bool painted = !primitive.pinned.empty() && primitive.pinned[i] > 0.5f;
+        EXPECT_EQ(in_box || painted, farthest > 0.6) << word_of(first) << ' ' << word_of(second);
+      }
+      const Result<World> world = spawn(both);
+      ASSERT_TRUE(world.ok()) << word_of(first) << ' ' << word_of(second) << world.error().message();
+    }
 }
 
 TEST(Author, PickedVerticesArePinnedOfThisNodeAlone) {
@@ -152,7 +178,7 @@ TEST(Author, EveryInstrumentIsAClosedBodyOverTheObjectThatReachesItOnItsPathWhat
       EXPECT_EQ(built->report.border_edges, 0u);
       EXPECT_EQ(built->report.non_manifold_edges, 0u);
       EXPECT_EQ(built->report.degenerate_triangles, 0u);
-      // Where the path goes lowest, the instrument's lowest point is inside the ball.
+      // At the path's lowest point, the instrument's lowest point is inside the ball.
       const Path path = press_path(level, *tool, named(level, "ball"));
       double down = 0.0;
       for (const PathRow& row : path.rows) down = std::max(down, path.rows[0].position.y - row.position.y);

@@ -1,4 +1,4 @@
-// The bonded layer against what others have published and against its limits.
+// The bonded layer against published values and its limits.
 #include "content/keys/bonded_layer.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST(BondedLayer, TheFactorsAreThoseOfHayesAndOthers) {
 TEST(BondedLayer, DeepItIsTheHalfSpaceAndThinItIsPressedLikeAColumn) {
   EXPECT_EQ(bonded_layer_factor(0.0, 0.45), 1.0);
   EXPECT_NEAR(bonded_layer_factor(1e-4, 0.45), 1.0, 2e-4);
-  // F = pi a^2 M d / h with the modulus of a column that cannot widen, M = E (1 - nu) / ((1 + nu) (1 - 2 nu)).
+  // F = pi a^2 M d / h with the modulus of a laterally confined column, M = E (1 - nu) / ((1 + nu) (1 - 2 nu)).
   const double nu = 0.3, modulus = (1 - nu) / ((1 + nu) * (1 - 2 * nu));
   EXPECT_NEAR(bonded_layer_factor(20, nu) / (20 * 3.14159265 * (1 - nu * nu) * modulus / 2), 1.0, 0.015);
 }
@@ -52,7 +52,8 @@ TEST(BondedLayer, ItsSurfaceIsTheHalfSpacesWhereItIsDeepAndGoesOnFromThePunch) {
 }
 
 TEST(BondedLayer, WhatAPunchPushesDownRisesBesideItWhereTheLayerKeepsItsVolume) {
-  // A bonded layer of Poisson's ratio 1/2: the integral of u r dr over the whole plane is nothing. With less it is not.
+  // For a bonded layer with Poisson's ratio 1/2, the integral of u r dr over the whole plane is zero. For smaller
+  // ratios it is not.
   const auto volume = [](double nu) {
     const BondedLayer layer(1.0, nu);
     double sum = 0.5;
@@ -77,8 +78,8 @@ TEST(LayerSphere, DeepItIsHertzs) {
 }
 
 TEST(LayerSphere, ItIsTheSeriesOfGarciaAndGarciaWhileTheContactIsNarrow) {
-  // Biophysical J. 114 (2018) 2923: a sphere on a bonded layer of Poisson's ratio 1/2, chi = sqrt(R d) / h. It mends
-  // the series of Dimitriadis and others (2002), whose second coefficient, 1.283, is too small.
+  // Biophysical J. 114 (2018) 2923: a sphere on a bonded layer of Poisson's ratio 1/2, chi = sqrt(R d) / h. It corrects
+  // the series of Dimitriadis et al. (2002), whose second coefficient, 1.283, is too small.
   const double R = 0.004;
   for (const double h : {0.02, 0.01, 0.005})
     for (const double d : {5e-5, 1e-4, 2e-4}) {

@@ -1,4 +1,4 @@
-// Meshes that are only drawn and lie inside of what deforms.
+// Meshes that are only drawn and lie inside a deformable object.
 #include "content/level/carried_parts.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// The child process that libraries run in: whatever happens there, the parent gets an answer.
+// The child process for libraries: whatever happens there, the parent gets an answer.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -47,7 +47,7 @@ TEST(Isolation, AChildIsChargedForItsOwnProcessorTimeAndNotForABusyMachine) {
   const Result<Bytes> waited = in_isolation(
       0,
       []() -> Result<Bytes> {
-        usleep(600'000);  // another process has the processor
+        usleep(600'000);  // another process uses the CPU
         return Bytes{1};
       },
       0.05);
@@ -66,7 +66,7 @@ TEST(Isolation, AChildThatOnlyWaitsIsEndedAllTheSame) {
   EXPECT_NE(answer.error().message().find("too long"), std::string::npos);
 }
 
-// A child that is born while another thread holds a lock may wait for it for ever: another one is made.
+// A child forked while another thread holds a lock may wait for it forever: it is replaced.
 TEST(Isolation, AChildThatStandsStillIsReplaced) {
   void* const shared = mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(shared, MAP_FAILED);

@@ -1,6 +1,6 @@
-// Every file of the corpus through its reader: sound files load, unsound ones are refused in one sentence, and none
-// crashes, hangs or takes more than a gigabyte. Each file is read in a child process, so that a crash is one failed
-// expectation and not the end of the run.
+// Reads every file of the corpus. Sound files load; unsound ones are rejected with one sentence; none crashes, hangs or
+// takes more than a gigabyte. Each file is read in a child process, so that a crash is one failed expectation and not
+// the end of the run.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -34,10 +34,10 @@ constexpr unsigned kSeconds = 5;
 enum class Outcome { kLoaded, kRefused, kCrashed };
 struct Read {
   Outcome outcome = Outcome::kCrashed;
-  std::string sentence;  // of the refusal
+  std::string sentence;  // the error
 };
 
-// Calls read() in a child of bounded time and memory; read() returns "" or the sentence of a refusal.
+// Calls read() in a child with limited time and memory; read() returns "" or an error sentence.
 Read in_child(const std::function<std::string()>& read) {
   int ends[2];
   if (pipe(ends) != 0) return {};
@@ -90,7 +90,7 @@ std::vector<fs::path> files_below(const char* folder, const std::set<std::string
   return files;
 }
 
-// A refusal is one sentence that begins with the file.
+// An error is one sentence that begins with the file.
 void expect_sentence(const Read& read, const fs::path& path) {
   EXPECT_NE(read.outcome, Outcome::kCrashed) << path;
   if (read.outcome != Outcome::kRefused) return;
@@ -98,8 +98,8 @@ void expect_sentence(const Read& read, const fs::path& path) {
   EXPECT_EQ(read.sentence.find('\n'), std::string::npos) << read.sentence;
 }
 
-// What we accept although the validator's report has an error, with the reason. Of these only inputs whose every error
-// is of such a code may load.
+// Errors in the validator's report that we accept, with the reason. An input may load only if all its errors have such
+// a code.
 const std::map<std::string, const char*> kAcceptedCodes = {
     {"ACCESSOR_WEIGHTS_NON_NORMALIZED",
      "skins are read once, at rest, and weights are divided by their sum; shipped models break this"},
@@ -156,7 +156,7 @@ TEST(Corpus, DracoFilesOldOnesIncludedDecodeOrAreRefusedInOneSentence) {
     const Read read = read_level(path);
     expect_sentence(read, path);
     loaded += read.outcome == Outcome::kLoaded;
-    // Refused are point clouds, and two files whose buffers are not in the corpus.
+    // Rejected are point clouds, and two files whose buffers are not in the corpus.
     if (read.outcome == Outcome::kRefused)
       EXPECT_TRUE(read.sentence.find("point cloud") != std::string::npos ||
                   read.sentence.find("no such file") != std::string::npos)
@@ -177,7 +177,7 @@ TEST(Corpus, SoundPanoramasLoadUnlessDeepAndNothingInThemIsInfinite) {
   SKIP_WITHOUT_CORPUS();
   const std::set<std::string> refused = {
       "11.deep.exr",  // deep samples only
-      "tiled.exr",    // its second tile row says that it is of another level: the library's own test of that
+      "tiled.exr",    // its second tile row claims another level: the library's own test of that
   };
   for (const fs::path& path : files_below("exr-valid", {".exr"})) {
     const Read read = read_panorama(path);

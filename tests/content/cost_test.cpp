@@ -1,5 +1,5 @@
-// What a small document may ask for in reading it: shared accessors, primitives, weights, skins and Draco data are
-// added up before they are read (content/gltf/gltf_cost.cpp), and what is shared is decoded once.
+// Limits on the cost of reading a small document. Shared accessors, primitives, weights, skins and Draco data are added
+// up before they are read (content/gltf/gltf_cost.cpp), and shared data is decoded once.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ constexpr std::size_t kVertexCount = 8000;
 // 8 MiB of decoded data beyond the multiple of the buffers.
 const double kEightMiB = 8.0 * limits::kMiB / limits::kDecoded.most;
 
-// What open_gltf, which reads every accessor to check it, refuses first; the place before the sentence.
+// The first error of open_gltf, which reads every accessor: its place, then the sentence.
 std::string found(const Gltf& gltf) {
   Findings findings;
   const Bytes bytes = gltf.glb();
@@ -30,7 +30,7 @@ std::string found(const Gltf& gltf) {
   return "nothing";
 }
 
-// An accessor of zeros, but for its first element: almost no bytes stand behind it.
+// An accessor of zeros except for its first element: it has almost no bytes.
 std::size_t zeros(Gltf& gltf, const char* type) {
   const std::size_t width = static_cast<std::size_t>(type[3] - '0');
   const std::size_t indices = gltf.view(std::vector<std::uint32_t>{0});

@@ -1,4 +1,4 @@
-// What a level may ask for by the id of its device, whatever the spelling.
+// Device requests by id that a level may make, in every spelling.
 #include "content/level/device_request.h"
 
 #include <gmock/gmock.h>

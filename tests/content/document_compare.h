@@ -10,7 +10,7 @@ namespace pliant::test {
 
 class Difference {
  public:
-  // Where `a` and `b` first differ, or "" if they are the same; names and paths of the files are left aside.
+  // The first difference of `a` and `b`, or ""; ignores names and paths of the files.
   static std::string of(const Level& a, const Level& b) {
     Difference d;
     d.same("node count", a.nodes.size(), b.nodes.size());

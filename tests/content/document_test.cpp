@@ -1,4 +1,4 @@
-// load(save(load(f))) is load(f), bit for bit, whatever Level was saved and however.
+// load(save(load(f))) equals load(f), bit for bit, for every kind of Level and every save option.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder that is gone after the test.
+// A folder that is removed after the test.
 class Document : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -182,7 +182,7 @@ TEST_F(Document, DracoKeepsEveryPositionWithinItsQuantisation) {
   ASSERT_EQ(after.position.size(), before.position.size());
   EXPECT_EQ(after.index.size(), before.index.size());
   EXPECT_EQ(after.stiffness.size(), before.position.size());
-  // The encoder renumbers vertices: each must have one of the original's at its place, with its attributes.
+  // The encoder renumbers vertices: each must match an original vertex at its position, with its attributes.
   for (std::size_t v = 0; v < after.position.size(); ++v) {
     std::size_t nearest = 0;
     for (std::size_t w = 0; w < before.position.size(); ++w)

@@ -1,4 +1,4 @@
-// Draco blobs that were damaged, byte by byte, and the import of bare .drc files.
+// Draco blobs damaged byte by byte, and the import of bare .drc files.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -38,7 +38,7 @@ TEST(Draco, ABareFileReadsBackWithItsTriangles) {
   for (std::size_t t = 0; t < primitive.index.size(); t += 3) {
     const vec3 a = primitive.position[primitive.index[t]], b = primitive.position[primitive.index[t + 1]],
                c = primitive.position[primitive.index[t + 2]];
-    area += 0.5f * ((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));  // of the shadow on z = 0
+    area += 0.5f * ((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));  // of the projection onto z = 0
   }
   EXPECT_NEAR(area, 64.0f, 1e-3f);
 }

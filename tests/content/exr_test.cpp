@@ -86,8 +86,8 @@ TEST(Exr, EveryTruncationIsRefusedInASentence) {
   }
 }
 
-// The library reads what a type says, not what an attribute claims: were both let differ, the rest of the header would
-// be read from elsewhere, as attributes of any size.
+// The library reads the size of the type, not the attribute's claimed size. If they differed, it would parse the rest
+// of the header at a wrong offset, as attributes of any size.
 TEST(Exr, AnAttributeOfAnotherSizeThanItsTypeIsRefusedBeforeTheLibrarySeesIt) {
   const std::vector<float> ramp{1.0f, 2.0f};
   const Bytes whole = exr(2, 1, {{"R", ramp}, {"G", ramp}, {"B", ramp}});

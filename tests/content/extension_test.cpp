@@ -1,4 +1,4 @@
-// The PLIANT_* extensions: reading, refusing and --set.
+// The PLIANT_* extensions: reading, errors and --set.
 #include <gtest/gtest.h>
 
 #include "content/keys/extensions.h"
@@ -108,7 +108,7 @@ TEST(Extension, AProbeNamesItsDeviceByNameOrNumber) {
     EXPECT_EQ(level->nodes[0].probe_device, "hand");
     EXPECT_EQ(level->nodes[1].device->driver, DriverKind::kOrbit);
   }
-  // --set takes the same two, by the file's numbers: here the nodes come in another order than in the file.
+  // --set accepts the same two, by the file's numbers: here the nodes have another order than in the file.
   Gltf gltf = with({{"PLIANT_probe", Json::object()}});
   gltf.json["nodes"].push_back({{"name", "hand"}, {"extensions", {{"PLIANT_haptic_device", Json::object()}}}});
   gltf.json["extensionsUsed"].push_back("PLIANT_haptic_device");
@@ -210,7 +210,7 @@ TEST(Extension, AKeyThatIsSaidAtItsDefaultIsWrittenAndOneThatIsNotIsLeftOut) {
   EXPECT_EQ(node_extensions(level.nodes[0], Json())["PLIANT_deformable"], Json::object());
   EXPECT_EQ(set(level, "*.deformable.distance=chord"), "");
   EXPECT_EQ(node_extensions(level.nodes[0], Json())["PLIANT_deformable"], (Json{{"distance", "chord"}}));
-  // What the file had is known by what it said, not by the file.
+  // The file's keys are known from the stated keys, not from the file.
   Level read = *with({{"PLIANT_deformable", {{"distance", "chord"}, {"shape", "volume"}}}}).load();
   read.nodes[0].stated.erase("deformable.shape");
   const Json before{{"PLIANT_deformable", {{"shape", "volume"}, {"extras", 7}}}};

@@ -131,7 +131,7 @@ TEST(Generate, ShippedFilesAreWhatTheGeneratorMakes) {
   const TemporaryFolder folder;
   const Status done = generate(folder.path);
   ASSERT_TRUE(done.ok()) << done.error().message();
-  // Text and plain binaries to the byte; compressed files (whose libraries may differ) by what they hold.
+  // Text and plain binaries are compared by bytes; compressed files (whose libraries may differ) by content.
   for (const char* name : {"minimal.gltf",          "minimal.bin",          "minimal.csv",
                            "three_probes_a.csv",    "three_probes_b.csv",   "three_probes_c.csv",
                            "inclusion_a.csv",       "inclusion_b.csv",      "glass_heart_a.csv",

@@ -13,7 +13,7 @@ struct Gltf {
   Json json = {{"asset", {{"version", "2.0"}}}};
   Bytes bin;
 
-  // Appends an array as a bufferView of its own, at a multiple of four bytes; returns its number.
+  // Appends an array in its own bufferView, at a multiple of four bytes; returns its number.
   template <class T>
   std::size_t view(const std::vector<T>& values) {
     bin.resize((bin.size() + 3) / 4 * 4);
@@ -23,7 +23,7 @@ struct Gltf {
     bin.insert(bin.end(), begin, begin + values.size() * sizeof(T));
     return json["bufferViews"].size() - 1;
   }
-  // ... and an accessor over it. Bounds are set as glTF wants them for POSITION.
+  // The same with an accessor. Bounds are set as glTF requires for POSITION.
   template <class T>
   std::size_t accessor(const std::vector<T>& values, const char* type, int component, bool bounds = false) {
     Json accessor = {{"bufferView", view(values)}, {"componentType", component}, {"type", type}};
@@ -71,7 +71,7 @@ struct Gltf {
     const Bytes bytes = glb();
     return load_gltf(bytes, true, {});
   }
-  // The sentence it is refused with, or "" if it loads.
+  // The error sentence, or "" if it loads.
   std::string refusal() const {
     const Result<Level> level = load();
     return level ? "" : level.error().message();

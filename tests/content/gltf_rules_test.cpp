@@ -1,5 +1,5 @@
-// Rules of glTF 2.0 beyond the corpus, by class: for each a sound file that loads, and a broken one that is refused
-// with the place of what is wrong.
+// Rules of glTF 2.0 that the corpus does not cover. For each, a sound file loads, and a broken one is rejected with the
+// place of the fault.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -141,7 +141,7 @@ TEST(GltfRules, TwoWeightsOfOneJointAreAddedUpWithANote) {
   EXPECT_NE(level->notes[0].find("give joint 1 two weights in element 0; added up"), std::string::npos);
 }
 
-// As exporters write them where triangles are degenerate: what is left of normals that cancel.
+// As written by exporters at degenerate triangles: the residue of cancelling normals.
 TEST(GltfRules, NormalsAndTangentsThatAreNearlyZeroAreMendedAsZeroOnesAre) {
   for (const float tiny : {0.0f, 1e-45f, 1e-41f, 1e-30f, 1e-10f, 5e-5f}) {
     Gltf gltf = square();

@@ -1,4 +1,4 @@
-// What glTF may say of triangles, each with its known answer, and what is refused.
+// Triangles in glTF: each case with its known result, and rejected cases.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -100,8 +100,8 @@ TEST(Gltf, PaintedFactorsComeWithTheVertices) {
 }
 
 TEST(Gltf, ASkinAtRestShowsVerticesWhereJointsAndBindMatricesPutThem) {
-  // Joint 0 rests at x = 1 and was bound at x = 1: its vertices stay. Joint 1, turned a quarter about z at (1, 0, 0),
-  // was bound there unturned: its vertices turn about that point. The mesh's own node must not matter.
+  // Joint 0 rests at x = 1 and was bound at x = 1: its vertices stay. Joint 1, rotated by 90 degrees about z at (1, 0,
+  // 0), was bound there unrotated: its vertices rotate about that point. The mesh's own node must not matter.
   Gltf gltf;
   std::vector<float> bind(32, 0.0f);
   for (std::size_t m = 0; m < 2; ++m) {
@@ -132,7 +132,7 @@ TEST(Gltf, ASkinAtRestShowsVerticesWhereJointsAndBindMatricesPutThem) {
 }
 
 TEST(Gltf, ASkinMovesThePrimitiveItBelongsToWhateverStandsBefore) {
-  // The first primitive has no triangle, the second is left out, the third is carried 10 along x.
+  // The first primitive has no triangle, the second is skipped, the third is moved by 10 along x.
   Gltf gltf;
   std::vector<float> bind(16, 0.0f);
   for (std::size_t i = 0; i < 4; ++i) bind[5 * i] = 1.0f;
@@ -227,7 +227,7 @@ TEST(Gltf, RefusalsNameThePlace) {
 }
 
 TEST(Gltf, HugeClaimsOfASmallFileAreRefusedBeforeMemoryIsTaken) {
-  // A thousand primitives over the same vertices decode to far more than the file holds.
+  // A thousand primitives with the same vertices decode to far more than the file's size.
   Gltf gltf;
   const std::size_t position = gltf.positions(std::vector<float>(3 * 30000, 0.0f));
   gltf.primitive({{"POSITION", position}});

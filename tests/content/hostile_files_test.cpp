@@ -1,5 +1,5 @@
-// Files beside a level, and what a level makes of them: each is read as far as it is declared, held within a total, and
-// once where many name it; several files that are written belong together.
+// Files referenced by a level. Each is read up to its declared size, counted towards a total, and read only once if
+// shared. Several written files belong together.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -34,7 +34,7 @@ class HostileFiles : public ::testing::Test {
     std::ifstream in(folder_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   }
-  // What opening such a document says; "" if it is sound.
+  // The findings of opening such a document; "" if it is sound.
   std::string opened(const Json& json) const {
     const std::string text = json.dump();
     Findings findings;
@@ -179,7 +179,7 @@ TEST_F(HostileFiles, FilesThatBelongTogetherAreAllReplacedOrNone) {
   ASSERT_FALSE(folder.ok());
   EXPECT_THAT(folder.error().message(), HasSubstr("is a folder; name a file"));
   EXPECT_EQ(read("a.bin"), "old");
-  // The second finds its name taken by the first.
+  // The second one finds its name used by the first.
   EXPECT_FALSE(write_files({{folder_ / "b", fresh}, {folder_ / "b", fresh}}, Existing::kRefuse).ok());
   EXPECT_FALSE(fs::exists(folder_ / "b"));
   ASSERT_TRUE(write_files({{folder_ / "a.bin", fresh}, {folder_ / "c", fresh}}).ok());

@@ -50,13 +50,13 @@ Bytes gray_jpeg() {
   return jpeg;
 }
 
-Bytes with_segment(const Bytes& jpeg, const Bytes& segment) {  // right behind the start of the image
+Bytes with_segment(const Bytes& jpeg, const Bytes& segment) {  // directly after the start of the image
   Bytes out = jpeg;
   out.insert(out.begin() + 2, segment.begin(), segment.end());
   return out;
 }
 
-// The decoder writes such a table beyond its own (stb_image 2.27, stbi__build_huffman).
+// The decoder would write beyond its table (stb_image 2.27, stbi__build_huffman).
 TEST(Image, AJpegWhoseHuffmanTableNamesMoreThan256CodesIsRefused) {
   const Bytes jpeg = gray_jpeg();
   ASSERT_TRUE(decode_image(jpeg, "gray").ok());
@@ -70,7 +70,7 @@ TEST(Image, AJpegWhoseHuffmanTableNamesMoreThan256CodesIsRefused) {
     full.resize(full.size() + 513, 0);
     for (const Bytes& damaged : {full, segment}) {
       const Result<Image> image = decode_image(with_segment(jpeg, damaged), "picture.jpg");
-      if (too_many == 1 && image.ok()) continue;  // 256: as many as there are
+      if (too_many == 1 && image.ok()) continue;  // 256: the number of possible codes
       ASSERT_FALSE(image.ok()) << too_many;
       if (too_many > 1)
         EXPECT_EQ(image.error().message(), "picture.jpg: is a JPEG that is cut off or damaged; save it again");

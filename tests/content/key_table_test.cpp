@@ -1,4 +1,4 @@
-// The table of keys: that it is the one truth about ranges, defaults, words and docs, for files and --set alike.
+// The key table defines ranges, defaults, names and docs for files and --set alike.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-// Or a level would be valid that no run takes, or one refused that a run would take.
+// Otherwise a level could be valid but rejected by a run, or the reverse.
 TEST(KeyTable, EveryRangeOfADeformableIsThatOfTheTouchClock) {
   const auto taken = [](const Key& key, double value) {
     LevelNode node;
@@ -41,7 +41,7 @@ TEST(KeyTable, EveryRangeOfADeformableIsThatOfTheTouchClock) {
     if (key.type != KeyType::kNumber && key.type != KeyType::kNumberOrMaterial) continue;
     if (key.name == "young" || key.name == "poisson" || key.name == "thickness" || key.name == "crease_angle" ||
         key.name == "error")
-      continue;  // become a stiffness, a mesh and a shape before the touch clock sees them
+      continue;                                  // converted to a stiffness, a mesh and a shape before the touch clock
     if (key.name == "contact_radius") continue;  // within the reach: touch_shape_test.cpp
     const double below = std::nextafter(key.range.min, -1e30), above = std::nextafter(key.range.max, 1e30);
     if (key.name != "reach") EXPECT_TRUE(taken(key, key.range.min)) << key.name;  // 0: from the object's box
@@ -55,7 +55,7 @@ TEST(KeyTable, EveryRangeOfADeformableIsThatOfTheTouchClock) {
   EXPECT_EQ(checked, 13u);
 }
 
-// A value of the key that is valid and not `other`; no number for a vector, which is read as one.
+// A valid value of the key that differs from `other`; no number for a vector, which would be accepted.
 Json other_value(const Key& key, const Json& other) {
   const std::vector<Json> candidates{0.5,
                                      1.0,
@@ -74,7 +74,7 @@ Json other_value(const Key& key, const Json& other) {
   return {};
 }
 
-// What every extension's component is by itself, without the table's help.
+// Each extension's component with its defaults, without the table.
 struct Bare {
   LevelNode node;
   Level level;
@@ -113,7 +113,7 @@ TEST(KeyTable, EveryDefaultIsThatOfTheComponentAndIsValid) {
   }
 }
 
-// An extension without keys is the component as it is, through the reader and through save.
+// An extension without keys gives the default component, through the reader and through save.
 TEST(KeyTable, AnEmptyExtensionIsTheComponentAsItIs) {
   for (const Extension& extension : extension_table()) {
     const Json json{{"PLIANT_" + extension.name, Json::object()}};
@@ -164,7 +164,7 @@ TEST(KeyTable, EveryEnumeratorHasAWordOfItsOwn) {
   expect(SolverKind::kDense, 6);
 }
 
-// --set N.EXT.KEY=TEXT against {"KEY": TEXT} in a file: both take it or both refuse it, and what they take is the same.
+// --set N.EXT.KEY=TEXT against {"KEY": TEXT} in a file: both accept it or both reject it, with the same result.
 TEST(KeyTable, SetTakesWhatAFileTakes) {
   std::size_t taken = 0, refused = 0;
   for (const Extension& extension : extension_table())

@@ -1,4 +1,4 @@
-// A Level in the form that does not depend on how its nodes and meshes are numbered, so that two can be compared.
+// A Level in a normal form that does not depend on the numbering of nodes and meshes, for comparison.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace pliant::test {
 
-// Parents first, the shown scene before the rest, in which what came from a document stands in its order; every node
-// has a mesh of its own; without what nobody sees.
+// Parents first, the shown scene first, document nodes in their order; every node with its own mesh; without invisible
+// data.
 inline Level normal_form(const Level& level) {
   Level out = level;
   out.nodes.clear();

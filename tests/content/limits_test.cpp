@@ -1,5 +1,5 @@
-// What a file may ask for (content/files/limits.h): one element beyond a limit is refused in a sentence that says how
-// to allow it, and what is at the limit loads. The limits are lowered here, so that files stay small.
+// Limits on files (content/files/limits.h): one element beyond a limit is rejected with a sentence that tells how to
+// allow it; a file at the limit loads. The limits are lowered here, so that files stay small.
 #include "content/files/limits.h"
 
 #include <gmock/gmock.h>
@@ -26,7 +26,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Levels in code, by how many nodes show one icosphere: each turned, so that nothing is shared, or all alike.
+// Levels in code with `count` nodes that show one icosphere: each rotated, so that nothing is shared, or all equal.
 Level many(int count, bool turned, bool touched) {
   Level level = level_of(icosphere(1));
   LevelNode node = level.nodes[0];
@@ -62,7 +62,7 @@ TEST(Limits, ASentenceSaysHowMuchIsAllowedWhyAndWhatAllowsIt) {
       << "what does not scale is not promised";
 }
 
-// Not as a part of another number.
+// Excludes matches inside another number.
 bool holds_number(const std::string& row, const std::string& number) {
   const auto part = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) || c == ','; };
   for (std::size_t at = row.find(number); at != std::string::npos; at = row.find(number, at + 1)) {
@@ -78,7 +78,7 @@ TEST(Limits, TheDocumentedNumbersAreThoseOfTheTable) {
   std::ifstream in(PLIANT_SOURCE_DIR "/docs/cli.md");
   const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   const std::string section = text.substr(text.find("## Limits"), text.find("## Environment") - text.find("## Limits"));
-  // A limit's row of the table is the one with these words; its number stands there whole.
+  // A limit's row in the table has these words, and contains its whole number.
   const std::pair<Limit, const char*> rows[] = {{limits::kJsonValues, "JSON values"},
                                                 {limits::kElements, "nodes, meshes, materials"},
                                                 {limits::kAccessors, "accessors and bufferViews"},
@@ -154,7 +154,7 @@ TEST(Limits, AChainOfManyJointsLoadsAndItsRootIsFound) {
   }
   gltf.json["skins"] = Json::array({{{"joints", joints}}});
   EXPECT_EQ(gltf.refusal(), "");
-  gltf.json["skins"][0]["joints"].push_back(0);  // which hangs below nothing
+  gltf.json["skins"][0]["joints"].push_back(0);  // which is below no other node
   EXPECT_THAT(gltf.refusal(), HasSubstr("/skins/0/joints: have no common root"));
 }
 
@@ -190,7 +190,7 @@ TEST(Limits, InstancesThatShareNothingAreCountedBeforeTheyAreBuilt) {
 
 TEST(Limits, SurfacesThatGiveWayAreCountedWithTheirVerticesSharedOrNot) {
   Level level = many(8, false, true);                                  // 42 vertices each
-  for (LevelNode& node : level.nodes) node.deformable->reach = 100.0;  // not cut finer
+  for (LevelNode& node : level.nodes) node.deformable->reach = 100.0;  // not refined
   {
     const Lowered lowered(7.0 / limits::kSurfaces.most);
     EXPECT_THAT(refusal_of(level), HasSubstr("node `n7`: brings the level to 8 surfaces and rigid bodies"));

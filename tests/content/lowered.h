@@ -1,4 +1,4 @@
-// Limits at another factor, for one scope: so that files at a limit stay small.
+// Sets another limit factor for one scope, so that files at a limit stay small.
 #pragma once
 
 #include "content/files/limits.h"

@@ -1,5 +1,5 @@
-// Levels that came from glTF, edited and saved: what is read again is the edited Level, and what other tools wrote
-// about whatever was left alone is still there.
+// Levels from glTF, edited and saved. Reading gives the edited Level, and other tools' data on unedited parts is
+// preserved.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ std::string difference(const Level& a, const Level& b) {
   return Difference::of(normal_form(a), normal_form(b));
 }
 
-// Every file of ours and of others that is not too large.
+// Every file of ours and of the corpus that is not too large.
 std::vector<fs::path> files() {
   std::vector<fs::path> out;
   for (const char* folder : {"content/levels", "../shared/corpus/meshes-valid", "../shared/corpus/meshes-draco"}) {
@@ -54,7 +54,7 @@ std::vector<fs::path> files() {
     for (const auto& entry : fs::recursive_directory_iterator(below)) {
       const std::string extension = entry.path().extension().string();
       if ((extension == ".glb" || extension == ".gltf") && entry.file_size() < 1000000 && load_level(entry.path()))
-        out.push_back(entry.path());  // some of the corpus are there without what they refer to
+        out.push_back(entry.path());  // some files of the corpus lack their resources
     }
   }
   std::sort(out.begin(), out.end());
@@ -68,7 +68,7 @@ const Json* node_tagged(const Json& json, std::int32_t tag) {
   return nullptr;
 }
 
-// The file with a mark of another tool on everything: extras, and `foreign`: an extension that Pliant does not know.
+// The file with another tool's marks on everything: extras and, with `foreign`, an extension that Pliant does not know.
 Bytes marked(const fs::path& path, bool foreign) {
   Findings findings;
   std::optional<SourceDocument> document = open_gltf(path, findings);
@@ -207,7 +207,7 @@ class Editing {
   bool skinned_ = false;
 };
 
-// Cones are kept of spots only.
+// Only spots keep their cones.
 void forget_cones(Level& level) {
   for (LevelNode& node : level.nodes)
     if (node.light && node.light->kind != Light::Kind::kSpot)
@@ -229,7 +229,7 @@ TEST_F(MergeTest, WhateverIsEditedIsReadAgainAndWhatOtherToolsWroteOfTheRestIsSt
       forget_cones(*level);
       const Level back = again(*level);
       ASSERT_EQ(difference(*level, back), "");
-      // Marks of what is left.
+      // Marks on the remaining elements.
       const Json& json = back.source->json;
       EXPECT_EQ(json["extras"]["tag"], "root");
       for (const LevelNode& node : level->nodes) {
@@ -239,7 +239,7 @@ TEST_F(MergeTest, WhateverIsEditedIsReadAgainAndWhatOtherToolsWroteOfTheRestIsSt
         if (foreign) EXPECT_EQ((*kept)["extensions"]["X_foreign"]["tag"], node.source);
       }
       EXPECT_EQ(array_of(json, "materials").size(), level->materials.size());
-      // Again: the same bytes.
+      // Saving again gives the same bytes.
       const Bytes first = bytes("again.glb");
       ASSERT_TRUE(save_level(back, folder_ / "third.glb").ok());
       ASSERT_EQ(bytes("third.glb"), first);
@@ -255,7 +255,7 @@ TEST_F(MergeTest, WhatIsNotEditedIsTheSameJson) {
     const Level back = again(*level);
     Json before = level->source->json, after = back.source->json;
     for (const char* place : {"buffers", "bufferViews", "images"}) before.erase(place), after.erase(place);
-    // A stiffness that stands there as text of another length is written as the number that it is.
+    // A stiffness written as text of another length is written as a number.
     EXPECT_EQ(Json::diff(before, after), Json::array());
     const Bytes first = bytes("again.glb");
     ASSERT_TRUE(save_level(back, folder_ / "third.glb").ok());
@@ -263,7 +263,7 @@ TEST_F(MergeTest, WhatIsNotEditedIsTheSameJson) {
   }
 }
 
-// Three nodes in a row and one beside, of which one animation moves two; a skin over the last two.
+// Three nodes in a row and a separate one; an animation moves two of them; a skin uses the last two.
 Gltf row() {
   Gltf gltf;
   const std::size_t position = gltf.positions(kSquare);
@@ -325,7 +325,7 @@ TEST_F(MergeTest, ANodeWithoutANameKeepsTheNameItWasCalledByWhenNumbersChange) {
 
 TEST_F(MergeTest, PaintGoesBesideWhateverFormThePrimitiveHas) {
   Gltf gltf;
-  // A strip of quantised positions, sparse friction, stiffness in the same interleaved view as nothing else.
+  // A strip of quantised positions, sparse friction, and stiffness in an interleaved view of its own.
   const std::vector<std::int16_t> corners = {0, 0, 0, 0, 10, 0, 0, 0, 0, 10, 0, 0, 10, 10, 0, 0};
   const std::size_t view = gltf.view(corners);
   gltf.json["bufferViews"][view]["byteStride"] = 8;
@@ -389,7 +389,7 @@ TEST_F(MergeTest, ACompressedPrimitiveStaysCompressedWhenItIsPainted) {
   painted.damping.clear();
   painted.handle.clear();
   for (std::size_t v = 0; v < painted.position.size(); ++v) {
-    painted.stiffness[v] = 1.0f + painted.position[v].x;  // told by where the vertex is, whatever its number
+    painted.stiffness[v] = 1.0f + painted.position[v].x;  // a function of the position, whatever the vertex number
     painted.damping.push_back(painted.position[v].y);
   }
   const Level back = again(*small);
@@ -402,7 +402,7 @@ TEST_F(MergeTest, ACompressedPrimitiveStaysCompressedWhenItIsPainted) {
     EXPECT_EQ(read.stiffness[v], 1.0f + read.position[v].x);
     EXPECT_EQ(read.damping[v], read.position[v].y);
   }
-  // Compressed anew, everything is in the Draco data; written plain, nothing is.
+  // Compressed again, everything is in the Draco data; written plain, nothing is.
   for (const SaveOptions& options : {SaveOptions{12, false, {}}, SaveOptions{0, true, {}}}) {
     ASSERT_TRUE(save_level(*small, folder_ / "other.glb", options).ok());
     Result<Level> other = load_level(folder_ / "other.glb");
@@ -493,7 +493,7 @@ TEST_F(MergeTest, WhatAKhronosValidatorSaysOfEditedFilesIsNoError) {
     Editing editing(*level, 7);
     for (int k = 0; k < 25; ++k) editing.step();
     ASSERT_TRUE(save_level(*level, folder_ / "edited.glb").ok());
-    if (skinned) continue;  // theirs have errors of their own
+    if (skinned) continue;  // these have expected errors
     EXPECT_EQ(std::system(("node -e \"" + script + "\" " + (folder_ / "edited.glb").string()).c_str()), 0);
   }
 }

@@ -59,7 +59,7 @@ std::uint64_t hash_of(const BuiltMesh& built) {
   return hash.value();
 }
 
-// Each edge, by its ends in order, with the triangles that run it that way.
+// Each edge, by its ordered ends, with the triangles that traverse it in that direction.
 std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edge_map(const Mesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
@@ -107,7 +107,7 @@ TEST(MeshBuild, VertexAreasSumToTheTriangles) {
   }
 }
 
-// Exact but for the rounding of vertices, which a shorter edge feels more.
+// Exact within the rounding of vertices, which matters more for shorter edges.
 TEST(MeshBuild, NormalsOfASphereAreItsRadiiHoweverItIsCut) {
   for (const int levels : {2, 3, 4}) {
     const Mesh mesh = build(icosphere(levels)).mesh;
@@ -137,7 +137,7 @@ TEST(MeshBuild, DegenerateTrianglesAreDroppedAndCounted) {
   const BuiltMesh built = build(p);
   EXPECT_EQ(built.report.degenerate_triangles, 3u);
   EXPECT_EQ(built.mesh.triangles.size(), 2u);
-  EXPECT_EQ(built.mesh.vertex_count, 4u);  // the one that only a dropped triangle named is gone
+  EXPECT_EQ(built.mesh.vertex_count, 4u);  // the one used only by a dropped triangle is removed
   EXPECT_EQ(built.draw.indices.size(), 6u);
 }
 
@@ -162,8 +162,7 @@ TEST(MeshBuild, MinusZeroAndZeroAreOnePosition) {
 }
 
 TEST(MeshBuild, AdjacencyEqualsANaiveMapOnClosedOpenAndBrokenSurfaces) {
-  Primitive fan =
-      sheet(6);  // a third triangle on an inner edge, one with its orientation turned, one hanging on a corner
+  Primitive fan = sheet(6);  // a third triangle on an inner edge, a reversed triangle, and one attached at a corner
   fan.position.insert(fan.position.end(), {{0.5f, 0.5f, 1.0f}, {2, 2, 2}, {3, 2, 2}});
   fan.uv.resize(fan.position.size());
   for (const std::uint32_t v : {10u, 11u, 49u, 0u, 50u, 51u}) fan.index.push_back(v);

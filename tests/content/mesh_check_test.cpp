@@ -1,4 +1,4 @@
-// Files of other formats, sound and broken: none is read as something else than what stands in it.
+// Sound and broken files of other formats: none may be read differently from its content.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ struct File {
 struct Broken {
   const char* name;
   std::string text;
-  const char* said;  // part of the sentence
+  const char* said;  // part of the error sentence
 };
 
 class MeshCheck : public ::testing::Test {
@@ -208,7 +208,7 @@ TEST_F(MeshCheck, BrokenStlIsRefused) {
                   {"g.stl", "solid t\n" + kFacet + four + "endsolid t\n", "facet 1"}});
 }
 
-// 3D Studio's binary chunks: Assimp clamps an index and says so in its log.
+// 3D Studio's binary chunks: Assimp clamps an index and logs it.
 TEST_F(MeshCheck, WhatAssimpClampsInOtherFormatsIsRefused) {
   const auto chunk = [](std::uint16_t id, const std::string& content) {
     std::string out;

@@ -1,4 +1,4 @@
-// Meshes that no one here made: organs, a hand, a bunny, a cow, a person.
+// Meshes from other sources: organs, a hand, a bunny, a cow, a person.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,11 +14,11 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path kMeshes = fs::path(PLIANT_CORPUS_DIR) / "meshes-valid";
 
-// What must hold for any touch mesh, by brute force where that is cheap.
+// Invariants of any touch mesh, by brute force where that is cheap.
 void expect_sound(const BuiltMesh& built) {
   const Mesh& mesh = built.mesh;
   double area = 0.0, painted_area = 0.0;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> runs;  // how often an edge is run in this direction
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> runs;  // how often an edge is traversed in this direction
   for (const uvec3& t : mesh.triangles) {
     const dvec3 a(mesh.position(t.x)), b(mesh.position(t.y)), c(mesh.position(t.z));
     area += 0.5 * length(cross(b - a, c - a));

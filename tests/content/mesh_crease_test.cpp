@@ -1,4 +1,4 @@
-// Creases, the normals between them, and the curved surface that they make.
+// Creases, the normals between them, and the resulting curved surface.
 #include "content/mesh/mesh_crease.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ dvec3 face_normal(const Mesh& mesh, std::uint32_t t) {
   return normalize(cross(b - a, c - a));
 }
 
-// Each crease once.
+// Counts each crease once.
 std::size_t creases(const Mesh& mesh) {
   std::size_t count = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
@@ -165,7 +165,7 @@ TEST(MeshCrease, AFoldIsACreaseByItsTurnAndInBetweenByTheFilesNormals) {
 }
 
 TEST(MeshCrease, ACreaseThatEndsWithinTheSurfaceLeavesNoCrack) {
-  // A disc of eight sectors, two of which stand up: creases along their outer sides, flat elsewhere.
+  // A disc of eight sectors, two of which are raised: creases along their outer sides, flat elsewhere.
   Primitive p;
   p.position.emplace_back(0, 0, 0);
   for (int i = 0; i < 8; ++i) {

@@ -1,4 +1,4 @@
-// Coarse touch meshes, cut finer along the curved surface that they are touched as.
+// Coarse touch meshes, refined along the curved surface that is used for touch.
 #include "content/mesh/mesh_finer.h"
 
 #include <gmock/gmock.h>
@@ -91,7 +91,7 @@ TEST(MeshFiner, ACoarseSmoothSphereBecomesItsPatches) {
   EXPECT_TRUE(finer.mesh.crease.empty());
   EXPECT_TRUE(finer.mesh.split_normals.empty());
   EXPECT_LT(worst_gap(finer.mesh), 1e-6);
-  // How far patches leave the sphere: cutting them must not add to it.
+  // The patches' distance from the sphere: refinement must not increase it.
   const auto radii = [](const Mesh& mesh, int steps) {
     double low = 2.0, high = 0.0;
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -107,7 +107,7 @@ TEST(MeshFiner, ACoarseSmoothSphereBecomesItsPatches) {
   const auto before = radii(coarse.mesh, 16), after = radii(finer.mesh, 4);
   EXPECT_NEAR(after.first, before.first, 0.002);
   EXPECT_NEAR(after.second, before.second, 0.002);
-  // ... and flat triangles now lie within a hundredth of the reach of the patches.
+  // The flat triangles now lie within a hundredth of the reach of the patches.
   for (const uvec3& t : finer.mesh.triangles) {
     const dvec3 centre =
         (dvec3(finer.mesh.position(t.x)) + dvec3(finer.mesh.position(t.y)) + dvec3(finer.mesh.position(t.z))) / 3.0;
@@ -135,7 +135,7 @@ TEST(MeshFiner, ACylinderStaysCreasedAlongItsRimsAndGetsRounder) {
 }
 
 TEST(MeshFiner, PrimitivesAreCutAlikeAndWhatIsLinearStaysLinear) {
-  // The box's faces as primitives of their own, painted and textured.
+  // The box's faces as separate primitives, painted and textured.
   const Primitive whole = box({1, 1, 1}, true);
   std::vector<Primitive> faces;
   for (std::uint32_t f = 0; f < 6; ++f) {
@@ -268,7 +268,7 @@ TEST(MeshFiner, RealMeshesStayClosedAndSound) {
       const BuiltMesh before = build(mesh.primitives, std::nullopt), after = build(mesh.primitives, DentSize{0.0});
       EXPECT_EQ(after.mesh.closed, before.mesh.closed);
       EXPECT_EQ(after.mesh.crease.empty(), before.mesh.crease.empty());
-      // Curves leave their chords by a share of an edge, and thin ligaments have little volume beside their area.
+      // Curves leave their chords by a share of an edge, and thin ligaments have little volume for their area.
       double area = 0.0;
       for (const float a : before.mesh.area) area += static_cast<double>(a);
       if (before.mesh.closed)

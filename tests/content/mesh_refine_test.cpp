@@ -42,7 +42,7 @@ TEST(MeshRefine, LeavesNoEdgeLongAndTheSurfaceWhereItWasAlsoAcrossSeams) {
     }
 }
 
-// What is linear over the surface stays so; directions stay of length one.
+// A linear function on the surface stays linear; directions keep unit length.
 TEST(MeshRefine, GivesNewVerticesTheMeanOfWhatTheirEdgesCarry) {
   Primitive p = sheet(2);
   for (const vec3& x : p.position) {

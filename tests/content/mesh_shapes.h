@@ -1,4 +1,4 @@
-// Small meshes for tests of the mesh pipeline, as a loader would hand them over.
+// Small meshes for tests of the mesh pipeline, in the form that a loader returns.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ inline Primitive icosphere(int levels) {
   return p;
 }
 
-// Every triangle with corners of its own, as formats without sharing (STL) deliver.
+// Every triangle with its own vertices, as in formats without sharing (STL).
 inline Primitive unshared(const Primitive& shared) {
   Primitive p;
   for (const std::uint32_t v : shared.index) {

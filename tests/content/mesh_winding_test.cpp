@@ -1,4 +1,4 @@
-// Surfaces wound wrongly: what can be decided is turned, what cannot is counted.
+// Wrong winding: decidable cases are turned, others are counted.
 #include "content/mesh/mesh_winding.h"
 
 #include <gmock/gmock.h>
@@ -89,7 +89,7 @@ TEST(MeshWinding, AClosedPartThatIsInsideOutIsTurnedWithItsNormals) {
     if (normals)
       for (const vec3& x : p.position) p.normal.push_back(-x);
     p = inside_out(p);
-    for (const vec3& scale : {vec3(1), vec3(-2, 1, 1)}) {  // a mirroring frame does not make it right
+    for (const vec3& scale : {vec3(1), vec3(-2, 1, 1)}) {  // a mirroring frame does not correct it
       mat4 frame(1.0f);
       for (int i = 0; i < 3; ++i) frame[i] *= scale[i];
       const BuiltMesh built = build(p, frame);
@@ -122,7 +122,7 @@ TEST(MeshWinding, TheWallOfACavityStaysAndWhatFloatsInItIsTurned) {
   const double whole = enclosed_volume(built.mesh), hollow_volume = enclosed_volume(hollow.mesh);
   EXPECT_NEAR(whole - hollow_volume,
               std::abs(enclosed_volume(build(pearl).mesh)) + std::abs(enclosed_volume(build(beside).mesh)), 1e-5);
-  // All of it inside out: the hollow's outer side is turned, its wall is then right the other way round too.
+  // All inside out: the hollow's outer side is turned, after which its wall is right the other way round too.
   const BuiltMesh reversed = build(joined({inside_out(outer), wall}));
   EXPECT_EQ(reversed.report.turned_parts, 1u);
   EXPECT_NEAR(enclosed_volume(reversed.mesh), hollow_volume, 1e-5);

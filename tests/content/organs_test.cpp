@@ -1,6 +1,6 @@
-// Organs that no one here made (HRA's, in the corpus), touched as surfaces and as tissue: forces stay finite and within
-// what their device may send, elements well-shaped, tissue where it was put. What a run costs is bounded by the number
-// of tetrahedra, not by the time it takes here; that is printed.
+// Organs from HRA (in the corpus), touched as surfaces and as tissue. Forces stay finite and within the device's limit;
+// elements are well-shaped; tissue is where it should be. The cost of a run is bounded by the number of tetrahedra, not
+// by the measured time, which is only printed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,7 +41,7 @@ constexpr Organ kTissues[] = {{"VH_M_Liver.glb", "VH_M_liver_capsule"},
                               {"VH_F_Kidney_L.glb", "VH_F_kidney_capsule_L"}};
 
 constexpr double kMostForce = 3.3;  // [N] of the device
-// Under a sanitizer, the beginning.
+// Under a sanitizer, only the beginning.
 #ifdef PLIANT_SANITIZED
 constexpr std::size_t kOrgansTried = 2;
 constexpr int kDown = 100;
@@ -79,7 +79,7 @@ vec3 topmost(const MeshData& mesh) {
   return top;
 }
 
-// A finger above the topmost vertex. From elsewhere it would have to get there, too fast for a hand.
+// A finger above the topmost vertex. From elsewhere it would have to approach too fast for a hand.
 void add_finger(Scene& scene, double radius, vec3 top, double above) {
   ProbeParameters probe;
   probe.radius = radius;
@@ -90,8 +90,8 @@ void add_finger(Scene& scene, double radius, vec3 top, double above) {
   scene.add_probe("finger", probe, device, placement);
 }
 
-// Straight down onto the topmost vertex, its middle to `depth` [m] below it and up again; returns the largest force.
-// [N]
+// Straight down onto the topmost vertex until its centre is `depth` [m] below it, and up again; returns the largest
+// force. [N]
 double press(Session& session, const Organ& organ, vec3 top, double depth, double begin) {
   double most = 0.0;
   for (int tick = 0; tick < 2 * kDown; ++tick) {
@@ -117,7 +117,7 @@ TEST(Organs, AsSurfacesAllArePressedWithForcesWithinTheLimit) {
     const MeshData mesh = mesh_of(organ, box);
     ASSERT_FALSE(mesh.index.empty());
     const double size = static_cast<double>(box.diagonal());
-    // A finger that is pressed through a thin wall is on its other side.
+    // A finger pressed through a thin wall is on its other side.
     const Primitive primitive{.position = mesh.position, .index = mesh.index};
     const Result<BuiltMesh> built = build_mesh(organ.node, {&primitive, 1}, mat4(1.0f));
     ASSERT_TRUE(built.ok());

@@ -1,4 +1,4 @@
-// The height texture in a material's extras: kept through a save, and no file's extras are trusted.
+// The height texture in a material's extras: preserved by saving; other extras are not trusted.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -37,7 +37,7 @@ TEST(Relief, IsReadFromAMaterialsExtrasAndComesBackFromASavedLevel) {
   EXPECT_EQ(level->materials[0].height_texture, 0);
   EXPECT_EQ(level->materials[0].height_scale, 0.0005f);
 
-  // Saved as it was read, and as a level that never was a file.
+  // Saved as read, and as a level that was never a file.
   Level made;
   made.name = "made";
   made.images = level->images;

@@ -1,4 +1,5 @@
-// glTF files that people bring: sound ones are read, and mended where exporters slip; what no viewer agrees on is not.
+// glTF files from users: sound ones are read, and typical exporter errors repaired; anything that viewers interpret
+// differently is rejected.
 #include <gtest/gtest.h>
 
 #include <filesystem>

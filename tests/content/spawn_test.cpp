@@ -33,7 +33,7 @@ TEST(Spawn, BakesScaleAndMirrorSoThatTouchNormalsPointOutwardAndTheWorldPosition
     local.translation = {1, 2, 3};
     local.rotation = glm::angleAxis(0.7f, normalize(vec3(1, 2, -1)));
     local.scale = scale;
-    const Primitive sphere = icosphere(5);  // fine enough not to be cut finer
+    const Primitive sphere = icosphere(5);  // fine enough not to be refined
     const World world = spawned_level(level_of(sphere, local));
     const Entity thing = find_by_name(world, "thing");
     const Deformable& deformable = world.registry.get<Deformable>(thing);
@@ -41,7 +41,7 @@ TEST(Spawn, BakesScaleAndMirrorSoThatTouchNormalsPointOutwardAndTheWorldPosition
     const Mesh& mesh = world.meshes[deformable.mesh];
     ASSERT_EQ(mesh.vertex_count, sphere.position.size());
 
-    // Back through scale and rotation, every touch vertex is a point of the unit sphere.
+    // After inverse scale and rotation, every touch vertex is a point of the unit sphere.
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
       const dvec3 at_world = pose.to_world(dvec3(mesh.position(v)));
       const dvec3 rotated_back = glm::conjugate(dquat(local.rotation)) * (at_world - dvec3(local.translation));
@@ -55,7 +55,7 @@ TEST(Spawn, BakesScaleAndMirrorSoThatTouchNormalsPointOutwardAndTheWorldPosition
 
 TEST(Spawn, ShearFromANonUniformParentIsBakedIntoTheMesh) {
   Level level = level_of(icosphere(2));
-  level.nodes[0].deformable->reach = 100.0;  // so wide that the mesh is not cut finer
+  level.nodes[0].deformable->reach = 100.0;  // so wide that the mesh is not refined
   LevelNode parent = named("parent");
   parent.local.scale = {1, 3, 1};
   parent.children = {1};
@@ -154,7 +154,7 @@ TEST(Spawn, ADeviceThatTwoProbesOrToolsNameIsRefusedByAllThreeNames) {
   ASSERT_FALSE(refused.ok());
   all_three(refused.error().message(), "`right`");
 
-  level.nodes[3].probe_device.clear();  // moved by nobody
+  level.nodes[3].probe_device.clear();  // moved by no device
   EXPECT_TRUE(spawn(level).ok());
   level.nodes[2].probe = Probe{};  // the device's own node is a probe
   refused = spawn(level);
@@ -168,7 +168,7 @@ TEST(Spawn, ADeviceThatTwoProbesOrToolsNameIsRefusedByAllThreeNames) {
   refused = spawn(level);
   ASSERT_FALSE(refused.ok());
   all_three(refused.error().message(), "`thing`");
-  level.nodes[1].in_scene = false;  // what is not there moves nothing
+  level.nodes[1].in_scene = false;  // a device outside the scene moves nothing
   refused = spawn(level);
   EXPECT_TRUE(refused.ok()) << refused.error().message();
 }
@@ -191,7 +191,7 @@ TEST(Script, ReadsPositionsAndPosesWithCommentsAndEitherLineEnd) {
   EXPECT_EQ(positions->rows[1].time, 0.5);
   EXPECT_EQ(positions->rows[1].position, dvec3(-1e-3, 0, 0));
   EXPECT_FALSE(positions->repeats);
-  // As a spreadsheet writes it, and as people type it.
+  // As written by a spreadsheet, and by hand.
   for (const char* text :
        {"\xEF\xBB\xBFtime_s,x,y,z\r\n0,1,2,3\r\n0.5,-0.001,0,0\r\n", "time_s, x, y, z\n0, 1, 2, 3\n0.5, -0.001, 0, 0\n",
         "\xEF\xBB\xBF# sweep\r\n time_s ,\tx , y, z \r\n 0 ,\t1, 2 , 3 \r\n0.5,-1e-3,0,0"}) {

@@ -1,4 +1,5 @@
-// Files of tetrahedra: every form of the same mesh reads alike, faults are told with their place, damage never crashes.
+// Tetrahedra files: every format of the same mesh gives the same result, errors name their place, damaged files never
+// crash.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +32,7 @@ Result<TetFile> msh(const std::string& text) {
 Result<TetFile> vtk(const std::string& text) {
   return parse_vtk(bytes(text), "f.vtk");
 }
-// The pair as one text, a byte of 1 between its halves.
+// The pair as one text, with a byte of 1 between its halves.
 Result<TetFile> tetgen(const std::string& text) {
   const std::size_t split = std::min(text.find('\1'), text.size());
   const std::string node = text.substr(0, split), ele = text.substr(std::min(split + 1, text.size()));
@@ -181,7 +182,7 @@ TEST(TetFile, EveryMeshOfTheCorpusLoads) {
     const Result<TetFile> file = load_tets(entry.path());
     ASSERT_TRUE(file.ok()) << file.error().message();
     expect_sound(*file);
-    // What the elements fill is what their boundary encloses: none overlaps another.
+    // The elements' volume equals that enclosed by their boundary: no overlap.
     double volume = 0.0, within = 0.0;
     for (const Tet& t : file->tets) volume += tet_volume(file->nodes, t);
     for (const uvec3& t : boundary_triangles(file->tets))

@@ -1,5 +1,5 @@
-// Lattices of tetrahedra: against the volume of what they fill, the bounds that Labelle and Shewchuk prove, and the
-// identities of a conforming mesh.
+// Lattices of tetrahedra: against the volume they fill, the bounds that Labelle and Shewchuk prove, and the identities
+// of a conforming mesh.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ Mesh mesh_of(const std::vector<Primitive>& primitives, const mat4& to_object = m
   return std::move(built->mesh);
 }
 
-// A torus about +Z that faces outward: no symmetry of the lattice helps it.
+// A torus about +Z that faces outward, without a symmetry that favours the lattice.
 Primitive torus(float ring, float tube, std::uint32_t around, std::uint32_t along) {
   Primitive p;
   for (std::uint32_t i = 0; i < around; ++i)
@@ -60,7 +60,7 @@ TetMesh lattice(const Mesh& surface, double cell = 0.0) {
 
 void expect_conforming(const TetMesh& mesh) {
   for (const Tet& t : mesh.tets) ASSERT_GT(tet_volume(mesh.nodes, t), 0.0);
-  // Elements that overlapped would add up to more than their boundary encloses.
+  // Overlapping elements would add up to more than their boundary encloses.
   double within = 0.0;
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const uvec3& t : boundary_triangles(mesh.tets)) {
@@ -185,7 +185,7 @@ TEST(Lattice, ARingHardlyThickerThanACellStaysWhole) {
   }
   EXPECT_EQ(count_parts(surface), 1u);
   EXPECT_EQ(count_parts(mesh_of({icosphere(1), torus(3.0f, 0.5f, 12, 8)})), 2u);
-  // Two elements that share an edge hang together like a door.
+  // Two elements that share an edge are connected like a hinge.
   TetMesh hinge;
   hinge.nodes.resize(6);
   hinge.tets = {{0, 1, 2, 3}, {0, 1, 4, 5}};
@@ -241,7 +241,36 @@ TEST(Inside, FarClustersAsDipolesAgreeWithTheSumOverEveryTriangle) {
   }
 }
 
-// Lattices that are finer around a place.
+TEST(Inside, WhatIsLookedUpIsWhatTheWindingNumberSays) {
+  Primitive turned = torus(1.0f, 0.3f, 64, 24);
+  for (std::size_t i = 0; i < turned.index.size(); i += 3) std::swap(turned.index[i], turned.index[i + 1]);
+  Primitive beside = icosphere(3);
+  for (vec3& p : beside.position) p = 0.4f * p + vec3(1.1f, 0.2f, 0.1f);  // through the ring's wall
+  Primitive open = icosphere(3);
+  open.index.resize(open.index.size() - 300);
+  for (const std::vector<Primitive>& primitives : std::vector<std::vector<Primitive>>{
+           {torus(1.0f, 0.3f, 64, 24)}, {turned}, {torus(1.0f, 0.3f, 64, 24), beside}, {open}, {icosphere(0)}}) {
+    const Mesh surface = mesh_of(primitives);
+    const Inside inside(surface);
+    std::mt19937 random(11);
+    const dvec3 low(surface.box.min), size(surface.box.size());
+    std::uniform_real_distribution<double> share(-0.1, 1.1);
+    int in = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const dvec3 p = low + size * dvec3(share(random), share(random), share(random));
+      ASSERT_EQ(inside(p), inside.by_winding(p)) << p.x << ' ' << p.y << ' ' << p.z;
+      in += inside(p);
+    }
+    EXPECT_GT(in, 1000);
+    for (std::uint32_t v = 0; v < surface.vertex_count; ++v)  // right beside the surface
+      for (const double off : {-1e-3, 1e-3}) {
+        const dvec3 p = dvec3(surface.position(v)) + off * dvec3(surface.normal(v));
+        ASSERT_EQ(inside(p), inside.by_winding(p)) << v << ' ' << off;
+      }
+  }
+}
+
+// Lattices refined around a point.
 TEST(TetFocus, WhatIsBroughtOutwardComesBackInward) {
   const LatticeFocus focus{dvec3(1, 2, 3), 0.02, dmat3(1.0)};
   double before = 0.0;
@@ -271,7 +300,8 @@ TEST(TetFocus, FillsTheSameVolumeWithFineCellsWhereItIsAskedTo) {
     EXPECT_LT(std::abs(total_volume(*mesh) - volume), std::abs(total_volume(coarse) - volume));
     expect_conforming(*mesh);
     EXPECT_GT(mesh->quality.smallest_dihedral, 5 * kDegree) << "of a lattice drawn out by 1.8";
-    // Every edge is of its cell: at most 1.8 times as long as wide, and a node may have moved onto the surface by 0.4.
+    // Every edge matches its cell: at most 1.8 times as long as wide, and a node may have moved onto the surface by
+    // 0.4.
     double shortest = 1.0;
     for (const Tet& tet : mesh->tets)
       for (std::size_t i = 0; i < 4; ++i)
@@ -301,7 +331,7 @@ TEST(TetFocus, OfABodyIsItsBoxAndTheUsualNumberOfTetrahedraStays) {
   const auto even = make_soft_parts(node, &ring, mat4(1.0f), {});
   ASSERT_TRUE(even.ok());
   EXPECT_LT(parts->tets.report.cell, 0.6 * even->tets.report.cell);
-  // Its surface is as fine as the cells behind it, there.
+  // The surface is as fine as the cells behind it.
   const auto longest_near = [&](const SoftParts& of, bool inside) {
     double longest = 0.0;
     for (const uvec3& t : of.surface.mesh.triangles)

@@ -1,5 +1,4 @@
-// From a level to tissue: what spawn makes of PLIANT_soft_body, PLIANT_handle and PLIANT_rigid_body, and what it
-// refuses.
+// From a level to tissue: spawning PLIANT_soft_body, PLIANT_handle and PLIANT_rigid_body, and their errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -44,7 +43,7 @@ std::string refusal(const Level& level) {
   return world ? "" : world.error().message();
 }
 
-// A file that is gone with the test.
+// A file that is removed with the test.
 struct Temporary {
   explicit Temporary(const std::string& name, const std::string& text)
       : path(std::filesystem::temp_directory_path() / (std::to_string(::getpid()) + name)) {
@@ -110,7 +109,7 @@ TEST(SpawnSoft, PaintHoldsTheNodesBeneathIt) {
   const TetMesh& tets = world.tet_meshes[world.registry.get<SoftBody>(find_by_name(world, "thing")).tets];
   EXPECT_GT(tets.handle_count, 0u);
   for (std::uint32_t n = 0; n < tets.node_count(); ++n) {
-    if (length(tets.nodes[n]) < 0.04) continue;  // deep inside, which vertex is nearest is a matter of chance
+    if (length(tets.nodes[n]) < 0.04) continue;  // deep inside, the nearest vertex is arbitrary
     const double y = tets.nodes[n].y * 0.05 / length(tets.nodes[n]);
     if (std::abs(std::abs(y) - 0.02) < 0.006) continue;  // within an edge of the paint's border
     EXPECT_EQ(n < tets.free_count, std::abs(y) < 0.02) << y;
@@ -136,7 +135,7 @@ TEST(SpawnSoft, AFileOfTetrahedraStandsInTheNodesFrameWithItsBoundaryOrTheNodesM
   Level level = ball();
   level.path = file.path.parent_path() / "level.gltf";
   level.nodes[0].soft_body->mesh = file.path.filename().string();
-  level.nodes[0].local.scale = vec3(-0.1f, 0.1f, 0.1f);  // mirrored: elements are turned
+  level.nodes[0].local.scale = vec3(-0.1f, 0.1f, 0.1f);  // mirrored: elements are reversed
   level.nodes[0].mesh = -1;
   const World world = spawned_tets(level);
   const SoftBody& body = world.registry.get<SoftBody>(find_by_name(world, "thing"));
@@ -152,7 +151,7 @@ TEST(SpawnSoft, AFileOfTetrahedraStandsInTheNodesFrameWithItsBoundaryOrTheNodesM
   for (std::uint32_t v = 0; v < collision_mesh.vertex_count; ++v)
     EXPECT_GT(dot(collision_mesh.normal(v), collision_mesh.position(v) - collision_mesh.box.center()), 0.0f);
 
-  // With a mesh on the node, that surface rides on the block.
+  // With a mesh on the node, that surface is embedded in the block.
   level.nodes[0].mesh = 0;
   level.nodes[0].local.scale = vec3(1);
   for (vec3& p : level.meshes[0].primitives[0].position) p += vec3(0.5f);
@@ -194,7 +193,7 @@ TEST(SpawnSoft, ValidateTellsContradictionsNotesOfFilesAndTissueThatFallsApart) 
     level.meshes[0].primitives[0].index.resize(30);
   });
   EXPECT_THAT(turned, HasSubstr("other /nodes/0: 1 inverted tetrahedron"));
-  // Two balls on a thread.
+  // Two balls connected by a thread.
   const std::string apart = findings([](Level& level) {
     Primitive& p = level.meshes[0].primitives[0];
     const auto count = static_cast<std::uint32_t>(p.position.size());

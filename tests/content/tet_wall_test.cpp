@@ -1,5 +1,5 @@
-// Surfaces that are no plain solids, as tissue: double walls, open sheets, fins, crumbs. Against volumes in closed
-// form.
+// Surfaces that are not plain solids, as tissue: double walls, open sheets, fins, small parts. Against volumes in
+// closed form.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,14 +33,14 @@ Primitive moved(Primitive p, float scale, vec3 by) {
   return p;
 }
 
-// A sphere of radius 1 and another one within, facing into the cavity.
+// A sphere of radius 1 and an inner one that faces into the cavity.
 std::vector<Primitive> capsule(float thickness) {
   Primitive inner = moved(icosphere(4), 1.0f - thickness, vec3(0));
   for (std::size_t i = 0; i < inner.index.size(); i += 3) std::swap(inner.index[i], inner.index[i + 1]);
   return {icosphere(4), inner};
 }
 
-// The same with an opening about +Y, `half` [rad] wide to each side, its sheets joined around it: one closed surface.
+// The same with an opening about +Y, `half` [rad] to each side, its sheets joined around it: one closed surface.
 Primitive jar(double thickness, double half) {
   constexpr std::uint32_t kAround = 48, kRings = 48;
   Primitive p;
@@ -122,7 +122,7 @@ TEST(Wall, WithAThicknessItIsALayerBehindTheSurface) {
     EXPECT_NEAR(total_volume(mesh), layer, 0.1 * layer);
     EXPECT_EQ(count_parts(mesh), 1u);
   }
-  // ... of which there are not too many elements either where no cell is named.
+  // Without a given cell, the number of elements is also limited.
   wish.cell = 0.0;
   EXPECT_LE(filled(built({icosphere(4)}), wish).tets.size(), kMostUsualTets);
 }
@@ -152,7 +152,7 @@ TEST(Wall, ThinnerThanItsCellItIsRefusedWithWhatToDo) {
               testing::AllOf(HasSubstr("fill the inside (\"fill\": \"solid\")"), HasSubstr("`thickness` of at least")));
 }
 
-// A hundred needles in all directions: nothing of them is as thick as a cell.
+// A hundred needles in all directions, each thinner than a cell.
 TEST(Wall, HoweverThinTheUsualCellKeepsToItsBudget) {
   std::vector<Primitive> needles;
   for (int i = 0; i < 100; ++i) {
@@ -224,7 +224,7 @@ TEST(Preview, SaysWhatARunWouldMakeAndEndsWhenAsked) {
   EXPECT_THAT(stopped.error().message(), HasSubstr("was stopped"));
 }
 
-// The rows of bench/results/README.md that the model is of.
+// The rows of bench/results/README.md that the model was fitted to.
 TEST(StepCost, TheModelIsWithinAQuarterOfWhatWasMeasured) {
   for (const auto& [tets, ms] :
        {std::pair(540, 4.7), std::pair(2016, 6.0), std::pair(10080, 44.0), std::pair(40128, 676.0)})

@@ -1,4 +1,4 @@
-// One mesh of tetrahedra in every form that the readers know, written from the formats' public descriptions.
+// One mesh of tetrahedra in every supported format, written from the formats' public descriptions.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace pliant::test {
 
 using NodesAndTets = std::pair<std::vector<dvec3>, std::vector<Tet>>;
 
-// Values as text or as bytes, the most significant one first where `swapped` says so of this machine.
+// Values as text or as bytes; big-endian if `swapped`.
 class TetWriter {
  public:
   TetWriter(bool binary, bool swapped) : binary_(binary), swapped_(swapped) {}
@@ -106,7 +106,7 @@ inline std::string msh_4(const NodesAndTets& mesh, bool binary, bool swapped) {
   return w.text("\n$EndElements\n").take();
 }
 
-// Binary VTK has the most significant byte first.
+// Binary VTK is big-endian.
 inline std::string vtk(const NodesAndTets& mesh, bool binary, bool five) {
   TetWriter w(binary, true);
   w.text(fmt::format("# vtk DataFile Version {}\ntetrahedra\n{}\nDATASET UNSTRUCTURED_GRID\n", five ? "5.1" : "3.0",

@@ -1,5 +1,5 @@
-// What tinygltf 2.7 cannot read, or would lose in writing, is read and kept all the same (gltf_rewrite.cpp,
-// gltf_model.h). The oracle is the same document said in a way that tinygltf can read.
+// Content that tinygltf 2.7 cannot read, or would lose in writing, is read and preserved (gltf_rewrite.cpp,
+// gltf_model.h). The oracle is an equivalent document that tinygltf can read.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -37,7 +37,7 @@ Gltf square() {
   return gltf;
 }
 
-// Two channels that name no node between two that do.
+// Two channels without a node between two with one.
 Gltf moving() {
   Gltf gltf = square();
   const std::size_t times = gltf.accessor(std::vector<float>{0, 1}, "SCALAR", kFloat, true),
@@ -65,7 +65,7 @@ void expect_square(const Result<Level>& level, const std::string& what) {
   EXPECT_EQ(Difference::of(*square().load(), *level), "") << what;
 }
 
-// What tinygltf is given of a GLB file instead of its bytes, if anything.
+// The replacement JSON for tinygltf, if any.
 std::optional<Json> rewritten(const Bytes& glb) {
   Findings findings;
   Container container;

@@ -1,4 +1,4 @@
-// Settings that nobody reads are told of, and those that somebody reads are not.
+// Settings without effect are reported; others are not.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

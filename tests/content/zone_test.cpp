@@ -64,7 +64,7 @@ TEST(Zones, AreCompactPatches) {
   const Mesh mesh = mesh_of(test::icosphere(6));
   double sum = 0.0;
   for (const Box& box : mesh.zone_box) sum += static_cast<double>(box.diagonal());
-  // 128 vertices of spacing e fill a disc of diameter about 12 e; a run of rows would be hundreds of e long.
+  // 128 vertices at spacing e fill a disc of diameter about 12 e; a run of grid rows would be hundreds of e long.
   EXPECT_LT(sum / mesh.zone_count(), 30.0 * static_cast<double>(mesh.mean_edge));
 }
 

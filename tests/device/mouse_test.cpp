@@ -13,7 +13,7 @@ namespace {
 
 using scenes::Stage;
 
-// A ball, a probe moved by a mouse, and a touch clock that is told its time.
+// A ball, a probe moved by a mouse, and a touch clock with given time.
 struct MouseScene {
   Stage stage;
   Entity probe;
@@ -39,7 +39,7 @@ TEST(Mouse, HoveringToTheOtherSideOfABodyDoesNotTouchItOnTheWay) {
   MouseScene s;
   s.say({0, 0.12, 0}, true);
   s.run(16);
-  s.say({0, -0.12, 0}, true);  // straight through the middle, if it travelled
+  s.say({0, -0.12, 0}, true);  // the straight motion would pass through the middle
   s.run(16);
   EXPECT_FALSE(s.stage.read(s.probe).in_contact);
   EXPECT_EQ(s.stage.read(s.probe).force, dvec3(0));
@@ -91,7 +91,7 @@ TEST(Mouse, APressTravelsBetweenFramesAndIsFelt) {
   EXPECT_NEAR(s.stage.read(s.probe).normal_force, 300 * 0.004, 0.02);
 }
 
-// Pictures that were held up come in two ticks that follow each other, and the pointer has gone far meanwhile.
+// Delayed frames arrive in two consecutive ticks, with a large pointer motion between them.
 TEST(Mouse, AJumpOfAPressIsTravelledNoFasterThanAHandWould) {
   MouseScene s;
   s.say({0, 0.15, 0}, true);
@@ -125,7 +125,7 @@ TEST(Mouse, AWayOutThatIsNotOverIsTravelledToItsEndHoweverManyPicturesHover) {
 TEST(Mouse, LettingGoOfAPressGivesOutNoEnergy) {
   MouseScene s;
   scenes::WorkMeter meter;
-  double stored = 0.0, sampled = 0.0;  // [J] at most; what a spring that is left within a step is uncertain by
+  double stored = 0.0, sampled = 0.0;  // [J] upper bounds; the error from releasing a spring within a step
   ProbeReading last;
   const auto run = [&](int ticks) {
     for (int i = 0; i < ticks; ++i) {
@@ -143,7 +143,7 @@ TEST(Mouse, LettingGoOfAPressGivesOutNoEnergy) {
     s.say({0, 0.102 - 0.0005 * frame, 0}, false);
     run(16);
   }
-  s.say({0, 0.115, 0}, true);  // a slow picture: out in one frame
+  s.say({0, 0.115, 0}, true);  // a slow frame: out in one frame
   run(100);
   s.say({0, 0.12, 0}, true);
   run(16);

@@ -1,4 +1,4 @@
-// Scripts that start over: where they go, and that nothing jumps.
+// Repeating scripts: their poses, and that nothing jumps.
 #include "systems/device/path.h"
 
 #include <gtest/gtest.h>

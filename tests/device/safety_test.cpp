@@ -74,8 +74,8 @@ TEST(Safety, NothingLeavesUntilTheComputedForceHasBeenSmall) {
   EXPECT_GT(make_safe(state, device, {0, 0.5, 0}, {0, -0.011, 0}, 0, 1e-3).force.y, 0.1);
 }
 
-// A device that is suddenly elsewhere: the force falls as fast as what is let go falls, no work is counted for the way,
-// and the gate must be passed again. As fast as a hand can be, nothing happens.
+// A device that jumps: the force falls at the release rate, the jump does no work, and the gate closes. At speeds
+// possible for a hand, nothing happens.
 TEST(Safety, ADeviceThatJumpsIsLetGo) {
   HapticDevice device = plain();
   device.max_force = 10.0;
@@ -110,7 +110,7 @@ TEST(Safety, ADeviceThatJumpsIsLetGo) {
   EXPECT_EQ(make_safe(state, device, dvec3(0), {0.5, 0, 0}, 1.05, dt).event, SafetyEvent::kNone);
 }
 
-// However low the slew limit: force comes in slowly, and what is no longer wanted goes fast, along itself alone.
+// With any slew limit: force rises slowly, and unwanted force falls fast, along its own direction only.
 TEST(Safety, ALowSlewLimitHoldsNoForceThatIsNoLongerWanted) {
   HapticDevice device = plain();
   device.max_slew = 1000.0;
@@ -141,7 +141,7 @@ TEST(Safety, ALowSlewLimitHoldsNoForceThatIsNoLongerWanted) {
   EXPECT_LT(against.force.y, 0.0) << "then it comes in, slowly";
 }
 
-// Work, stiffness and speed are the hand's, in its own metres, where a driver's workspace is scaled to the world.
+// Work, stiffness and speed are in the hand's own metres if a driver's workspace is scaled to the world.
 TEST(Safety, AScaledWorkspaceIsHeldToTheHandsOwnMetres) {
   for (const double scale : {0.1, 1.0, 10.0}) {
     SafetyState state;

@@ -1,12 +1,16 @@
 #include "devices/drivers/haply.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <optional>
 #include <thread>
 
 #include "devices/ports/web_socket_port.h"
+#include "devices/servo/servo.h"
 #include "tests/drivers/fake_haply_service.h"
 #include "tests/drivers/until.h"
 
@@ -184,6 +188,44 @@ TEST(Haply, AMissingServiceAndAMissingDeviceAreOneSentenceEach) {
   const auto listed = list_haply();
   ASSERT_EQ(listed.size(), 1u);
   EXPECT_FALSE(listed[0].missing.empty());
+}
+
+// The process is killed under 1 N. What it leaves behind says one more thing on the same line.
+TEST(HaplyDevice, AfterKillNineAGuardProcessSendsAMessageOfZeroForce) {
+  int told[2];
+  ASSERT_EQ(::pipe(told), 0);
+  const pid_t engine = ::fork();  // before there is a thread
+  if (engine == 0) {
+    int port = 0;
+    if (::read(told[0], &port, sizeof port) != sizeof port) ::_exit(3);
+    Servo servo(std::make_unique<Haply>(to_port(port)));
+    if (!servo.open("") || !servo.start()) ::_exit(4);
+    for (double wanted = 0.0;;) {
+      if (servo.state() == DeviceState::kTripped) servo.arm();
+      wanted = servo.felt() ? std::min(1.0, wanted + 0.02) : 0.0;
+      DeviceModel model;
+      model.wrench.force.y = wanted;
+      servo.write_model(model, model.wrench);
+      ::usleep(1000);
+    }
+  }
+  FakeHaplyService service;
+  std::thread hand([&] {  // never quite still
+    for (int i = 0; ::kill(engine, 0) == 0 && i < 60000; ++i) {
+      {
+        const std::lock_guard lock(service.mutex);
+        service.state["cursor_position"]["x"] = 1e-4 * (i % 7);
+      }
+      ::usleep(1000);
+    }
+  });
+  ASSERT_EQ(::write(told[1], &service.port, sizeof service.port), static_cast<ssize_t>(sizeof service.port));
+  EXPECT_TRUE(soon([&] { return std::abs(commanded(service).z - 1.0) < 1e-4; })) << "up is z there";
+  ::kill(engine, SIGKILL);
+  ::waitpid(engine, nullptr, 0);
+  EXPECT_TRUE(soon([&] { return commanded(service) == dvec3(0); }));
+  hand.join();
+  for (const int end : told) ::close(end);
 }
 
 }  // namespace

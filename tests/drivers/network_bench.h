@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "devices/drivers/network_device.h"
@@ -55,12 +56,12 @@ struct NetworkBench {
     void free_peer() override {}
   };
 
-  NetworkBench() { start_device(); }
-  void start_device() {
+  explicit NetworkBench(std::optional<FrameKey> key = {}) { start_device(std::move(key)); }
+  void start_device(std::optional<FrameKey> key = {}) {
     device = std::make_unique<NetworkEndpoint>(
         std::make_unique<Port>(*this, false),
         DeviceCapabilities{.max_force = 4.0, .max_stiffness = 800.0, .workspace = {0.1, 0.1, 0.1}, .rate = 1000.0},
-        "bench", [this] { return time + device_clock; });
+        "bench", [this] { return time + device_clock; }, std::move(key));
   }
   PortOpener opener() {
     return [this](const std::string&) -> Result<std::unique_ptr<PacketPort>> {

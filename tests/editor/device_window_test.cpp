@@ -66,5 +66,26 @@ TEST_F(DeviceWindowTest, TheInspectorPicksWhichDeviceFromTheListAndThePlayPanelO
   EXPECT_NE(read_text(folder / "minimal.gltf").find("any-pose; mouse"), std::string::npos);
 }
 
+// A level may name kinds of devices; for more the user is asked, once for a file and its words.
+TEST_F(DeviceWindowTest, ALevelThatAsksForMoreThanItMayIsPlayedOnceTheUserHasAllowedIt) {
+  const std::string written = (folder / "stolen.csv").string();
+  level_wants("simulated:touch|record=" + written);
+  const Said refused = edited(
+      "click Play/Play\nawait Question/Allow for this file\nscreenshot asked.png\nclick Question/Cancel\n"
+      "expect-no Question/Allow for this file\nclick Play/Play\nclick Question/Play without\nawait Play/Pause\n"
+      "wait 1\nkey Shift+Space\nclose\n");
+  EXPECT_EQ(refused.status, 0) << refused.err;
+  EXPECT_FALSE(fs::exists(written)) << "a file was written for a level that nobody has allowed it";
+  const Said allowed =
+      edited("click Play/Play\nclick Question/Allow for this file\nawait Play/Pause\nwait 1\nkey Shift+Space\nclose\n");
+  EXPECT_EQ(allowed.status, 0) << allowed.err;
+  EXPECT_TRUE(fs::exists(written));
+  const Said again = edited("click Play/Play\nawait Play/Pause\nkey Shift+Space\nclose\n");
+  EXPECT_EQ(again.status, 0) << again.err;
+  level_wants("simulated:touch|record=" + written + ".csv");
+  const Said others = edited("click Play/Play\nclick Question/Cancel\nclose\n");
+  EXPECT_EQ(others.status, 0) << others.err;
+}
+
 }  // namespace
 }  // namespace pliant::testing

@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Gizmo, BothProjections, ::testing::Bool(),
 
 TEST_P(BothProjections, ADragFromOnePlaceOfAnAxisToAnotherMovesByTheWayBetweenThem) {
   const GizmoPicture picture = seen_from({0.3, 0.2, 0.5}, {0, 0, 0}, GetParam());
-  Grip grip;
+  GizmoGrip grip;
   grip.pivot = {0.02, -0.03, 0.05};
   for (int i = 0; i < 3; ++i) {
     const dvec2 from = pixel(picture, grip.pivot + 0.03 * grip.axes[i]),
@@ -64,7 +64,7 @@ TEST_P(BothProjections, ADragFromOnePlaceOfAnAxisToAnotherMovesByTheWayBetweenTh
 TEST_P(BothProjections, TheSamePixelsMoveAMoleculeAndARoomByTheirOwnMeasure) {
   for (const double size : {1e-6, 1.0, 100.0}) {
     const GizmoPicture picture = seen_from(size * dvec3(0, 0, 2), {0, 0, 0}, GetParam());
-    const auto by = moved_by(picture, Grip{}, GizmoPart::kX, {640, 360}, {740, 360});
+    const auto by = moved_by(picture, GizmoGrip{}, GizmoPart::kX, {640, 360}, {740, 360});
     ASSERT_TRUE(by);
     const double metres_a_pixel = 2.0 * 2.0 * size * std::tan(0.35) / 720.0;
     EXPECT_NEAR(by->x, 100 * metres_a_pixel, 1e-6 * size);
@@ -75,7 +75,7 @@ TEST_P(BothProjections, TheSamePixelsMoveAMoleculeAndARoomByTheirOwnMeasure) {
 TEST_P(BothProjections, APlaneFollowsTheMouseAndKeepsTheThirdAxis) {
   const GizmoPicture picture = seen_from({0.4, 0.3, 0.5}, {0, 0, 0}, GetParam());
   const dvec3 to(0.07, 0, -0.04);
-  const auto by = moved_by(picture, Grip{}, GizmoPart::kZX, pixel(picture, {0, 0, 0}), pixel(picture, to));
+  const auto by = moved_by(picture, GizmoGrip{}, GizmoPart::kZX, pixel(picture, {0, 0, 0}), pixel(picture, to));
   ASSERT_TRUE(by);
   EXPECT_LT(length(*by - to), 1e-9);
 }
@@ -83,7 +83,7 @@ TEST_P(BothProjections, APlaneFollowsTheMouseAndKeepsTheThirdAxis) {
 TEST_P(BothProjections, TheMiddleMovesInThePicturesPlane) {
   const GizmoPicture picture = seen_from({0.4, 0.3, 0.5}, {0, 0, 0}, GetParam());
   const dvec2 from(600, 300), to(710, 260);
-  const auto by = moved_by(picture, Grip{}, GizmoPart::kFree, from, to);
+  const auto by = moved_by(picture, GizmoGrip{}, GizmoPart::kFree, from, to);
   ASSERT_TRUE(by);
   EXPECT_NEAR(dot(*by, picture.forward()), 0.0, 1e-9);
   const dvec2 way = pixel(picture, *by) - pixel(picture, {0, 0, 0});
@@ -109,7 +109,7 @@ TEST_P(BothProjections, ARingSeenEdgeOnTurnsTheNearSideWithTheHand) {
 
 TEST_P(BothProjections, ScalingAlongAnAxisFollowsTheHandle) {
   const GizmoPicture picture = seen_from({0.3, 0.2, 0.5}, {0, 0, 0}, GetParam());
-  Grip grip;
+  GizmoGrip grip;
   grip.pivot = {0.02, 0, 0};
   const auto by = scaled_by(picture, grip, GizmoPart::kY, pixel(picture, grip.pivot + dvec3(0, 0.05, 0)),
                             pixel(picture, grip.pivot + dvec3(0, 0.12, 0)));
@@ -156,7 +156,7 @@ TEST(Gizmo, AMoveUnderATurnedAndUnevenlyScaledParentIsTheSameMoveInTheWorld) {
   const NodeId child = tree.add("child", {.translation = {0.1f, 0.2f, 0.3f}}, parent);
   const NodeId ids[] = {child};
   const dvec3 before = tree.place(child), by(0.05, -0.02, 0.01);
-  const Grip grip = grip_of(tree.editor.state(), ids, child, Pivot::kOrigin, false);
+  const GizmoGrip grip = grip_of(tree.editor.state(), ids, child, Pivot::kOrigin, false);
   ASSERT_TRUE(tree.editor.apply("Move", placed(tree.editor.state(), moved(grip, by))));
   EXPECT_LT(length(tree.place(child) - before - by), 1e-6);
 }
@@ -167,11 +167,11 @@ TEST(Gizmo, LocalAxesAreTheNodesOwnInTheWorld) {
       tree.add("parent", {.rotation = glm::angleAxis(glm::half_pi<float>(), vec3(0, 0, 1)), .scale = vec3(4)});
   const NodeId child = tree.add("child", {.rotation = glm::angleAxis(glm::half_pi<float>(), vec3(0, 1, 0))}, parent);
   const NodeId ids[] = {child};
-  const Grip local = grip_of(tree.editor.state(), ids, child, Pivot::kOrigin, true);
+  const GizmoGrip local = grip_of(tree.editor.state(), ids, child, Pivot::kOrigin, true);
   // x of the child is -z of its parent, which is -z of the world.
   EXPECT_LT(length(local.axes[0] - dvec3(0, 0, -1)), 1e-6);
   EXPECT_LT(length(local.axes[1] - dvec3(-1, 0, 0)), 1e-6);
-  const Grip world = grip_of(tree.editor.state(), ids, child, Pivot::kOrigin, false);
+  const GizmoGrip world = grip_of(tree.editor.state(), ids, child, Pivot::kOrigin, false);
   EXPECT_EQ(world.axes, dmat3(1));
 }
 
@@ -184,7 +184,7 @@ TEST(Gizmo, ATurnAboutAWorldAxisIsThatTurnUnderAnyEvenlyScaledParent) {
       tree.add("child", {.translation = {0.1f, 0, 0}, .rotation = glm::angleAxis(0.4f, vec3(1, 0, 0))}, parent);
   const NodeId ids[] = {child};
   const dmat4 before = tree.editor.state().to_world(child);
-  Grip grip = grip_of(tree.editor.state(), ids, child, Pivot::kOrigin, false);
+  GizmoGrip grip = grip_of(tree.editor.state(), ids, child, Pivot::kOrigin, false);
   const dmat3 turn = dmat3(glm::rotate(dmat4(1), 0.6, dvec3(0, 1, 0)));
   ASSERT_TRUE(tree.editor.apply("Turn", placed(tree.editor.state(), turned(grip, {0, 1, 0}, 0.6))));
   const dmat4 after = tree.editor.state().to_world(child);
@@ -196,7 +196,7 @@ TEST(Gizmo, SeveralNodesTurnAndScaleAboutTheirCommonMiddle) {
   Tree tree;
   const NodeId a = tree.add("a", {.translation = {-0.1f, 0, 0}}), b = tree.add("b", {.translation = {0.3f, 0, 0}});
   const NodeId ids[] = {a, b};
-  const Grip grip = grip_of(tree.editor.state(), ids, b, Pivot::kOrigin, false);
+  const GizmoGrip grip = grip_of(tree.editor.state(), ids, b, Pivot::kOrigin, false);
   EXPECT_LT(length(grip.pivot - dvec3(0.1, 0, 0)), 1e-7);
   ASSERT_TRUE(tree.editor.apply("Turn", placed(tree.editor.state(), turned(grip, {0, 0, 1}, glm::half_pi<double>()))));
   EXPECT_LT(length(tree.place(a) - dvec3(0.1, -0.2, 0)), 1e-6);
@@ -212,7 +212,7 @@ TEST(Gizmo, ANodeBelowAnotherThatIsHeldGoesWithItOnce) {
   Tree tree;
   const NodeId parent = tree.add("parent", {}), child = tree.add("child", {.translation = {0, 0.1f, 0}}, parent);
   const NodeId ids[] = {child, parent};
-  const Grip grip = grip_of(tree.editor.state(), ids, parent, Pivot::kOrigin, false);
+  const GizmoGrip grip = grip_of(tree.editor.state(), ids, parent, Pivot::kOrigin, false);
   ASSERT_EQ(grip.held.size(), 1u);
   ASSERT_TRUE(tree.editor.apply("Move", placed(tree.editor.state(), moved(grip, {0.5, 0, 0}))));
   EXPECT_LT(length(tree.place(child) - dvec3(0.5, 0.1, 0)), 1e-6);
@@ -222,7 +222,7 @@ TEST(Gizmo, ScalingAlongWorldAxesStretchesATurnedNodeThatWay) {
   Tree tree;
   const NodeId id = tree.add("rod", {.rotation = glm::angleAxis(glm::half_pi<float>(), vec3(0, 0, 1))});
   const NodeId ids[] = {id};
-  const Grip grip = grip_of(tree.editor.state(), ids, id, Pivot::kOrigin, false);
+  const GizmoGrip grip = grip_of(tree.editor.state(), ids, id, Pivot::kOrigin, false);
   ASSERT_TRUE(tree.editor.apply("Scale", placed(tree.editor.state(), scaled(grip, {1, 3, 1}))));
   // Its own x points along the world's y.
   EXPECT_LT(length(tree.editor.state().find(id)->node.local.scale - vec3(3, 1, 1)), 1e-5f);
@@ -237,7 +237,7 @@ TEST(Gizmo, AFlatNodeMayBeMovedTurnedAndScaledAndStaysFinite) {
   state.nodes[0] = node;
   const NodeId ids[] = {child};
   for (const bool local : {false, true}) {
-    const Grip grip = grip_of(state, ids, child, Pivot::kMiddle, local);
+    const GizmoGrip grip = grip_of(state, ids, child, Pivot::kMiddle, local);
     for (const auto& all : {moved(grip, {0.1, 0.1, 0.1}), turned(grip, {0, 0, 1}, 0.5), scaled(grip, {2, 2, 2})})
       for (const Placing& each : all)
         for (int i = 0; i < 3; ++i) {

@@ -84,5 +84,38 @@ TEST_F(PlayWindowTest, ClosingWhileItPlaysEndsItWithoutAWord) {
   EXPECT_EQ(said.status, 0) << said.err;
 }
 
+// Pixels of a warning, yellow, where what a run finds is written: the upper left of the viewport.
+std::size_t warned(const Image& image) {
+  std::size_t yellow = 0;
+  for (std::size_t y = 70; y < 140; ++y)
+    for (std::size_t x = 262; x < 640; ++x) {
+      const std::uint8_t* const p = &image.rgba[4 * (y * image.width + x)];
+      yellow += p[0] > 150 && p[1] > 110 && p[0] > 2 * p[2];
+    }
+  return yellow;
+}
+
+TEST_F(PlayWindowTest, WhatAProbeDoesNotFeelIsWrittenOverThePicture) {
+  const struct {
+    const char *rows, *said;
+  } paths[] = {{"0,0,0.05,0\n0.5,0.01,0.05,0\n", "has touched nothing on its path"},
+               {"0,0,-0.004,0\n0.5,0.005,-0.004,0\n", "no force: withheld until it has been outside once"},
+               {"0,0,0.02,0\n0.5,0,-0.002,0\n", ""}};
+  for (const auto& [rows, said] : paths) {
+    write_text(folder / "minimal.csv", std::string("time_s,x,y,z\n") + rows);
+    const std::string words = said;
+    const Said done =
+        edited("await Inspector/Search\nscreenshot before.png\nclick Play/Play\nawait Play/Pause\nwait 1.5\n" +
+               (words.empty() ? std::string() : "expect Play/tip " + words + "\n") +
+               "screenshot after.png\nclick Play/Stop\nclose\n");
+    ASSERT_EQ(done.status, 0) << rows << done.err;
+    EXPECT_EQ(warned(shot("before.png")), 0u) << rows;
+    if (words.empty())
+      EXPECT_EQ(warned(shot("after.png")), 0u) << rows;
+    else
+      EXPECT_GT(warned(shot("after.png")), 200u) << rows;
+  }
+}
+
 }  // namespace
 }  // namespace pliant::testing

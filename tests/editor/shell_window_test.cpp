@@ -174,6 +174,31 @@ TEST_F(ShellWindowTest, NothingOverlapsOrIsCutOffFrom800x600On) {
   }
 }
 
+TEST_F(ShellWindowTest, AScriptThatLeavesTheQuestionOfChangesOpenEndsWithASentence) {
+  for (const char* end : {"close\n", "key Ctrl+Q\n"})
+    expect_fails("small.glb", std::string("click Scene/finger/row\nkey Delete\n") + end, "click Unsaved/Discard");
+  // So does one whose answer asks for a name.
+  expect_fails("", "click Menu/Add\nclick Probe with a device\nclose\nclick Unsaved/Save\n", "script.txt:4: ");
+  expect_done("small.glb",
+              "click Scene/finger/row\nkey Delete\nclose\nclick Unsaved/Cancel\nclose\n"
+              "click Unsaved/Save\n");
+  EXPECT_EQ(document("small.glb").state().find("finger"), nullptr);
+}
+
+TEST_F(ShellWindowTest, WhatTakesLongToOpenCanBeGivenUp) {
+  write_text(folder / "large.obj", plate_obj(600));
+  for (const char* cancel : {"click Opening/Cancel\n", "key Esc\n"}) {
+    const std::string gives_up =
+        std::string("await Opening/Cancel\nscreenshot opening.png\n") + cancel + "say Given up: Opening large.obj\n";
+    expect_done("large.obj", gives_up + "screenshot given_up.png\nexpect Start/Open organ…\nclose\n");
+    // What was open stays, with its changes.
+    expect_done("small.glb",
+                "click Scene/finger/row\nkey Delete\nkey Ctrl+S\nkey Ctrl+Z\nkey Ctrl+S\nkey Ctrl+O\n"
+                "await Files/Path\nset Files/Path " +
+                    (folder / "large.obj").string() + "\n" + gives_up + "expect Scene/finger/row\nclose\n");
+  }
+}
+
 TEST_F(ShellWindowTest, SlowFramesLoseNoClickAndNoKey) {
   for (const char* slow : {"0.1", "0.2"})
     expect_done("small.glb", std::string("slow ") + slow +

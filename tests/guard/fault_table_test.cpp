@@ -304,12 +304,10 @@ constexpr const char* kOthers =
     "program |\n"
     "| library missing a symbol | 0.00 N | 0.0 mJ | refused | disconnected | its driver does not open |\n"
     "| process stopped (SIGSTOP) | as it was | - | by the guard process after 50 ms, where the driver has a line for "
-    "it (no driver that ships has); else by the device's own watchdog | tripped when it goes on | its servo did not "
-    "run "
-    "in time |\n"
-    "| kill -9 | as it was | - | by the guard process at once, where the driver has a line for it (no driver that "
-    "ships "
-    "has); else by the device's own watchdog | - | - |\n"
+    "it ([which have](#lines-of-the-guard-process)); else by the device's own watchdog | tripped when it goes on | "
+    "its servo did not run in time |\n"
+    "| kill -9 | as it was | - | by the guard process at once, where the driver has a line for it "
+    "([which have](#lines-of-the-guard-process)); else by the device's own watchdog | - | - |\n"
     "| crash (SIGSEGV, abort) and SIGTERM | 0.00 N | - | at once, by the signal handler | - | - |\n";
 
 TEST(FaultTable, EveryFaultEndsWithoutForceOrWithinTheLimitsAndTheTableSaysHow) {

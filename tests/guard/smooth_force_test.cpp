@@ -1,35 +1,10 @@
 // What is written to a device, judged as a force: a hand that comes into a wall while the guard lets its force in is to
 // feel the wall, not a force that is switched. Over a grid of hands, walls, rates and moments.
-#include <complex>
-
+#include "scenes/exact_hand.h"
 #include "tests/guard/hand_rig.h"
 
 namespace pliant {
 namespace {
-
-// One axis, a mass on a spring and a damper, exact over a period in which the force is constant.
-struct ExactHand {
-  double mass = 0.15, damping = 5.0, stiffness = 300.0;  // [kg], [N s/m], [N/m]
-  double y = 0.01, v = 0.0, work = 0.0;                  // [m], [m/s], [J] done by the force on it
-
-  void step(double force, double wants, double dt) {
-    using Complex = std::complex<double>;
-    const double rest = wants + force / stiffness, from = y;
-    const Complex half = 0.5 * damping / mass, root = std::sqrt(half * half - stiffness / mass) + Complex(0, 1e-9);
-    const Complex p = -half + root, q = -half - root;
-    const Complex b = (v - p * (y - rest)) / (q - p), a = y - rest - b;
-    const Complex at = a * std::exp(p * dt), bt = b * std::exp(q * dt);
-    y = rest + (at + bt).real();
-    v = (p * at + q * bt).real();
-    work += force * (y - from);
-  }
-};
-
-struct Written {
-  int writes = 0, zeros = 0;
-  double error = 0.0, step = 0.0;  // [N] largest: from the wanted force, and from one write to the next
-  double mean = 0.0, wanted = 0.0;
-};
 
 // Driver, servo and guard as they are; the wall is a touch tick's at 1 kHz.
 struct Press {
@@ -74,13 +49,7 @@ struct Press {
       const double before = device.written;
       servo->period(time);
       const double wanted = std::min(3.3, std::max(0.0, -wall * hand.y));
-      if (written) {
-        ++written->writes;
-        written->zeros += device.written == 0.0;
-        written->error = std::max(written->error, std::abs(device.written - wanted));
-        written->step = std::max(written->step, std::abs(device.written - before));
-        written->mean += device.written, written->wanted += wanted;
-      }
+      if (written) written->add(device.written, before, wanted);
       hand.step(device.written, wants, 1e-3 / periods);
       deepest = std::max(deepest, -hand.y);
       if (hand.y < 0.0) sampled += 0.5 * wall / rate * hand.v * hand.v * 1e-3 / periods;

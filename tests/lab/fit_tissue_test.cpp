@@ -72,8 +72,9 @@ PressBodies bodies(double poisson, double radius, bool linear, const Level* leve
   EXPECT_TRUE(made.ok()) << made.error().message();
   return std::move(*made);
 }
-std::shared_ptr<TissuePress> body_at(const PressBodies& bodies, const PressPlace& place, double share = 1.0) {
-  auto body = bodies.at(place, share);
+std::shared_ptr<TissuePress> body_at(const PressBodies& bodies, const PressPlace& place, double share = 1.0,
+                                     PressKind kind = PressKind::kDeep) {
+  auto body = bodies.at(place, kind, share);
   EXPECT_TRUE(body.ok()) << body.error().message();
   return *body;
 }
@@ -96,7 +97,7 @@ TEST(FitTissue, WithoutTheErrorOfItsCellsASmallPressIntoABondedLayerIsItsClosedF
       const PressBodies block = bodies(poisson, radius, true);
       const PressPlace place = middle_of(block.surface());
       const auto stiffness = [&](double share) {
-        return body_at(block, place, share)->punch(block.surface(), place, radius).stiffness();
+        return body_at(block, place, share)->punch(block.surface(), place, radius)->stiffness();
       };
       const double coarse = stiffness(1.0), fine = stiffness(2.0 / 3.0);
       const double known = 28.0 / 15 * 10e3 / (1 - poisson * poisson) * radius *
@@ -111,7 +112,7 @@ TEST(FitTissue, WithSmallStrainsForceAndDentAreProportionalToTheDepth) {
   const PressBodies block = bodies(0.4, 0.005, true);
   const PressPlace place = middle_of(block.surface());
   const auto body = body_at(block, place);
-  const TissuePress::Punch punch = body->punch(block.surface(), place, 0.005);
+  const TissuePress::Punch punch = *body->punch(block.surface(), place, 0.005);
   const auto under = samples_around(block.surface(), place, 0.005, 0.001);
   const auto presses = body->press_to(punch, under, 0.002, 2);
   ASSERT_EQ(presses.size(), 2u);
@@ -126,6 +127,31 @@ TEST(FitTissue, WithSmallStrainsForceAndDentAreProportionalToTheDepth) {
     area += weight;
   }
   EXPECT_NEAR(sum / area, -0.002, 0.00002);
+}
+
+TEST(FitTissue, ASmallPressIsAsStiffWithoutAFactorAsWithOne) {
+  for (const double poisson : {0.0, 0.3, 0.45, 0.49, 0.499}) {
+    const PressBodies block = bodies(poisson, 0.005, true);
+    const PressPlace place = middle_of(block.surface());
+    const auto stiffness = [&](PressKind kind) {
+      return body_at(block, place, 1.0, kind)->punch(block.surface(), place, 0.005)->stiffness();
+    };
+    EXPECT_NEAR(stiffness(PressKind::kSmall) / stiffness(PressKind::kDeep), 1.0, 1e-7) << poisson;
+  }
+}
+
+TEST(FitTissue, ForcesAloneAreThoseOfTheMatricesToTheBit) {
+  const PressBodies block = bodies(0.4, 0.005, false);
+  const TetMesh tets = body_at(block, middle_of(block.surface()), 2.0)->tets();
+  Tissue alone(tets, {}, tets.free_count), whole(tets, {}, tets.free_count);
+  for (std::uint32_t i = 0; i < tets.free_count; ++i) {
+    const dvec3 x = tets.nodes[i];
+    alone.position()[i] = whole.position()[i] = x + 0.2 * dvec3(x.y, 0.3 * x.x, -x.y);
+  }
+  alone.find_forces();
+  whole.assemble(1.0, dvec3(0));
+  ASSERT_GT(whole.elastic_force().norm(), 0.0);
+  EXPECT_EQ(alone.elastic_force(), whole.elastic_force());
 }
 
 TEST(FitTissue, SamplesCoverTheSurfaceAroundAPlaceOnce) {
@@ -227,7 +253,7 @@ TEST(FitTissue, AWallThatIsFilledIsNotPressedOnItsInnerSheet) {
   EXPECT_GT(outside, 100);
   const auto stiffness = [](const PressBodies& of) {
     const PressPlace place = middle_of(of.surface());
-    return body_at(of, place)->punch(of.surface(), place, 0.005).stiffness();
+    return body_at(of, place)->punch(of.surface(), place, 0.005)->stiffness();
   };
   EXPECT_NEAR(stiffness(wall) / stiffness(plain), 1.0, 0.01);
 }

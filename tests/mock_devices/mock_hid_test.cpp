@@ -1,21 +1,30 @@
 // What hidapi and sysfs show of devices that umockdev makes: run it by ctest, or under umockdev-wrapper. A node is a
 // pseudo terminal: good for one report at a time, not for timing.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <umockdev.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <string>
 #include <thread>
 
+#include "devices/drivers/polhem_kinematics.h"
+#include "devices/guard/watchman.h"
 #include "devices/ports/hid_port.h"
+#include "devices/servo/claim.h"
+#include "devices/servo/device_identity.h"
 #include "pliant/driver.h"
 #include "pliant/drivers.h"
 #include "tests/drivers/emulated_spacemouse.h"
@@ -226,6 +235,139 @@ TEST_F(Bench, AGamepadIsTakenFromWhatSysfsSays) {
   EXPECT_EQ(found[0].id, "42:43");
   EXPECT_TRUE(found[0].can.renders_vibration);
   EXPECT_TRUE(found[0].can.resists_only);
+}
+
+// A process of its own that renders `force` until it is killed; its guard process has the line.
+pid_t rendering(const char* driver, const char* id, dvec3 force) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  const std::unique_ptr<Driver> made = *make_driver(driver);
+  if (!made->open(id)) ::_exit(3);
+  LineWatch watch;
+  if (!watch.start(*made, made->capabilities()).empty()) ::_exit(4);
+  DeviceSample sample;
+  for (double now = 0.0;; now += 1e-3) {
+    made->wait(2e-3);
+    made->read(sample);
+    made->write({.force = force});
+    watch.beat(*made, now);
+    ::usleep(1000);
+  }
+}
+
+// Every packet that comes until `enough`, or until none has come for a second. True: enough.
+bool hear(int line, std::size_t size, std::vector<std::uint8_t>& last, const std::function<bool()>& enough) {
+  for (std::vector<std::uint8_t> packet;;) {
+    pollfd watched{line, POLLIN, 0};
+    if (::poll(&watched, 1, 1000) != 1) return false;
+    std::uint8_t byte[1024];
+    const ssize_t got = ::read(line, byte, size - packet.size());
+    if (got <= 0) return false;
+    packet.insert(packet.end(), byte, byte + got);
+    if (packet.size() < size) continue;
+    last = std::exchange(packet, {});
+    if (enough()) return true;
+  }
+}
+
+const std::vector<std::uint8_t> kPad{0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x85, 0x01, 0x75,
+                                     0x08, 0x95, 0x3f, 0x09, 0x30, 0x81, 0x02, 0xc0};
+
+TEST_F(Bench, AfterKillNineAGuardProcessLetsAPadRest) {
+  plug({1, 0x054c, 0x0ce6, "DualSense Wireless Controller", "a0:b1", kPad, false});
+  const int line = umockdev_testbed_get_dev_fd(bed, "/dev/hidraw1");
+  const int held = ::open("/dev/hidraw1", O_RDWR | O_NOCTTY);  // a pseudo terminal that nobody has open ends
+  const pid_t engine = rendering("dualsense", "a0:b1", {0, 2, 0});
+  std::vector<std::uint8_t> last;
+  const auto shakes = [&] { return last[3] != 0 || last[4] != 0; };
+  ASSERT_TRUE(hear(line, 48, last, shakes));
+  ::kill(engine, SIGKILL);
+  ::waitpid(engine, nullptr, 0);
+  hear(line, 48, last, [] { return false; });
+  ASSERT_EQ(last.size(), 48u);
+  EXPECT_EQ(last[0], 0x02);
+  EXPECT_FALSE(shakes()) << "the last that the pad heard";
+  ::close(held);
+}
+
+TEST_F(Bench, AfterKillNineAGuardProcessTakesTheCurrentsFromAnArm) {
+  const std::vector<std::uint8_t> raw{0x06, 0xab, 0xff, 0x0a, 0x00, 0x02, 0xa1, 0x01, 0x75,
+                                      0x08, 0x95, 0x40, 0x09, 0x01, 0x81, 0x02, 0xc0};
+  plug({3, 0x16c0, 0x0486, "Polhem", "77", raw, false});
+  const int line = umockdev_testbed_get_dev_fd(bed, "/dev/hidraw3");
+  const int held = ::open("/dev/hidraw3", O_RDWR | O_NOCTTY);
+  const PolhemConfig& config = kPolhemConfigs[0];
+  const pid_t engine = rendering("polhem", ("77?home=kept&mechanism=" + std::string(config.name)).c_str(), {0, 1, 0});
+  std::array<std::uint8_t, 64> parked{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    parked[2 * i] = static_cast<std::uint8_t>(config.home[i]);
+    parked[2 * i + 1] = static_cast<std::uint8_t>(config.home[i] >> 8);
+  }
+  std::vector<std::uint8_t> last;
+  const auto drives = [&] { return std::any_of(last.begin() + 1, last.begin() + 7, [](auto b) { return b != 0; }); };
+  ASSERT_TRUE(hear(line, 65, last, [&] {
+    if (drives()) return true;
+    EXPECT_EQ(::write(line, parked.data(), parked.size()), static_cast<ssize_t>(parked.size()));
+    return false;
+  }));
+  ::kill(engine, SIGKILL);
+  ::waitpid(engine, nullptr, 0);
+  hear(line, 65, last, [] { return false; });
+  ASSERT_EQ(last.size(), 65u) << "a report of 65 bytes";
+  EXPECT_FALSE(drives()) << "the last that the arm heard";
+  ::close(held);
+}
+
+// What a driver has opened, without a device.
+struct OpenedNode final : Driver {
+  explicit OpenedNode(std::string path) : path_(std::move(path)) {}
+  Status open(const std::string&) override { return Done{}; }
+  bool read(DeviceSample&) override { return false; }
+  void write(const DeviceWrench&) override {}
+  void close() override {}
+  std::string node() const override { return path_; }
+
+ private:
+  std::string path_;
+};
+
+// One pad, two kinds of node and any number of names.
+TEST_F(Bench, APadIsOneDeviceForWhateverDriverOpensIt) {
+  plug({1, 0x054c, 0x0ce6, "DualSense Wireless Controller", "a0:b1", kPad, false});
+  plug({2, 0x054c, 0x0ce6, "DualSense Wireless Controller", "a0:b2", kPad, false});
+  GError* error = nullptr;
+  std::string text;
+  for (const auto& [pad, input, event] : {std::array{"0001", "5", "7"}, {"0001", "6", "8"}, {"0002", "9", "11"}}) {
+    const std::string port = pad[3] == '1' ? "1-1" : "1-2";
+    const std::string at = "/devices/usb1/" + port + "/" + port + ":1.0/0003:054C:0CE6." + pad + "/input/input" + input;
+    text += "P: " + at + "\nE: SUBSYSTEM=input\nA: name=Pad\nA: uniq=\n\nP: " + at + "/event" + event +
+            "\nN: input/event" + event + "\nE: SUBSYSTEM=input\nE: DEVNAME=/dev/input/event" + event +
+            "\nL: device=../../input" + input + "\n\n";
+  }
+  ASSERT_TRUE(umockdev_testbed_add_from_string(bed, text.c_str(), &error)) << (error ? error->message : "");
+  const std::string one = device_identity("dualsense:a0:b1");
+  EXPECT_THAT(one, HasSubstr("0003:054C:0CE6.0001"));
+  for (const char* same : {"dualsense:/dev/hidraw1", "gamepad:/dev/input/event7", "gamepad:/dev/input/event8",
+                           "gamepad:/dev/input/../input/event7?speed=1|delay=5", "gamepad:a0:b1"})
+    EXPECT_EQ(device_identity(same), one) << same;
+  EXPECT_NE(device_identity("gamepad:/dev/input/event11"), one);
+  EXPECT_EQ(device_identity("gamepad:/dev/input/event11"), device_identity("dualsense:a0:b2"));
+
+  DeviceClaim pad, again, other;
+  ASSERT_TRUE(pad.take("dualsense"));  // the first one
+  const std::unique_ptr<Driver> driver = *make_driver("dualsense");
+  ASSERT_TRUE(driver->open(""));
+  EXPECT_EQ(driver->node(), "/dev/hidraw1");
+  ASSERT_TRUE(pad.take_opened("dualsense", *driver));
+  EXPECT_FALSE(again.take("gamepad:/dev/input/event7"));
+  EXPECT_FALSE(again.take("dualsense:a0:b1"));
+  ASSERT_TRUE(other.take("gamepad"));  // the first one, whichever that is
+  const Status twice = other.take_opened("gamepad", OpenedNode("/dev/input/event8"));
+  ASSERT_FALSE(twice);
+  EXPECT_THAT(twice.error().message(), HasSubstr("moves another effector already"));
+  EXPECT_TRUE(other.take_opened("gamepad", OpenedNode("/dev/input/event11")));
+  pad.release();
+  EXPECT_TRUE(again.take("gamepad:/dev/input/event7"));
 }
 
 }  // namespace

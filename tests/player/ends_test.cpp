@@ -85,6 +85,28 @@ TEST_F(Ends, ASecondCtrlCDoesNotLoseTheReport) {
   expect_results("out", "interrupted");
 }
 
+// At any time, also after the report has been written and the process is about to end.
+TEST_F(Ends, ASignalMoreDoesNotChangeHowARunEndsThatASignalHasEnded) {
+  const auto run = [](int first, std::initializer_list<int> late, int presses = 0) {
+    {
+      const Interrupt interrupt;
+      if (first > 0) std::raise(first);
+    }
+    for (const int signal : late) std::raise(signal);
+    for (int i = 0; i < presses; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(400));
+      std::raise(SIGINT);
+    }
+    std::_Exit(7);
+  };
+  for (const int first : {SIGINT, SIGTERM, SIGHUP})
+    EXPECT_EXIT(run(first, {SIGTERM, SIGINT, SIGHUP, SIGTERM}), ::testing::ExitedWithCode(7), "^$") << first;
+  EXPECT_EXIT(run(SIGINT, {}, 2), ::testing::ExitedWithCode(7), "^$");
+  EXPECT_EXIT(run(SIGINT, {}, 3), ::testing::ExitedWithCode(130), "^$");
+  // Without a requested end, signals have their previous effect.
+  EXPECT_EXIT(run(0, {SIGTERM}), ::testing::KilledBySignal(SIGTERM), "^$");
+}
+
 // A run that does not end on request.
 TEST_F(Ends, TheThirdCtrlCEndsAtOnceAndLeavesNothingStagedAndTheSecondSaysSo) {
   const fs::path staged = folder / "out" / ".partial-1";

@@ -81,6 +81,8 @@ class Sent {
     last_ = force;
     started_ = true;
   }
+  // What was not renewed for kForceHolds is no force any more.
+  void let_go() { last_ = dvec3(0); }
   dvec3 last() const { return last_; }
 
  private:
@@ -114,7 +116,9 @@ HardFigure stalled_ticks(const HardSetting&) {
         worst.need(std::abs(sent.last().y - law(d, 0.004)) < 0.1 * law(d, 0.004), where + ": not pressed");
         const dvec3 to = out ? dvec3(0, 0.005, 0.01) : dvec3(0, -0.006, 0.01);
         stage.skip(static_cast<std::uint64_t>(std::lround(kStall / stage.dt())) - 1);
+        sent.let_go();
         stage.move(probe, to, stage.dt(), look);
+        worst.need(!out || sent.last() == dvec3(0), where + ": a force in free air");
         worst.need((stage.world.dropped & (kDroppedJump | kDroppedStale)) == 0, where + ": it counted as a jump");
         worst.need(stage.read(probe).in_contact != out, where + ": the contact");
         for (int i = 0; i < 20; ++i) {
@@ -273,7 +277,12 @@ RealRun real_stall(HardFigure& worst, double rate) {
     }
   } else {
     Sent sent(worst, limits.max_slew, 1e-3);
-    for (const RealHand::Write& write : hand.writes) sent.add(write.force, where);
+    std::uint64_t before_it = 0;
+    for (const RealHand::Write& write : hand.writes) {
+      if (before_it > 0 && 1e-9 * static_cast<double>(write.ns - before_it) > kForceHolds) sent.let_go();
+      before_it = write.ns;
+      sent.add(write.force, where);
+    }
   }
   worst.need(!hand.writes.empty() && hand.writes.back().force == dvec3(0), where + ": the last force is not zero");
   return RealRun::kJudged;
@@ -302,12 +311,15 @@ std::vector<HardCase> hard_time() {
        "of the stored energy [1]", 1e-3, uneven_ticks},
       {"AfterAStallTheForceGoesOnWithinItsSlewLimit", kStallEntry,
        "the hand presses on or leaves, contact damping and friction with and without: largest change of what is sent "
-       "in a tick; back to the law within 20 ms; no jump counted",
+       "in a tick, from none, as the device has let go; none at once in free air; back to the law within 20 ms; no "
+       "jump "
+       "counted",
        "of the limit [1]", 1 + 1e-9, stalled_ticks},
       {"AStallWithoutSamplesEndsTheForceUntilTheHandLetsGo", kStallEntry,
        "none at once and while the gate is shut, said so, then the law", "N", 0, stalled_samples},
       {"ARealTimeSessionSurvivesAStallOfItsTouchClock", kStallEntry,
-       "without a servo: change of what a driver is written in a tick, back to the law. With a servo: nothing leaves "
+       "without a servo: change of what a driver is written in a tick, from none after 20 ms, back to the law. With a "
+       "servo: nothing leaves "
        "while the model is old and until the hand lets go, then the law",
        "of the slew limit [1]", 1 + 1e-9, stalled_session},
   };

@@ -185,6 +185,17 @@ void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) 
   add_masses(T, gravity);
 }
 
+void Tissue::find_forces() {
+  force_.setZero();
+  ElementVisit now;
+  for (ElementPack& pack : packs_) {
+    visit(pack, x_, now);
+    std::memcpy(pack.q, now.q, sizeof now.q);
+    for (std::size_t lane = 0; lane < pack.count; ++lane)
+      for (int i = 0; i < 4; ++i) add(force_, pack.node[lane][i], lane_of(now.f[i], lane));
+  }
+}
+
 void Tissue::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, const Scale& scale,
                         const ElementVisit& visit) {
   const double l = scale.stiffness * pack.volume[lane] * lambda_, m = scale.stiffness * pack.volume[lane] * mu_;

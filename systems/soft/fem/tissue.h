@@ -62,6 +62,8 @@ class Tissue {
   // `begin`: positions at the beginning of the step, if position() already is a guess of its end (iterations of the
   // non-linear step). f_el is then linearised about the guess, and velocity() still is v0.
   void assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin = nullptr);
+  // elastic_force() alone at the current positions: a fifth of assemble()'s work.
+  void find_forces();
   const BlockMatrix& inner() const { return inner_; }
   BlockMatrix& inner() { return inner_; }  // its owner adds the coupling to a handle; the next assemble() starts anew
   struct Entry {
@@ -73,7 +75,7 @@ class Tissue {
   const Vector& right() const { return right_; }
 
   double elastic_energy() const;  // [J] at the current positions
-  // [N] of the last assemble(), 3 per node, all nodes; on pinned nodes: minus the reaction force.
+  // [N] of the last assemble() or find_forces(), 3 per node, all nodes; on pinned nodes: minus the reaction force.
   const Vector& elastic_force() const { return force_; }
 
  private:

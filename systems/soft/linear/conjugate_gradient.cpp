@@ -75,11 +75,14 @@ void ConjugateGradient::solve(const Vector& b, Vector& x) const {
 
 void ConjugateGradient::solve_many(Eigen::Ref<Rows> columns) const {
   Vector x;
+  int most = 0;
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {
     x.setZero(columns.rows());
     solve(columns.col(c), x);
     columns.col(c) = x;
+    most = std::max(most, iterations_);
   }
+  iterations_ = most;
 }
 
 }  // namespace pliant

@@ -26,7 +26,7 @@ class ConjugateGradient final : public LinearSolver {
   void solve(const Vector& b, Vector& x) const override;
   void solve_many(Eigen::Ref<Rows> columns) const override;
 
-  int iterations() const { return iterations_; }  // of the last solve()
+  int iterations() const { return iterations_; }  // of the last solve(); of solve_many() the most of its columns
   bool converged() const { return iterations_ < kMostIterations; }
   // [1] of the solution: stop when the next correction is smaller. The error was up to three times that.
   double tolerance = 1e-9;
