@@ -1,5 +1,5 @@
-// A hand on one axis, upright: a mass on a spring and a damper, exact over a time in which the force is constant. With
-// it, what chatters is the force and not the integration.
+// A hand on the vertical axis: a mass on a spring and a damper, integrated exactly for a constant force. Any chatter is
+// then due to the force, not to the integration.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ struct ExactHand {
   double mass = 0.15, damping = 5.0, stiffness = 300.0;  // [kg], [N s/m], [N/m]
   double y = 0.01, v = 0.0, work = 0.0;                  // [m], [m/s], [J] done by the force on it
 
-  // `wants` [m]: where it would be without a force.
+  // `wants` [m]: equilibrium position without a force.
   void step(double force, double wants, double dt) {
     using Complex = std::complex<double>;
     const double rest = wants + force / stiffness, from = y;
@@ -26,13 +26,13 @@ struct ExactHand {
   }
 };
 
-// What was written to a device in some time, judged as a force.
+// Statistics of the forces written to a device over some time.
 struct Written {
   int writes = 0, zeros = 0;
-  double error = 0.0, step = 0.0;  // [N] largest: from the wanted force, and from one write to the next
+  double error = 0.0, step = 0.0;  // [N] largest: deviation from the wanted force, and change between writes
   double mean = 0.0, wanted = 0.0;
 
-  // In contact; `almost` [1] of what is wanted: less is none.
+  // In contact. `almost` [1] of the wanted force: a smaller one counts as zero.
   void add(double force, double before, double desired, double almost = 0.0) {
     ++writes;
     zeros += force <= almost * desired;

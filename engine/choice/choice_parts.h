@@ -37,7 +37,7 @@ Result<ModelChoice> choose_surface(Level& level, std::size_t node, ChoiceProgres
 // the reason.
 Result<std::optional<ModelChoice>> choose_law(Level& level, std::size_t node, ModelChoice& surface,
                                               ChoiceProgress& progress);
-// `step` [s]: smallest soft step needed by the level's bodies.
+// `step` [s]: lowered to the soft step chosen for this body.
 Result<ModelChoice> choose_body(Level& level, std::size_t node, double& step, ChoiceProgress& progress);
 // Called after all bodies, with the level's soft step. `whose`: the choice that has the budget. Empty if the
 // measurement would take too long; `whose` then notes it.

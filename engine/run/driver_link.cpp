@@ -55,7 +55,7 @@ Status DriverLink::connect(std::unique_ptr<Driver> driver, const std::string& id
     can = driver->capabilities();
     if (const std::string wrong = beyond_belief(can); !wrong.empty()) return failed(wrong);
     if (can.simulated || !renders(can)) {
-      claim.release();  // any number may read it
+      claim.release();  // any number of programs may read it
     } else if (!claimed.empty()) {
       if (Status taken = claim.take_opened(claimed, *driver); !taken) {
         driver->close();

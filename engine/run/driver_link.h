@@ -38,8 +38,8 @@ class DriverLink {
   bool connected() const { return driver_ != nullptr; }
   explicit operator bool() const { return connected(); }
   const DeviceCapabilities& can() const { return can_; }
-  const std::string& note() const;         // what is not as it might be, once it is connected; may be empty
-  Servo* servo() const { return servo_; }  // null: its driver is called by the touch clock
+  const std::string& note() const;         // after connect(): a deficiency of the connection; may be empty
+  Servo* servo() const { return servo_; }  // null: the touch clock calls the driver
 
   // From now on this driver, or none, moves `device`. `middle` [m] world: place of the workspace's centre for a driver
   // that reports one; other drivers' workspaces are in the world frame.
@@ -68,7 +68,7 @@ class DriverLink {
   dquat placed_rotation_{1, 0, 0, 0};
   std::uint64_t written_at_ = 0, late_ = 0;  // [ns]; number of writes later than kForceHolds after the previous one
   double longest_ = 0.0;                     // [s] between two writes
-  bool ready_ = false;                       // as it said last, since a pause
+  bool ready_ = false;                       // as of the last sample since a pause
   // Of a driver without a servo.
   std::unique_ptr<LinkState> state_;
   std::unique_ptr<LineWatch> watch_;

@@ -22,10 +22,10 @@ constexpr int kRemoveAttempts = 5;  // a thread may still write into a folder th
 
 // Process-global, because a signal handler takes no state argument.
 std::atomic<bool> g_requested{false};
-std::atomic<bool> g_pressed{false};    // SIGINT came since the watcher looked
-std::atomic<bool> g_signalled{false};  // any of them came
+std::atomic<bool> g_pressed{false};    // SIGINT arrived since the watcher last checked
+std::atomic<bool> g_signalled{false};  // any of the signals arrived
 sem_t g_arrived;                       // wakes the watcher
-// Of presses after the run.
+// Ctrl-C presses after the run.
 std::atomic<int> g_late{0};
 std::atomic<std::uint64_t> g_late_at{0};  // [ns]
 static_assert(std::atomic<bool>::is_always_lock_free);
@@ -38,8 +38,8 @@ void on_signal(int signal) {
   errno = kept;
 }
 
-// The run has ended as it was asked to, and so will the process: a signal more does not change how. Where it hangs, as
-// many presses as ever end it.
+// The run has ended on request, and the process is about to end: further signals do not change its exit. If it hangs,
+// kForcedPress presses end it.
 void on_late_signal(int signal) {
   const std::uint64_t now = now_ns(), before = g_late_at.exchange(now);
   if (signal == SIGINT && now - before > kOnePress && ++g_late == kForcedPress) ::_exit(128 + SIGINT);

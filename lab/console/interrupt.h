@@ -27,7 +27,7 @@ inline constexpr InterruptWords kAllOrNothing{"ending; press Ctrl-C again to qui
 class Interrupt {
  public:
   explicit Interrupt(InterruptWords words = {});
-  ~Interrupt();  // restores the previous signal handlers
+  ~Interrupt();  // restores the previous handlers, unless a signal arrived: later signals then do not change the exit
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 

@@ -41,8 +41,8 @@ class EachPlace {
  public:
   EachPlace(const PressBodies& bodies, const Interrupt& interrupt, Progress& progress)
       : bodies_(bodies), interrupt_(interrupt), progress_(progress) {}
-  // work(i, body): the body to press at place i. Errors: of a body or of work; interrupted. `share`: of all that there
-  // is to do.
+  // Calls work(i, body) with the body to press at place i. Fails if a body cannot be made, if work fails, or on
+  // interruption. `share` [1]: of the total work.
   Status operator()(const std::vector<PressPlace>& places, PressKind kind, double finer, double share,
                     const std::function<Status(std::size_t, TissuePress&)>& work) {
     std::mutex mutex;

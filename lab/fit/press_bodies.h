@@ -35,8 +35,8 @@ class PressBodies {
   // anywhere.
   bool is_one() const { return one_ != nullptr; }
 
-  // The body to press at this place, its cells this share [1] of cell(). One at a time where is_one(); that one is for
-  // deep presses too.
+  // The body to press at this place, with cells of `share` [1] times cell(). If is_one(), use it from one thread at a
+  // time; it serves deep presses too.
   Result<std::shared_ptr<TissuePress>> at(const PressPlace& place, PressKind kind, double share = 1.0) const;
 
  private:

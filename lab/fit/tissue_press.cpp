@@ -19,8 +19,8 @@ constexpr double kRestTolerance = 1e-4;    // [1] residual at equilibrium, relat
 constexpr std::size_t kMemory = 6;         // iterates in Anderson's acceleration
 constexpr double kFinest = 6.0;            // samples per indenter radius
 constexpr std::size_t kMoments = 6;        // 1, x, y, x^2, xy, y^2
-constexpr double kFlattestTissue = 1e-6;   // [1] of the largest eigenvalue
-constexpr double kSmallTolerance = 1e-6;   // [1] of the solution: a small press' stiffness is right to its square
+constexpr double kFlattestTissue = 1e-6;   // [1] smallest eigenvalue, relative to the largest
+constexpr double kSmallTolerance = 1e-6;   // [1] of the solution: the stiffness error of a small press is its square
 
 std::vector<Embedding> embedding_of(const std::vector<SurfaceSample>& samples, const TetMesh& tets) {
   std::vector<dvec3> points, normals;
@@ -101,7 +101,7 @@ Result<TissuePress::Punch> TissuePress::punch(const Mesh& surface, const PressPl
   out.yields = columns;
   Eigen::MatrixXd gram = out.loads.transpose() * out.yields;
   if (iterative_) {
-    // X^T W + W^T X - X^T K X: its error is the square of X's.
+    // X^T W + W^T X - X^T K X: its error is quadratic in that of X.
     Eigen::MatrixXd product(out.yields.rows(), out.yields.cols());
     Vector x, y;
     for (Eigen::Index m = 0; m < product.cols(); ++m) {
@@ -111,7 +111,7 @@ Result<TissuePress::Punch> TissuePress::punch(const Mesh& surface, const PressPl
     }
     gram = (gram + gram.transpose() - out.yields.transpose() * product).eval();
   }
-  // A patch of few elements does not tell all moments apart: those it cannot are left out.
+  // A patch of few elements cannot distinguish all moments: singular directions are left out.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (gram + gram.transpose()));
   const Vector& values = eigen.eigenvalues();
   Vector over = Vector::Zero(values.size());

@@ -32,14 +32,15 @@ struct PressedTissue {
   std::vector<double> height;  // [m]
 };
 
-// What a body is for. The six loads of one small press are solved for by conjugate gradients in a third of the time of
-// a Cholesky factor, which the iterations of deep ones need: 25,000 tetrahedra, ms: 6 x 14 or 280 (player/fit).
+// The purpose of a body. Conjugate gradients solve for the six loads of one small press in a third of the time of a
+// Cholesky factorisation, which the iterations of deep presses need. With 25,000 tetrahedra, ms: 6 x 14 or 280
+// (player/fit).
 enum class PressKind { kSmall, kDeep };
 
 class TissuePress {
  public:
-  // `tets`: nodes in the order free, handle, pinned; those behind the free ones stand still. Errors: nothing is held,
-  // or the matrix is not positive definite.
+  // `tets`: nodes in the order free, handle, pinned; only the free ones move. Errors: nothing is pinned, or the matrix
+  // is not positive definite.
   static Result<TissuePress> make(TetMesh tets, const TissueMaterial& material, PressKind kind);
 
   // A punch of this radius [m] at a place of this surface.
@@ -50,10 +51,10 @@ class TissuePress {
     Vector whole;                                                    // s
     double stiffness() const { return whole.dot(inverse * whole); }  // [N/m] for a small press
   };
-  // Error: the matrix is not positive definite, which conjugate gradients did not see.
+  // Error: the matrix is not positive definite and conjugate gradients did not detect it.
   Result<Punch> punch(const Mesh& surface, const PressPlace& place, double radius);
-  // Of a deep body. Presses to `steps` equal parts of this depth [m], ascending; ends early where the iteration does
-  // not come to rest. Heights are those of `seen`.
+  // For a kDeep body. Presses in `steps` equal parts to this depth [m], ascending. Ends early if the iteration does not
+  // converge. Heights are those of `seen`.
   std::vector<PressedTissue> press_to(const Punch& punch, const std::vector<SurfaceSample>& seen, double depth,
                                       int steps);
 
@@ -66,13 +67,13 @@ class TissuePress {
   bool take_factor();
   bool factorise();
   Error unsolved() const;
-  // The force that holds u with the punch at this depth; 0: no resting place was found.
+  // [N] Force in equilibrium with the punch at this depth, u being updated; 0: no equilibrium was found.
   double settle(const Punch& punch, double depth, Vector& u);
 
   std::unique_ptr<const TetMesh> tets_;
   std::unique_ptr<Tissue> tissue_;
   std::unique_ptr<LinearSolver> solver_;
-  const ConjugateGradient* iterative_ = nullptr;  // solver_, where it is one
+  const ConjugateGradient* iterative_ = nullptr;  // solver_, if it is iterative
   std::size_t iterations_ = 0;
 };
 

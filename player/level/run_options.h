@@ -29,8 +29,8 @@ struct RunOptions {
   std::string input;              // file of input events for the window
   bool force = false;             // replace an earlier run's files
   std::string record, replay;
-  unsigned threads = 0;    // 0: as many as the machine has
-  std::string soft_store;  // folder of soft bodies that a sweep's runs share; empty: none
+  unsigned threads = 0;    // 0: all of the machine's
+  std::string soft_store;  // folder of soft bodies shared by a sweep's runs; empty: none
 };
 
 }  // namespace pliant

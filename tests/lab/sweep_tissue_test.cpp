@@ -1,4 +1,4 @@
-// A sweep's runs share their soft bodies: each is made once, and every run is the one it is alone, to the bit.
+// Runs of a sweep share their soft bodies: each is made once, and every run equals the run alone, to the bit.
 #include <algorithm>
 
 #include "tests/lab/sweep_command.h"
@@ -55,9 +55,9 @@ TEST_F(SweepTissue, ABodyIsMadeOnceForAllRunsThatDoNotChangeIt) {
     EXPECT_EQ(alone(run, store), without) << run.id;
     kept.push_back(names().size());
   }
-  // The hand's tissue and the organ's; another organ for the other cell.
+  // The hand's tissue and the organ's; another organ for the other cell size.
   EXPECT_EQ(kept, (std::vector<std::size_t>{2, 2, 3, 3, 3, 3, 3, 3}));
-  // A body that is not whole is made again.
+  // A truncated body file is created again.
   for (const std::string& name : names()) fs::resize_file(folder / "bodies" / name, 1000);
   EXPECT_EQ(alone(plan.runs[0], store), alone(plan.runs[0]));
 }

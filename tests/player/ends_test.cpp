@@ -85,7 +85,7 @@ TEST_F(Ends, ASecondCtrlCDoesNotLoseTheReport) {
   expect_results("out", "interrupted");
 }
 
-// Whenever they come: also once the report stands and the process is about to end.
+// At any time, also after the report has been written and the process is about to end.
 TEST_F(Ends, ASignalMoreDoesNotChangeHowARunEndsThatASignalHasEnded) {
   const auto run = [](int first, std::initializer_list<int> late, int presses = 0) {
     {
@@ -103,11 +103,11 @@ TEST_F(Ends, ASignalMoreDoesNotChangeHowARunEndsThatASignalHasEnded) {
     EXPECT_EXIT(run(first, {SIGTERM, SIGINT, SIGHUP, SIGTERM}), ::testing::ExitedWithCode(7), "^$") << first;
   EXPECT_EXIT(run(SIGINT, {}, 2), ::testing::ExitedWithCode(7), "^$");
   EXPECT_EXIT(run(SIGINT, {}, 3), ::testing::ExitedWithCode(130), "^$");
-  // Nothing has asked it to end: signals do what they did before.
+  // Without a requested end, signals have their previous effect.
   EXPECT_EXIT(run(0, {SIGTERM}), ::testing::KilledBySignal(SIGTERM), "^$");
 }
 
-// A run that does not end although it was asked to.
+// A run that does not end on request.
 TEST_F(Ends, TheThirdCtrlCEndsAtOnceAndLeavesNothingStagedAndTheSecondSaysSo) {
   const fs::path staged = folder / "out" / ".partial-1";
   fs::create_directories(staged);

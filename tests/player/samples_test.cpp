@@ -1,4 +1,4 @@
-// content/samples: a stranger's files, on which the commands of the documents work.
+// content/samples: sample files on which the documented commands work.
 #include <gmock/gmock.h>
 
 #include "tests/player/command.h"

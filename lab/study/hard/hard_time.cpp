@@ -81,7 +81,7 @@ class Sent {
     last_ = force;
     started_ = true;
   }
-  // What was not renewed for kForceHolds is no force any more.
+  // A force that was not renewed for kForceHolds has ended.
   void let_go() { last_ = dvec3(0); }
   dvec3 last() const { return last_; }
 
