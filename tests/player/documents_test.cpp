@@ -87,6 +87,26 @@ TEST(Documents, ShowCommandsThatTheCommandTakes) {
   EXPECT_GT(count, 20u) << "the documents were not found";
 }
 
+// Tables and generated lists apart, which are as wide as their cells.
+TEST(Documents, HaveNoLineThatIsWiderThanAWindow) {
+  constexpr std::size_t kWidest = 180;  // [byte] 160 characters, some of them of several bytes
+  const fs::path root = PLIANT_SOURCE_DIR;
+  std::vector<fs::path> documents{root / "README.md", root / "CHANGELOG.md"};
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / "docs"))
+    if (entry.path().extension() == ".md") documents.push_back(entry.path());
+  for (const fs::path& document : documents) {
+    std::ifstream in(document);
+    std::size_t number = 0;
+    bool code = false;
+    for (std::string line; std::getline(in, line);) {
+      ++number;
+      code ^= line.starts_with("```");
+      if (code || line.find('|') != std::string::npos) continue;
+      EXPECT_LE(line.size(), kWidest) << document.filename().string() << ':' << number;
+    }
+  }
+}
+
 TEST(Documents, ACommandWithAnOptionThatIsNotThereWouldBeSeen) {
   EXPECT_FALSE(check_arguments({"run", "--secnds", "2"}));
   EXPECT_FALSE(check_arguments({"touch", "organ.glb"}));
