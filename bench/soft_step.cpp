@@ -142,7 +142,7 @@ class Bench {
     const std::size_t late = soft_.size() - 2;
     const Tick tick{steps_, kStep, static_cast<double>(steps_) * kStep};
     double wall = 0, processor = 0;
-    std::map<std::string_view, double> of;  // [ms] of the processor, each system
+    std::map<std::string_view, double> of;  // [ms] CPU time of each system
     const auto run_systems = [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) {
         const Stopwatch watch;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The installed package is all that a program needs: installs BUILD, moves it, builds EXAMPLES and small projects against
-# it, runs what needs no display. Usage: package.sh BUILD EXAMPLES
+# The installed package is sufficient for a program: installs BUILD, moves it, builds EXAMPLES and small projects with
+# it, and runs those that need no display. Usage: package.sh BUILD EXAMPLES
 set -euo pipefail
 build=$1
 source=$(dirname "$2")
@@ -10,7 +10,7 @@ fail() { printf '%s\n' "$*"; exit 1; }
 cmake --install "$build" --prefix "$work/first" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
 mv "$work/first" "$work/installed"  # it may be moved
 
-# configure FOLDER ARGS...: a CMake project; what it says is in $work/configure.log
+# configure FOLDER ARGS...: a CMake project; its output is in $work/configure.log
 configure() {
   local folder=$1
   shift
@@ -45,7 +45,7 @@ for library in "$work"/installed/lib/libpliant_*; do
     fail "$(basename "$library") is not built with the command, so that ./dev run leaves nothing to install"
 done
 
-# Nothing says where it was built, and no library is looked for there.
+# No file contains the build path, and no library is searched there.
 for where in "$source" "$(realpath "$build")" "$work/first"; do
   if said=$(grep -rlaF -e "$where/" "$work/installed"); then fail "these name $where: $said"; fi
 done
@@ -57,11 +57,11 @@ mkdir "$work/elsewhere"
   >"$work/run.log" 2>&1 || { cat "$work/run.log"; exit 1; }
 find "$work/elsewhere" -name '*.png' | grep -q . || { cat "$work/run.log"; fail "there is no picture"; }
 
-# A program may hold another version of tinygltf.
+# A program may contain another version of tinygltf.
 nm -C "$(find "$work/installed" -name 'libpliant_content.*' | head -1)" | grep -E ' [TVW] tinygltf::' &&
   fail "tinygltf is not under our own name"
 
-# Nothing but public headers, and none of them needs another's include or one that is not installed.
+# Only public headers; each compiles alone and includes only installed ones.
 find "$work/installed/include" -name '*.h' | grep -v '/include/pliant/[a-z_]*\.h$' && fail "not public"
 check_header() { c++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I "$work/installed/include" "$work/one.cpp" "$@"; }
 for header in "$work"/installed/include/pliant/*.h; do
@@ -70,7 +70,7 @@ for header in "$work"/installed/include/pliant/*.h; do
   grep -nE '^#define [^P]' "$header" && fail "$header: a macro without the prefix"
 done
 
-# glm laid out in another way is refused with a sentence; what changes nothing in memory is not.
+# Another memory layout of glm is rejected with a sentence; settings that do not change it are accepted.
 echo '#include <pliant/math.h>' >"$work/one.cpp"
 for macros in -DGLM_FORCE_QUAT_DATA_WXYZ -DGLM_FORCE_QUAT_CTOR_XYZW -DGLM_FORCE_SINGLE_ONLY -DGLM_FORCE_CTOR_INIT \
     "-DGLM_FORCE_INTRINSICS -DGLM_FORCE_DEFAULT_ALIGNED_GENTYPES"; do

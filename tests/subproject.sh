@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Pliant as a part of another project: it takes nothing from that but its own targets. Only what is tiny is compiled.
-# Usage: subproject.sh SOURCES
+# Pliant as a part of another project: only its own targets affect that project. Compiles only small files. Usage:
+# subproject.sh SOURCES
 set -euo pipefail
 source=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { printf '%s\n' "$*"; exit 1; }
 
-# Warnings that Pliant's own flags would make errors of; and glm and fmt come to it through pliant::engine.
+# Code with warnings that Pliant's own flags would make errors; it gets glm and fmt through pliant::engine.
 cat >"$work/host.cpp" <<'TEXT'
 #include <pliant/pliant.h>
 int host(int unused) {
@@ -63,7 +63,7 @@ target_link_libraries(host_part PRIVATE pliant::engine)
 file(GENERATE OUTPUT ${CMAKE_BINARY_DIR}/where.txt CONTENT "$<TARGET_FILE:pliant_runtime>")
 TEXT
 
-# What the engine does not need is not asked for.
+# Packages that the engine does not need are not searched.
 unneeded=()
 for package in draco TinyGLTF OpenEXR assimp OpenGL X11 CLI11 GTest benchmark PkgConfig; do
   unneeded+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON")

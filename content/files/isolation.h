@@ -13,8 +13,8 @@ namespace pliant {
 // Runs `work` in a child process and returns its result. `work` must not use threads or devices. CPU time limit:
 // `seconds` plus one second for every 4 MB of `input_bytes`, times the limit factor if that is above 1. Memory limit:
 // kReaderMemory plus 64 bytes for every input byte. CPU load from other processes does not count. A child that waits
-// instead of working is killed after `wall` seconds (0: thirty times its CPU time, at least a minute). `used`: the
-// child's CPU time is added here.
+// instead of working is killed after `wall` seconds (0: thirty times its CPU time limit, at least a minute). `used`:
+// the child's CPU time is added here.
 Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work,
                            double seconds = limits::kReaderTime.most, double wall = 0.0, double* used = nullptr);
 

@@ -39,7 +39,7 @@ std::int32_t add_material(Level& level, const std::string& name, vec3 color, flo
 
 namespace {
 
-// Tangents as spawn makes them, for viewers that would make their own; false where vertices would have to be split.
+// Tangents as in spawn, for viewers that would compute others; false if vertices would have to be split.
 bool add_tangents(Primitive& primitive) {
   DrawMesh draw;
   for (std::size_t v = 0; v < primitive.position.size(); ++v) {

@@ -1,4 +1,4 @@
-// What every level that ships is set up with: nodes, the view, lamps and surroundings.
+// Common parts of the shipped levels: nodes, view, lights and environment.
 #pragma once
 
 #include <filesystem>
@@ -11,16 +11,16 @@ namespace pliant::generate {
 inline constexpr vec3 kCoral{0.95f, 0.30f, 0.12f}, kTeal{0.05f, 0.55f, 0.60f}, kGold{0.95f, 0.70f, 0.10f};  // linear
 
 LevelNode& add_node(Level& level, const std::string& name);
-// A frame at `eye` whose -Z looks at `target`, as cameras and lights want it. [m]
+// A frame at `eye` whose -Z points at `target`, as glTF cameras and lights need. [m]
 LocalTransform looking(dvec3 eye, dvec3 target);
-// A camera, a key light and the surroundings. `to_light` [m] from the target; the default is the sky's sun.
+// A camera, a key light and the environment. `to_light` [m] from the target; the default is the sky's sun.
 void add_view(Level& level, dvec3 eye, dvec3 target, const char* environment = "sky.exr",
               dvec3 to_light = {0.55, 0.62, 0.56});
-// Of one colour. The material's index is returned.
+// Of one colour. Returns the material's index.
 std::int32_t add_material(Level& level, const std::string& name, vec3 color, float roughness);
 
-inline constexpr int kBits = 16;  // to which every level's positions are rounded, as Draco does it
-// Without required extensions, so that any viewer opens it; rounded all the same, so that runs keep their hashes.
+inline constexpr int kBits = 16;  // to which positions of all levels are rounded, as by Draco
+// Without required extensions, so that any viewer opens it; positions are rounded, so that runs keep their hashes.
 Status save_plain(const Level& level, const std::filesystem::path& path);
 
 }  // namespace pliant::generate

@@ -1,18 +1,18 @@
-// What tinygltf 2.7 does not read of what glTF 2.0 allows, or reads otherwise than it says. Where a document has any of
-// it, tinygltf is given other JSON instead of the file's own:
+// Content of glTF 2.0 that tinygltf 2.7 does not read, or reads wrongly. If a document has any of it, tinygltf is given
+// other JSON instead of the file's own:
 //   buffers     data URIs with parameters, without padding or longer than declared; files longer than declared; names
 //               with '+'; buffers without data; the second of a GLB without a URI (it would get the BIN chunk again);
-//               a BIN chunk that is empty or not the second: all bytes are served under names of ours
+//               a BIN chunk that is empty or not the second: all bytes are served under our own names
 //   images      by URI, or on a buffer without data: served likewise, or left without bytes
-//   indices     without a bufferView (Draco data, zeros): refused; left out, then put back
-//   accessors   of a type or component type that glTF does not have, which nothing uses: refused; stood in for
-//   cameras     of an unknown type: refused; named after what they hold
+//   indices     without a bufferView (Draco data, zeros): rejected by tinygltf; removed, then restored
+//   accessors   unused, of a type or component type that is not in glTF: rejected by tinygltf; replaced
+//   cameras     of an unknown type: rejected by tinygltf; their type is set from their members
 //   channels    without a node (KHR_animation_pointer): dropped, which renumbers the others; given node 0, then none
-//   animations  with extensions: copied into every sampler, in square of the file's size; left out
-//   text        of more than kLongText: extensions, extras and unknown members, which are of anybody's making, would
-//               take several hundred bytes a value; left out
-// Names of attributes end at a NUL: put back. Extensions (but lights) and extras are read from the checked JSON, never
-// from the Model: tinygltf's Value holds integers in 32 bits and has neither null nor empty arrays.
+//   animations  with extensions: copied into every sampler, quadratic in the file's size; removed
+//   text        of more than kLongText: extensions, extras and unknown members, which other programs may have written,
+//               would take several hundred bytes per value; removed
+// Names of attributes end at a NUL: restored. Extensions (except lights) and extras are read from the checked JSON,
+// never from the Model: tinygltf's Value has 32-bit integers and neither null nor empty arrays.
 #include <fmt/format.h>
 
 #include <set>
@@ -141,7 +141,7 @@ class Rewriting {
       if (image.contains("uri") || without_data(image)) copy();
   }
 
-  // All bytes under names of ours; one byte stands for a buffer without data.
+  // Serves all bytes under our own names; a buffer without data gets one byte.
   void serve() {
     for (std::size_t i = 0; i < fetched_.buffers.size(); ++i) {
       Bytes& bytes = fetched_.buffers[i];

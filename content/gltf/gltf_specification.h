@@ -1,14 +1,13 @@
-// What glTF 2.0 and the extensions we know say about types, ranges and references, as one table that a small
-// interpreter walks. A line is
+// Types, ranges and references of glTF 2.0 and the supported extensions, as a table for a small interpreter. A line is
 //
 //   object  key[!]  kind [arguments]          ! = required
-//   string [a|b]       one of a list, if given (another value: a warning, as the Khronos validator has it)
+//   string [a|b]       one of a list, if given (another value: a warning, as in the Khronos validator)
 //   int RANGE, number RANGE, numbers COUNT RANGE          RANGE: 0..  >0..  0..1  ..; COUNT: 3 or 1+
 //   ints a|b           an integer of a list (another value: a warning)
 //   index COLLECTION, indices COLLECTION      into a root array; indices are unique and at least one
 //   object TYPE, objects TYPE                 a nested object, an array of at least one
 //   map COLLECTION, maps COLLECTION           names -> indices, an array of such
-//   ext TYPE           this extension may stand on this object; nowhere else
+//   ext TYPE           this extension is allowed on this object only
 #pragma once
 
 namespace pliant {

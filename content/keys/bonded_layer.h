@@ -1,15 +1,15 @@
-// How much stiffer an elastic layer that is bonded to something rigid is under a flat punch than a deep body of the
-// same modulus: Hayes, Keer, Herrmann & Mockros, "A mathematical analysis for indentation tests of articular
-// cartilage", J. Biomechanics 5 (1972), their kappa; small strains, no friction under the punch.
+// The stiffness of an elastic layer bonded to a rigid base under a flat punch, relative to a half-space of the same
+// modulus: kappa of Hayes, Keer, Herrmann & Mockros, "A mathematical analysis for indentation tests of articular
+// cartilage", J. Biomechanics 5 (1972). Small strains, no friction under the punch.
 //
 // Legend: a radius of the punch, h thickness, nu Poisson's ratio, F = 2 E* a kappa d. With pressures
 //   A(x) = int_0^1 phi(t) cos(x t) dt,   x in 1/a,
-// which leave nothing outside of the punch, phi solves Fredholm's equation of the second kind
+// which vanish outside of the punch, phi solves Fredholm's equation of the second kind
 //   phi(t) - int_0^1 phi(s) K(t, s) ds = 1,   K(t, s) = (2 / pi) int_0^inf (1 - L(x h / a)) cos(x t) cos(x s) dx,
 //   L(z) = (2 k sinh 2z - 4 z) / (2 k cosh 2z + 1 + k^2 + 4 z^2),   k = 3 - 4 nu,   and   kappa = int_0^1 phi dt.
 //
-// The surface beside the punch, in parts of d, r in a (the Hankel transform of the same pressures, its half-space part
-// in closed form; 1 under the punch):
+// The displacement of the surface beside the punch, relative to d, r in a (the Hankel transform of the same pressures,
+// its half-space part in closed form; 1 under the punch):
 //   u(r) = (2 / pi) (int_0^(asin 1/r) phi(r sin s) ds - int_0^inf (1 - L(x h / a)) A(x) J0(x r) dx).
 #pragma once
 

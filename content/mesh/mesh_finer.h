@@ -11,8 +11,8 @@
 namespace pliant {
 
 inline constexpr double kEdgeOfReach = 1.0 / 3.0;  // [1] of a dent's radius: longest edge that resolves a dent
-inline constexpr double kBulgeOfReach = 0.01;      // [1] of it: largest distance of a patch from its triangle without a
-                                                   // visible difference
+inline constexpr double kBulgeOfReach = 0.01;      // [1] of it: a patch farther than this from its triangle counts as
+                                                   // too coarse
 inline constexpr double kSpared = 1.5;             // [1] times those two: below it a mesh is not refined
 inline constexpr double kCoarseShare = 0.01;  // [1] of the area: the smallest coarse share for which a mesh is refined
 inline constexpr std::size_t kMostAdded = std::size_t{1} << 18;  // triangles per object

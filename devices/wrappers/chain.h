@@ -1,17 +1,17 @@
-// A driver by its words, wrappers and all: "falcon:0|delay=5ms|drop=10%".
+// A driver with wrappers, from text: "falcon:0|delay=5ms|drop=10%".
 //
-//   NAME[:ID][|WRAPPER=VALUE[,KEY=VALUE...]]...     each wrapper stands in front of what is left of it
+//   NAME[:ID][|WRAPPER=VALUE[,KEY=VALUE...]]...     each wrapper wraps everything to its left
 //
-//   record=FILE[,seconds=60]        what it says and is told, into FILE when it is closed
-//   replay=FILE                     its poses from FILE; it is written zero
-//   delay=5ms or delay=5[,written=] samples later; forces later
-//   jitter=2ms[,seed=1]             samples up to so much later, by chance
-//   drop=10%[,written=][,seed=1]    samples, forces lost by chance
-//   quantise=0.1mm[,force=5mN]      in counts
-//   gain=2[,force=2]                motion times 2, force times 2 (as much, unless said)
-//   scale=2                         motion times 2, force as it is
-//   frame=X:Y:Z                     turned by angles about the world's x, then y, then z [degrees]
-//   clutch=BUTTON                   0 to 31: while it is down the pose stands still
+//   record=FILE[,seconds=60]        its samples and forces, into FILE when it is closed
+//   replay=FILE                     its poses from FILE; zero is written to it
+//   delay=5ms or delay=5[,written=] delays samples; with `written`, forces
+//   jitter=2ms[,seed=1]             delays samples by a random time up to this
+//   drop=10%[,written=][,seed=1]    drops samples, forces at random
+//   quantise=0.1mm[,force=5mN]      quantises position, force
+//   gain=2[,force=2]                motion times 2, force times 2 (the same factor by default)
+//   scale=2                         motion times 2, force unchanged
+//   frame=X:Y:Z                     rotated by angles about the world's x, then y, then z [degrees]
+//   clutch=BUTTON                   0 to 31: while pressed the pose is frozen
 //   border=40mm[,rate=4]            rate control beyond
 #pragma once
 

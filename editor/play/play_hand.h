@@ -12,7 +12,7 @@ namespace pliant {
 
 class PlayHand {
  public:
-  // What is under the mouse.
+  // The object under the mouse.
   enum class Over : std::uint8_t { kNothing, kTouchable, kBody, kTool };  // kBody: can be pressed and dragged
 
   // --- For the run's thread

@@ -1,4 +1,4 @@
-// What the colours of painted values mean: the ramp with numbers beside it.
+// Legend of the colours of painted values: the ramp with numbers.
 #pragma once
 
 #include <imgui.h>

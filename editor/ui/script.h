@@ -1,33 +1,30 @@
-// A hand from a file: what it does is said by the names of widgets, so that a script survives a change of the layout.
-// Each step begins when the editor has come to rest after the one before: what was pressed has been answered, pictures
-// show the document as it stands. What is not seen cannot be pressed: a step fails where another window covers the
-// place, where it is scrolled out of sight, off, of no size, or behind an open menu or question, and says which.
+// Input for tests, from a file. Widgets are addressed by name, so that a script survives a change of the layout. Each
+// step begins when the editor is idle after the previous one: presses are processed, and pictures show the current
+// document. Invisible widgets cannot be pressed. A step fails if its place is covered by another window, scrolled out,
+// disabled, of zero size, or behind an open menu or question; the error gives the reason.
 //
-// One step a line; # begins a comment. PLACE is a widget's address (ui/widgets.h), with @X,Y a share of its width and
+// One step per line; # begins a comment. PLACE is a widget's address (ui/widgets.h), with @X,Y a share of its width and
 // height (Viewport@0.5,0.5), or two numbers of pixels.
-//   click PLACE [right] [double] [shift] [control] [alt]     press and let go; a PLACE of pixels is pressed as it is
+//   click PLACE [right] [double] [shift] [control] [alt]     press and release; a PLACE in pixels is not checked
 //   drag PLACE to PLACE [MODIFIER...] [in SECONDS]           with the left button; `right`, `middle`
 //   press PLACE / move PLACE / release                       the same in parts
 //   wheel PLACE CLICKS
-//   key Ctrl+Shift+S                                         pressed and let go
+//   key Ctrl+Shift+S                                         press and release
 //   type TEXT                                                the rest of the line
-//   at-once                                                  what the steps up to `now` do arrives in one frame,
-//   now                                                      as all that is done while a slow frame is drawn
-//   slow SECONDS                                             each frame takes at least so long
+//   at-once                                                  the events of the steps up to `now` arrive in one frame,
+//   now                                                      like input during a slow frame
+//   slow SECONDS                                             minimal duration of each frame
 //   set PLACE VALUE                                          types VALUE into a number or text field
 //   wait SECONDS
-//   await PLACE [SECONDS]                                    until a widget of that address is there, on and uncovered
-//   expect PLACE / expect-no PLACE                           an error unless it is (not) there; covered is not there,
-//                                                            scrolled out of sight is
-//   apart                                                    an error where a widget overlaps another, is covered, or
-//                                                            cut off where nothing scrolls
-//   hear TEXT                                                until the console's text holds it
-//   say TEXT                                                 an error unless the console's text holds it
+//   await PLACE [SECONDS]                                    until a widget at that address exists, enabled, uncovered
+//   expect PLACE / expect-no PLACE                           an error unless it exists (or not); covered counts as
+//                                                            missing, scrolled out as existing
+//   apart                                                    an error if a widget overlaps another, is covered, or is
+//                                                            cut off without scrolling
+//   hear TEXT                                                until the console's text contains it
+//   say TEXT                                                 an error unless the console's text contains it
 //   screenshot FILE.png                                      into the folder of --out
-//   felt FILE.csv                                         writes what each probe and tool felt in the run that is
-//   played
-//                                                            or was played last, a row a tick, into the folder of --out
-//   figures NAME                                             prints how long frames took since the last of these
+//   figures NAME                                             prints frame times since the last `figures`
 //   drop FILE [| FILE...]
 //   close
 #pragma once
@@ -48,7 +45,7 @@ class Script {
   static Result<Script> load(const std::filesystem::path& file);
 
   struct Surroundings {
-    std::string under_way;                               // "": the editor is at rest
+    std::string under_way;                               // "": the editor is idle
     double now = 0.0;                                    // [s]
     std::function<void(const std::string&)> screenshot;  // of the next frame
     std::function<bool(const std::string&)> has_said;

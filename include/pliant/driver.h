@@ -64,7 +64,7 @@ struct DeviceModel {
   double max_torque = 0.0;        // [N m] the same
 };
 
-// What triggers the next sample.
+// The trigger of the next sample.
 enum class DeviceLoop : std::uint8_t {
   kOurs,     // read() returns the newest at any time
   kReply,    // the device answers each write: wait() returns at the answer

@@ -130,8 +130,8 @@ struct RigidBodyParameters {
   bool fixed = false;
 };
 
-// What a probe touches. A Deformable is touched at its actual position, by its own law. For soft and rigid bodies, the
-// probe is a small rigid tool on a virtual coupling (systems/soft/body/probe_tool.h).
+// Objects that a probe touches. A Deformable is touched at its actual position, by its own law. For soft and rigid
+// bodies, the probe is a small rigid tool on a virtual coupling (systems/soft/body/probe_tool.h).
 enum class ProbeMeets : std::uint8_t { kAll, kSurfaces, kBodies };
 
 // Keys of PLIANT_probe.

@@ -225,8 +225,8 @@ class Session {
   Status put_back(const std::string& object);
   Result<bool> is_out(const std::string& object) const;
   // Adds the objects of another scene (no probes or tools), with names not yet in use. In lockstep: the run continues
-  // as after restore_state(), with the same duration and limits. For real time, open a session with the objects and
-  // take them out before start(). To remove one, take it out.
+  // from the current state; time and limits are those of restore_state(). For real time, open a session with the
+  // objects and take them out before start(). To remove one, take it out.
   Status add(const Scene& more);
 
   // --- States of lockstep runs, to return to in this session or another one of the same scene.

@@ -1,12 +1,12 @@
-// A spring law or a shape of one's own for deformable surfaces: derive, register under a name, and use what
-// registering returns in DeformableParameters, or the name in a level file (`spring`, `shape`).
+// Custom spring laws and shapes for deformable surfaces: derive, register under a name, and set the result in
+// DeformableParameters, or the name in a level file (`spring`, `shape`).
 //
 //   struct Quintic : pliant::SpringFunction { ... };
 //   const auto quintic = pliant::register_spring("quintic", std::make_shared<Quintic>());
 //
-// Functions are called by the touch clock, thousands of times a tick, from several threads: they must not allocate,
-// lock, block or throw, and the same arguments must give the same bits. Fields with them are stepped on the CPU.
-// Register before a scene is opened; what is registered stays until the program ends.
+// The touch clock calls the functions thousands of times per tick, from several threads. They must not allocate, lock,
+// block or throw, and equal arguments must give equal bits. Fields with them are stepped on the CPU. Register before
+// opening a scene; registrations last until the program ends.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@
 
 namespace pliant {
 
-// What an author says in DeformableParameters of a law that is not linear.
+// The authored constants of DeformableParameters for laws that are not linear.
 struct SpringConstants {
   double cubic = 0.0;       // [1/m2] DeformableParameters::cubic / stiffness
   double stiffening = 0.0;  // [1/m] DeformableParameters::stiffening
@@ -42,8 +42,8 @@ class ShapeFunction {
   virtual double slope(double u) const = 0;  // [1] its derivative by u; 0 at u = 1
 };
 
-// At most 32 of each. An error where the name is taken or the function contradicts what stands above: it is tried at
-// some hundred places within 2 cm, with cubic 0 and stiffening 100.
+// At most 32 of each. Error: the name is in use, or the function violates the conditions above. It is tested at some
+// hundred points within 2 cm, with cubic 0 and stiffening 100.
 Result<SpringLaw> register_spring(const std::string& name, std::shared_ptr<const SpringFunction> function);
 Result<Shape> register_shape(const std::string& name, std::shared_ptr<const ShapeFunction> function);
 

@@ -51,20 +51,27 @@ double kept_back(const SafetyState& state, const SafetyLimits& limits, dvec3 wan
 dvec3 damp_excess(SafetyState& state, const SafetyLimits& limits, dvec3 wanted, dvec3 weight, dvec3 dx, double dt) {
   const double way = length(dx);
   const dvec3 last = state.force - state.weight, change = wanted - weight - state.wanted;
-  const double given = state.work + dot(last + 0.5 * change, dx);
+  const double falls = std::max(0.0, -dot(change, dx));  // [J] the law's own change over the way
+  const double given = state.work + dot(last, dx) - 0.5 * falls;
   // The trapezoid of a spring that the hand leaves in the middle of a step is off by up to |df| step / 8, and by as
   // much where the hand came in: what sampling does is not taken for the law's.
   const double sampling = 0.25 * length(change) * way;
   const double budget = kPassivityShare * state.stored + kPassivityFloor + sampling - given;
   state.kept_back = kept_back(state, limits, wanted - weight, dx, budget);
-  if (state.kept_back > 0.0) wanted -= (wanted - weight) * std::min(1.0, state.kept_back / length(wanted - weight));
+  if (state.kept_back > 0.0) {  // across the motion nothing is missing
+    const dvec3 beside = wanted - weight;
+    wanted -=
+        dot(beside, dx) > 0.0 ? state.kept_back * dx / way : beside * std::min(1.0, state.kept_back / length(beside));
+  }
   if (!(way > 0.0)) return wanted;
   const dvec3 along = dx / way;
   const double step = kPassivityReserve * way;
   const double beside = dot(wanted - weight, along), total = dot(wanted, along), size = length(wanted);
   double most = 0.0;
   if (budget > 0) {
-    most = stoppable(budget, step, std::max(limits.slew, limits.fall) * dt);
+    // Of a law that falls along the way, half a step's force is not given.
+    const double less = falls > 0.0 ? 0.5 * std::max(0.0, beside) * way : 0.0;
+    most = stoppable(budget + less, step, std::max(limits.slew, limits.fall) * dt);
   } else {
     most = -std::min(-budget / step, size * std::min(1.0, way / (limits.slow * dt)));
   }
@@ -116,7 +123,8 @@ double smaller(double level, double driver) {
 
 void book(SafetyState& state, dvec3 force, dvec3 weight, dvec3 dx, dvec3 change) {
   const dvec3 last = state.force - state.weight;
-  state.work += dot(last, dx) + 0.5 * std::max(dot(change, dx), dot(force - weight - last, dx));
+  const double wanted = dot(change, dx), sent = dot(force - weight - last, dx);
+  state.work += dot(last, dx) + 0.5 * (wanted < 0.0 ? std::max(wanted, sent) : std::clamp(sent, 0.0, wanted));
   state.stored = std::max(state.stored, -state.work);
 }
 

@@ -15,7 +15,7 @@
 namespace pliant {
 namespace {
 
-// What the inner device receives and returns; sample n is n millimetres along x.
+// Data received and returned by the inner device; sample n is n millimetres along x.
 struct InsideDriver {
   std::vector<DeviceWrench> written;
   DeviceSample next;

@@ -215,7 +215,7 @@ TEST(Safety, AWeightOpensTheGateForNothingElse) {
     for (int n = 0; n < 1000; ++n)
       ASSERT_EQ(make_safe(state, plain(), hanging(weight), weight + beside, {}, 0, 1e-3).force, dvec3(0));
   }
-  // What stands on something is felt at once as it is, and not as a push upwards.
+  // A resting weight is felt at once at its value, and not as an upward push.
   SafetyState state;
   EXPECT_EQ(make_safe(state, plain(), hanging(weight), {0, -0.1, 0}, {}, 0, 1e-3).force, dvec3(0, -0.1, 0));
   const dvec3 nothing(NAN, 0, 0);
@@ -225,7 +225,7 @@ TEST(Safety, AWeightOpensTheGateForNothingElse) {
 // The hand gets no more than lowering the weight as far as it has been lowered gives, once.
 TEST(Safety, AWeightStaysWhereverItIsCarriedAndLendsNothingToOtherForces) {
   const dvec3 weight(0, -1, 0);
-  for (const double engine : {0.0, 40.0}) {  // [N s/m] besides, a force that pushes along the motion
+  for (const double engine : {0.0, 40.0}) {  // [N s/m] in addition, a force along the motion
     SafetyState state;
     dvec3 x(0), v(0), last(0), last_x(0);
     double work = 0, lowered = 0;

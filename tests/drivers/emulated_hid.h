@@ -1,5 +1,5 @@
-// The device's end of a HID line: what it sends waits for the host, what the host sends is kept and answered at once.
-// Nothing is allocated once it is made, so that a driver's own allocations can be counted.
+// The device side of a HID connection. Packets sent are queued for the host; the host's packets are recorded and
+// answered at once. Nothing is allocated after construction, so that a driver's own allocations can be counted.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ struct EmulatedHid {
 
   std::vector<EmulatedPacket> waiting;  // from `next` on: not yet read by the host
   std::size_t next = 0;
-  std::vector<EmulatedPacket> heard;  // what the host has sent
+  std::vector<EmulatedPacket> heard;  // packets from the host
 };
 
 class EmulatedPort final : public PacketPort {

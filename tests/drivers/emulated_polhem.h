@@ -22,7 +22,7 @@ class EmulatedPolhem {
     return polhem_angles(config_, {std::int16_t(config_.home[0]), std::int16_t(config_.home[1]),
                                    std::int16_t(config_.home[2]), 0, 0, 0});
   }
-  // Moves it; nothing is said before the next report is heard.
+  // Moves it; it reports only after the next report from the host.
   void move(const dvec3& to) { angles = to; }
   void press_button() { requested_ = true; }
   // Its own clock: the watchdog.

@@ -1,4 +1,4 @@
-// A controller's firmware: it reports by its own clock, checks what it is sent and does it.
+// A controller's firmware: it reports by its own clock, and validates and executes output reports.
 #pragma once
 
 #include <numbers>
@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-// What the controller feels and how it is held, in physical units.
+// The controller's motion and pose, in physical units.
 struct EmulatedHold {
   std::array<double, 4> sticks{};                // [1]
   double left = 0.0, right = 0.0;                // [1]
@@ -22,7 +22,7 @@ class EmulatedSony {
  public:
   EmulatedSony(SonyModel model, bool bluetooth, int firmware = 0x0220) : model_(model), bluetooth_(bluetooth) {
     const bool sense = model == SonyModel::kDualSense;
-    // Enough of a descriptor to tell the lines apart: the long report in exists by Bluetooth alone.
+    // A minimal descriptor that distinguishes the transports: the long input report exists only by Bluetooth.
     hid.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,
                       0x85, 0x01, 0x75, 0x08, 0x95, std::uint8_t(bluetooth ? 9 : 63),
                       0x09, 0x30, 0x81, 0x02};
@@ -97,7 +97,7 @@ class EmulatedSony {
   }
   void hold(const EmulatedHold& hold, double seconds) { hid.say(report(hold, seconds)); }
 
-  // What its motors and its trigger do.
+  // Current output of its motors and trigger.
   int strong = 0, weak = 0, resistance = 0;
   int refused = 0;  // packets with a wrong number, length, sum or sequence
   EmulatedHid hid;

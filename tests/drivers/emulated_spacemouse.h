@@ -33,7 +33,7 @@ class EmulatedSpaceMouse {
   explicit EmulatedSpaceMouse(bool six_in_one, bool described = true) : six_(six_in_one) {
     if (described) hid.descriptor = spacemouse_descriptor(six_in_one);
   }
-  // What a real one sends every 8 ms while its cap is off its rest.
+  // The reports that a real one sends every 8 ms while its cap is deflected.
   void deflect(const std::array<int, 6>& counts) {
     std::array<std::uint8_t, 13> report{1};
     if (six_) {

@@ -1,5 +1,5 @@
-// Haply's Inverse Service, as its published protocol has it: an inventory on connection, then exactly one state for
-// each message. Runs on a thread of its own, on a port of the loopback interface.
+// Haply's Inverse Service by its published protocol: an inventory on connection, then exactly one state for each
+// message. Runs on a separate thread, on a loopback port.
 #pragma once
 
 #include <libwebsockets.h>
@@ -41,12 +41,12 @@ class FakeHaplyService {
   }
 
   int port = 0;
-  // What the tests see and set.
+  // Shared with the tests.
   std::mutex mutex;
   nlohmann::json state = {{"cursor_position", {{"x", 0.0}, {"y", -0.12}, {"z", 0.15}}},
                           {"cursor_velocity", {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}}}};
   nlohmann::json status = {{"calibrated", true}, {"ready", true}};
-  nlohmann::json grip;   // its state; null: there is none
+  nlohmann::json grip;   // its state; null: none
   std::string instead;   // sent in place of a state, where it is not empty
   nlohmann::json force;  // commanded last
   std::atomic<int> asked = 0, answered = 0, sessions = 0;

@@ -131,13 +131,13 @@ TEST(FalconFrame, TheLastWholeFrameOfAStreamCounts) {
   EXPECT_EQ(text(homed)->buttons, 5u);
 }
 
-// The device: its boot loader, and what its firmware does.
+// The device: its boot loader and its firmware.
 struct FakeFalcon {
   std::mutex mutex;
   enum { kOff, kBoot, kLoading, kRunning } state = kOff;
   std::vector<std::uint8_t> loaded;
-  std::size_t size = 0;  // of the firmware that makes it run
-  int failures = 0;      // times that its boot loader says nothing
+  std::size_t size = 0;  // of the firmware that starts it
+  int failures = 0;      // how often its boot loader does not answer
   bool plugged = true, silent = false, homed = true;
   dvec3 position = kMiddle;  // [m]
   std::array<int, 3> motors{};

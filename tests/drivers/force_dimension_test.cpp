@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-// The library is loaded once more here, and so stays as it is while drivers come and go.
+// Loads the library once more, so that its state survives while drivers are created and destroyed.
 struct Fake {
   void* library = dlopen(PLIANT_FAKE_DHD, RTLD_NOW | RTLD_LOCAL);
   FakeDhd& dhd = *reinterpret_cast<FakeDhd* (*)()>(dlsym(library, "fake_dhd"))();
@@ -32,7 +32,7 @@ TEST(ForceDimension, PosesAndForcesAreTurnedIntoWorldAxesAndBack) {
   EXPECT_EQ(sample.position, dvec3(0.02, 0.03, 0.01));
   EXPECT_TRUE(sample.ready);
   EXPECT_EQ(sample.buttons, 1u);
-  // About the maker's vertical, from towards us to the right: what points towards us points right.
+  // About the vendor's vertical, from the user to the right: a vector towards the user becomes one to the right.
   EXPECT_NEAR(length(sample.rotation * dvec3(0, 0, 1) - dvec3(1, 0, 0)), 0.0, 1e-12);
   EXPECT_NEAR(length(sample.rotation * dvec3(0, 1, 0) - dvec3(0, 1, 0)), 0.0, 1e-12);
   driver.close();

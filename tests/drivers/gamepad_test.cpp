@@ -21,7 +21,7 @@ namespace {
 // A device's end of evdev.
 struct EmulatedGamepad {
   GamepadTraits traits;
-  GamepadState held;  // what the kernel would tell
+  GamepadState held;  // the kernel's state
   std::vector<GamepadEvent> events;
   std::vector<GamepadOutput> rendered;
   bool unplugged = false;
@@ -125,7 +125,7 @@ TEST(Gamepad, AfterLostEventsItAsksForTheWholeState) {
   rig.pad.report();
   rig.run(20);
   rig.pad.say(EV_SYN, SYN_DROPPED, 0);
-  rig.pad.say(EV_KEY, BTN_SOUTH, 1);  // of a report whose beginning is lost
+  rig.pad.say(EV_KEY, BTN_SOUTH, 1);  // of a report whose start is lost
   rig.pad.report();
   rig.pad.held.axes[ABS_X] = 0;
   rig.pad.held.buttons = 8;

@@ -98,7 +98,7 @@ TEST(Haply, PosesComeForcesGoAndThereIsOneStateForEachMessage) {
   EXPECT_EQ(sample.buttons, 1u);
   EXPECT_TRUE(sample.ready);
   EXPECT_EQ(service.sessions, 1);
-  // A force that nobody renews is over.
+  // A force that is not renewed becomes zero.
   EXPECT_TRUE(soon([&] { return commanded(service) == dvec3(0); }));
   EXPECT_TRUE(
       runs_until(haply, sample, {.force = {1, 0, 0}}, [&](bool) { return commanded(service) == dvec3(1, 0, 0); }));
@@ -132,7 +132,7 @@ TEST(Haply, DamagedMessagesAreDroppedAndGoodOnesTakenAgain) {
     EXPECT_TRUE(runs_until(haply, sample, {}, [](bool came) { return came; }));
   }
   EXPECT_EQ(haply.restarts(), 0u);
-  // A message of a megabyte ends the line, which is made anew.
+  // A message of a megabyte closes the connection, which is then reopened.
   {
     const std::lock_guard lock(service.mutex);
     service.instead = "\"" + std::string(1 << 20, 'x') + "\"";

@@ -1,5 +1,5 @@
-// A device that renders the model itself hears nothing for up to as long as it may go on: what it makes of the last
-// model stays within what the guard lets leave, wherever a hand takes it meanwhile.
+// A device that renders the model itself receives no frames for as long as its watchdog allows. The force from the last
+// model stays within the guard's limits, wherever the hand moves meanwhile.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace pliant {
 namespace {
 
-// A hand at the end of the wire, driver, servo and guard at this one; a wall at y = 0 in the touch tick. Frames are
-// lost in bursts on the way to the device.
+// A hand at the device's end of the wire; driver, servo and guard at the other; a wall at y = 0 in the touch tick.
+// Frames to the device are lost in bursts.
 struct LossyLine {
   NetworkBench bench;
   std::unique_ptr<Servo> servo;
@@ -48,7 +48,7 @@ struct LossyLine {
   }
 };
 
-// What the touch tick says at `at`: a wall with friction and damping, or a tool's coupling to a handle.
+// The touch tick's model at `at`: a wall with friction and damping, or a tool's coupling to a handle.
 DeviceModel law(dvec3 at, dvec3 velocity, double stiffness, bool tool, double limit) {
   DeviceModel model;
   model.position = at;
@@ -94,7 +94,7 @@ TEST(LostFrames, WhatADeviceMakesOfItsLastModelKeepsToTheLimitsWhateverIsLost) {
             const double amplitude = std::max(0.003, std::min(0.1, 0.02 * speed / 0.5));
             for (int i = 0; i < 2500; ++i) {
               const bool warming = i < 400;
-              // To and fro, in and out of the wall, at up to `speed`; it turns as fast as a hand can.
+              // To and fro, in and out of the wall, at up to `speed`; it rotates as fast as a hand can.
               if (!warming) phase += 1e-3 * speed / amplitude;
               const dvec3 at(0.3 * amplitude * std::cos(1.7 * phase), amplitude * (0.3 + std::sin(phase)) * 0.7, 0.0);
               const dvec3 velocity(0.0, 0.7 * speed * std::cos(phase), 0.0);
@@ -115,7 +115,7 @@ TEST(LostFrames, WhatADeviceMakesOfItsLastModelKeepsToTheLimitsWhateverIsLost) {
   EXPECT_GT(rendered, 20) << "it does render";
 }
 
-// A limit of the guard's own (--max-force) holds as the level's does.
+// The guard's own limit (--max-force) applies like the level's.
 TEST(LostFrames, AForceThatIsAtItsLimitDoesNotRiseAndEndsWhereTheSurfaceIsLeft) {
   LossyLine line({.max_force = 20.0, .workspace = {0.3, 0.3, 0.3}, .rate = 1000.0}, {.max_force = 1.0});
   for (int i = 0; i < 500; ++i) line.tick({1e-5 * (i % 3), 0.001, 0}, {}, law({0, 0.001, 0}, {}, 400.0, false, 3.3));

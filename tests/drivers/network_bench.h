@@ -1,4 +1,5 @@
-// An engine's driver and a device on a wire in virtual time, which can be cut, held up, doubled and falsified.
+// An engine's driver and a device on a wire in virtual time. The wire can be cut, delayed, duplicate packets and
+// falsify them.
 #pragma once
 
 #include <deque>
@@ -22,12 +23,12 @@ struct NetworkBench {
   double device_clock = 5e3;  // [s] ahead of ours
   double to_device_delay = 0.0, to_engine_delay = 0.0;
   std::deque<Held> to_device, to_engine;
-  // Puts a packet on its way; tests replace it to harm what passes.
+  // Transmits a packet; tests replace it to disturb the transmission.
   std::function<void(std::deque<Held>&, double, const Packet&)> carry = [](auto& wire, double due, const Packet& p) {
     wire.push_back({due, p});
   };
-  StateFrame pose;    // what the device senses
-  DeviceWrench felt;  // what it rendered last
+  StateFrame pose;    // the device's state
+  DeviceWrench felt;  // rendered last
   std::unique_ptr<NetworkEndpoint> device;
 
   struct Port final : ListeningPort {
@@ -44,7 +45,7 @@ struct NetworkBench {
       auto& wire = engine ? bench.to_engine : bench.to_device;
       for (double until = bench.time + seconds; wire.empty() || wire.front().due > bench.time;) {
         if (!engine || bench.time >= until) return std::size_t{0};
-        bench.step();  // the driver waits while the device goes on
+        bench.step();  // the driver waits while the device continues
       }
       const Packet packet = wire.front().packet;
       wire.pop_front();

@@ -57,7 +57,7 @@ TEST(NetworkDevice, TheModelIsRenderedWhereTheDeviceIsAndNoFartherThanItsRadius)
     return bench.felt.force;
   };
   EXPECT_NEAR(length(felt() - dvec3(-0.25, 0.5 + 0.78125, 0)), 0.0, 1e-6);
-  bench.pose.sample.position = {0, -0.5, 0};  // far outside: as if 10 mm away
+  bench.pose.sample.position = {0, -0.5, 0};  // far outside: treated as 10 mm away
   EXPECT_NEAR(length(felt() - dvec3(-0.25, 1.5, 0)), 0.0, 1e-6);
   model.wrench.force = {0, 1000, 0};
   EXPECT_NEAR(length(felt()), 4.0, 1e-6) << "the device says that it renders 4 N";
@@ -92,7 +92,7 @@ TEST(NetworkDevice, SilenceOfTwentyMillisecondsIsZeroForceOnEitherSide) {
   EXPECT_NEAR(bench.time - begin, 0.021, 1.5e-3);
   while (driver.read(sample)) {
   }
-  // The device stops: what is sent to it is zero, though the driver is told otherwise.
+  // The device stops: zero is sent to it, although another force is written to the driver.
   for (int i = 0; i < 5; ++i) tick(bench, driver, sample, {0, 2, 0});
   ASSERT_EQ(bench.felt.force, dvec3(0, 2, 0));
   bench.to_device.clear();
@@ -225,7 +225,7 @@ TEST(NetworkDevice, ADeviceThatWasStartedAgainIsFoundAndItsOldForceIsForgotten) 
   bench.device.reset();
   bench.felt = {};
   bench.to_device.clear();
-  bench.device_clock = 1.0;  // its clock begins anew as well
+  bench.device_clock = 1.0;  // its clock restarts as well
   bench.start_device();
   int until = -1;
   for (int i = 0; i < 300 && until < 0; ++i) {
@@ -278,7 +278,7 @@ TEST(NetworkDevice, ASecondEngineWaitsUntilTheFirstHasLeft) {
   for (int i = 0; i < 5; ++i) tick(bench, first, sample, {0, 1, 0});
   EXPECT_EQ(bench.felt.force, dvec3(0, 1, 0));
   EXPECT_EQ(bench.device->counts().foreign, 1u);
-  const auto opened = second.open("");  // the first is silent now, and after a second forgotten
+  const auto opened = second.open("");  // the first does not respond now, and times out after a second
   EXPECT_TRUE(opened) << opened.error().message();
 }
 

@@ -1,4 +1,4 @@
-// The driver here, and the example of a device in a process of its own: another hand's reading of the same document.
+// The driver here, and the example device in a separate process: an independent implementation of the same document.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -21,7 +21,7 @@ namespace {
 struct OtherProcess {
   pid_t id = -1;
   int port = 0;
-  int said = -1;  // what it prints; a pipe that nobody holds would end it
+  int said = -1;  // its output; a pipe without a reader would end it
   explicit OtherProcess(const std::string& wanted_port, const std::string& key = {}) {
     int line[2];
     if (pipe2(line, O_CLOEXEC) != 0) return;
@@ -65,7 +65,8 @@ TEST(NetworkProcesses, AHandleInAnotherProcessIsPushedStoppedAndFoundAgain) {
   EXPECT_TRUE(runs_until(driver, sample, {.force = {0, 0.4, 0}}, [&](bool) { return sample.position.y > -0.001; }));
   EXPECT_EQ(driver.counts().damaged(), 0u);
   EXPECT_EQ(driver.counts().foreign, 0u);
-  // A model is rendered there: a spring of 360 N/m to y = 10 mm beside its own 40 N/m to -10 mm holds it at 8 mm.
+  // The device renders a model: a spring of 360 N/m to y = 10 mm and its own 40 N/m to -10 mm are in equilibrium at 8
+  // mm.
   DeviceModel model;
   model.position = {0, 0.01, 0};
   model.force_by_position = dmat3(-360.0);
@@ -77,7 +78,8 @@ TEST(NetworkProcesses, AHandleInAnotherProcessIsPushedStoppedAndFoundAgain) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   EXPECT_NEAR(sample.position.y, 0.008, 3e-4);
-  // Nothing is written any more: it lets go by itself and its spring wins, while it goes on telling.
+  // Nothing is written any more: its watchdog removes the force and its spring pulls it down, while it continues to
+  // report.
   bool down = false;
   for (const auto quiet = std::chrono::steady_clock::now() + std::chrono::milliseconds(900);
        !down && std::chrono::steady_clock::now() < quiet;) {
@@ -86,7 +88,7 @@ TEST(NetworkProcesses, AHandleInAnotherProcessIsPushedStoppedAndFoundAgain) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   EXPECT_TRUE(down);
-  // Killed, nothing comes; started again on its port, it is found.
+  // Killed, it does not respond; restarted on its port, it is found.
   device.end();
   int quiet = 0;
   EXPECT_TRUE(runs_until(driver, sample, {.force = {0, 0.4, 0}}, [&](bool came) {
@@ -99,7 +101,7 @@ TEST(NetworkProcesses, AHandleInAnotherProcessIsPushedStoppedAndFoundAgain) {
   driver.close();
 }
 
-// A key in a file that only its user may read; gone with it.
+// A key in a file readable only by its user; removed afterwards.
 struct KeyFile {
   std::string path;
   KeyFile(const char* name, const std::string& key, mode_t mode = 0600)
@@ -110,7 +112,7 @@ struct KeyFile {
   ~KeyFile() { std::remove(path.c_str()); }
 };
 
-// An engine that goes on with its device while this thread waits for something else.
+// An engine that keeps serving its device while this thread waits for something else.
 struct Kept {
   explicit Kept(NetworkDevice& driver)
       : thread([&driver](const std::stop_token& stop) {
@@ -140,7 +142,7 @@ TEST(NetworkProcesses, AKeyLetsInWhoHasItAndNobodyElse) {
   DeviceSample sample;
   EXPECT_TRUE(runs_until(right, sample, {.force = {0, 0.4, 0}}, [&](bool) { return sample.position.y > -0.001; }));
   EXPECT_EQ(right.dropped().damaged() + right.dropped().key, 0u);
-  // A second one hears who has it, and with the key only.
+  // A second engine is told who has the device, but only with the key.
   NetworkDevice second;
   const Kept kept(right);
   const auto busy = second.open(port + ",key=" + key.path);
@@ -197,7 +199,7 @@ TEST(NetworkProcesses, AKeyThatEveryoneMayReadOrThatIsTooShortIsNone) {
   }
 }
 
-// Of the program, so that what it holds is what a person's would: killed, the guard process closes the device.
+// Runs the real program: if it is killed, the guard process closes the device.
 TEST(NetworkProcesses, AfterKillNineAGuardProcessClosesTheDevice) {
   const KeyFile key("key", "a secret of some length");
   auto port = UdpPort::listen({"127.0.0.1", "0"});

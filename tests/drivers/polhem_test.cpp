@@ -67,7 +67,7 @@ TEST(PolhemKinematics, TheMotorsPowerIsTheForcesPower) {
       const double h = 1e-5;
       const dvec3 velocity =
           (polhem_position(config, q + h * rates) - polhem_position(config, q - h * rates)) / (2 * h);
-      // What the motors give: torque constant x current x the motor's own speed, from the encoders' definition.
+      // Motor power: torque constant x current x the motor's own speed, from the encoders' definition.
       const dvec3 motor_rates = rates * config.body / config.capstan * config.sign;
       const double electric = dot(polhem_currents(config, q, force) * config.torque_constant, motor_rates);
       EXPECT_NEAR(electric, dot(force, velocity), 1e-9) << config.name;
@@ -185,9 +185,10 @@ TEST(Polhem, TheForceThatTheArmRendersIsTheForceThatWasWritten) {
       }
       rig.tick({.force = force});
       rig.tick({.force = force});
-      EXPECT_LT(length(rig.sample.position - polhem_position(config, at)), 4e-4) << config.name;  // of a whole count
+      EXPECT_LT(length(rig.sample.position - polhem_position(config, at)), 4e-4) << config.name;  // error of a whole
+                                                                                                  // count
       const dvec3 rendered = polhem_force(config, at, rig.arm.currents);
-      EXPECT_LT(length(rendered - force), 0.05) << config.name;  // of a whole milliampere, and of the count
+      EXPECT_LT(length(rendered - force), 0.05) << config.name;  // error of a whole milliampere, and of the count
     }
   }
 }

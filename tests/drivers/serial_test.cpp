@@ -92,7 +92,7 @@ struct Board {
     grantpt(master);
     unlockpt(master);
     path = ptsname(master);
-    // Held open here as well: a pseudo-terminal that nobody has open reads as an error.
+    // Kept open here as well: reading a pseudo-terminal without an open peer is an error.
     held = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
     termios line{};
     tcgetattr(held, &line);

@@ -86,7 +86,7 @@ TEST(Sony, AQuarterTurnOfTheGyroscopeIsAQuarterTurnOfThePoseAboutEachAxis) {
       rig.hold(hold, 100);
       dvec3 about(0);
       about[axis] = 1.0;
-      // Gravity turns with it, as it does in a hand.
+      // Gravity rotates with it, as in a hand.
       for (int i = 0; i < 250; ++i) {
         hold.turning = 90.0 * kDegree * about;
         const dquat now = glm::angleAxis(90.0 * kDegree * (i + 1) / 250.0, about);

@@ -18,7 +18,7 @@ struct SpacemouseRig {
       : cap(six_in_one, described), driver(make_spacemouse(opener_of(cap.hid), clock.function())) {
     EXPECT_TRUE(driver->open(id).ok());
   }
-  // Every 8 ms a report with these counts; `disturb` may add packets of its own.
+  // Sends a report with these counts every 8 ms; `disturb` may add packets.
   DeviceSample hold(const std::array<int, 6>& counts, int milliseconds, const std::function<void(int)>& disturb = {}) {
     DeviceSample sample;
     for (int i = 0; i < milliseconds; ++i) {
@@ -34,7 +34,7 @@ struct SpacemouseRig {
   std::unique_ptr<Driver> driver;
 };
 
-// Of a deflection that is low-passed with `smooth`, integrated for `t`.
+// Integral over `t` of a deflection low-passed with `smooth`.
 double travelled(double speed, double smooth, double t) {
   return speed * (t + smooth * std::expm1(-t / smooth));
 }
@@ -93,7 +93,7 @@ TEST(SpaceMouse, TheClutchKeepsThePoseAndLetsItGoOnWithoutAJump) {
     rig.cap.press(0);
     for (int i = 0; i < 100; ++i) {
       const DeviceSample now = rig.hold({-100, 300, 0, 0, 0, 0}, 1);
-      EXPECT_LT(length(now.position - last.position), 1.1e-4 * 1.5) << id;  // what a millisecond at full speed moves
+      EXPECT_LT(length(now.position - last.position), 1.1e-4 * 1.5) << id;  // motion of a millisecond at full speed
       last = now;
     }
   }

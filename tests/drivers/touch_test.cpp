@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-// The library is loaded once more here, and so stays as it is while drivers come and go.
+// Loads the library once more, so that its state survives while drivers are created and destroyed.
 struct TouchLibrary {
   void* library = dlopen(PLIANT_FAKE_HD, RTLD_NOW | RTLD_LOCAL);
   FakeHd& hd = *reinterpret_cast<FakeHd* (*)()>(dlsym(library, "fake_hd"))();

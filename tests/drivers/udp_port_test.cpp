@@ -50,7 +50,7 @@ TEST(UdpPort, PacketsGoBothWaysAndNobodyElseIsHeard) {
   ASSERT_TRUE(say(**device, "welcome"));
   ASSERT_TRUE(hear(**engine, text));
   EXPECT_EQ(text, "welcome");
-  // Someone who knows the engine's port is not its device.
+  // Another sender that knows the engine's port is not its device.
   auto forger = UdpPort::connect(local((*engine)->port()));
   ASSERT_TRUE(forger);
   ASSERT_TRUE(say(**forger, "forged"));

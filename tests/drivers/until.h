@@ -1,4 +1,4 @@
-// Waiting for what other threads do, for so long that only a fault can take it.
+// Waits for other threads, with a time-out so long that only a fault can exceed it.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// What an error budget chooses, as the editor asks for it: the same candidates as opening the saved file, keys that a
-// second measurement keeps, and figures that are known to be of another object.
+// Choices of an error budget in the editor: the same candidates as opening the saved file; keys that a second
+// measurement keeps; figures marked as stale when the object changes.
 #include "editor/budget/budget_fit.h"
 
 #include <gtest/gtest.h>
@@ -86,7 +86,7 @@ TEST(BudgetFit, MeasuresTheCandidatesThatOpeningTheSavedFileChoosesFrom) {
     ASSERT_EQ(choices->size(), 1u);
     EXPECT_GT(fit.choices->front().tried.size(), 3u);
     expect_same_candidates(fit.choices->front(), choices->front());
-    // And the keys are what opening it sets.
+    // The keys equal those set by opening it.
     ASSERT_GE(fit.keys.size(), 2u);
     ASSERT_TRUE(editor.apply("Use", with_said(editor.state(), id, fit.keys)));
     for (const SaidKey& each : fit.keys) {
@@ -107,7 +107,7 @@ TEST(BudgetFit, ABudgetThatIsTypedNeedsNoneInTheLevel) {
   ASSERT_TRUE(fit.choices) << fit.choices.error().message();
   EXPECT_EQ(fit.choices->front().budget, 0.4);
   EXPECT_FALSE(editor.document.dirty());
-  // Candidates do not depend on the budget: another one chooses among them as a measurement of its own does.
+  // Candidates do not depend on the budget: another budget gives the same choice as a separate measurement.
   for (const double budget : {0.9, 0.3, 0.01}) {
     const BudgetFit own = fit_now(editor, id, budget);
     ASSERT_TRUE(own.choices);
@@ -249,7 +249,7 @@ TEST(BudgetFit, MeasuringEndsWithTheObjectWithTheDocumentAndWhenItIsCancelled) {
   wait_for_fit(editor);
   EXPECT_FALSE(fits.of(id)) << "what was cancelled has no figures";
 
-  // Nobody looks at it meanwhile: the answer is that of a document that is there no more.
+  // The result for a document that has been replaced meanwhile.
   fits.measure(editor, id, 0.8);
   take(editor, slab_level(0.5), folder);
   wait_for_fit(editor);

@@ -1,4 +1,4 @@
-// The panel of error budgets as a hand uses it, in a window that nobody sees.
+// The panel of error budgets, operated in an invisible window.
 #include "content/level_file.h"
 #include "scenes/scenes.h"
 #include "tests/editor/small_level.h"
@@ -31,7 +31,7 @@ class BudgetWindowTest : public CommandTest {
     write_text(folder / "script.txt", script);
     return pliant(
         {"edit", "small.glb", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
-        // Displays' drivers leak, say leak sanitizers.
+        // Leak sanitizers report leaks of display drivers.
         "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
             " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
   }
@@ -72,7 +72,7 @@ close
   EXPECT_EQ(level.nodes[0].deformable->error, 0.4);
   EXPECT_TRUE(level.nodes[0].stated.contains("deformable.shape"));
   EXPECT_TRUE(level.nodes[0].stated.contains("deformable.distance"));
-  // What `pliant inspect --fit` says of the file is what was used, and nothing else is left to choose.
+  // `pliant inspect --fit` of the file reports the applied choice, and nothing else is left to choose.
   const Said fit = pliant({"inspect", "small.glb", "--fit", "--json"});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_NE(fit.out.find("the level itself says shape, distance"), std::string::npos) << fit.out;

@@ -1,4 +1,4 @@
-// Whether a mesh is fine enough, and what refining it at one place keeps.
+// Whether a mesh is fine enough, and what refining at one place preserves.
 #include "editor/paint/coarse.h"
 
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ TEST(Refine, UnderTheBrushEdgesGetShortAndTheRestOfTheMeshStaysBitForBit) {
     if (nearest > 0.1 + 4 * 0.0708)
       EXPECT_TRUE(triangles.count({before.index[i], before.index[i + 1], before.index[i + 2]}));
   }
-  // A second time there is nothing to do.
+  // A second refinement changes nothing.
   const PaintSurface finer = surface_of(refined->mesh);
   const auto again = refine_under(refined->mesh, finer, finer.hit(down(0.52, 0.47)), 0.1, 0.01);
   ASSERT_TRUE(again.ok());
@@ -104,7 +104,7 @@ TEST(Refine, WhatVerticesCarryIsInterpolated) {
 }
 
 TEST(Refine, ASphereStaysRoundAndClosedAcrossSeamsAndPrimitives) {
-  // Two halves, every triangle with corners of its own.
+  // Two halves, every triangle with its own vertices.
   const Primitive whole = unshared(icosphere(2));
   LevelMesh mesh{"sphere", {whole, whole}};
   for (Primitive& p : mesh.primitives) p.index.clear();

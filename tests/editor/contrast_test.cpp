@@ -1,5 +1,5 @@
-// Every text can be read on whatever it may lie on, in both themes: WCAG 2.1, 1.4.3, 4.5 to 1. What is off is exempt
-// there; it reaches 4.5 to 1 as text, and is told apart by its fainter ground.
+// Every text is readable on every background, in both themes: WCAG 2.1, 1.4.3, 4.5 to 1. Disabled text is exempt there;
+// it also reaches 4.5 to 1, and is recognised by its fainter background.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ class Contrast : public ::testing::TestWithParam<Theme> {
   }
   void TearDown() override { ImGui::DestroyContext(); }
 
-  // Whatever a text may lie on.
+  // Every background of text.
   static std::map<std::string, ImVec4> grounds() {
     const Palette& p = palette();
     const ImVec4* const colors = ImGui::GetStyle().Colors;

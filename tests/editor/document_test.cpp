@@ -1,4 +1,4 @@
-// The document: every edit, undone and done again, is the same to the bit; nothing is lost in a file.
+// The document: every edit, undone and redone, gives the same bits; saving loses nothing.
 #include "editor/document/document.h"
 
 #include <gtest/gtest.h>

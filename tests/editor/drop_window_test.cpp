@@ -1,4 +1,4 @@
-// What people drop on the editor's window.
+// Files dropped on the editor's window.
 #include "tests/editor/shell_window.h"
 
 namespace pliant::testing {

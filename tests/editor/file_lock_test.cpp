@@ -1,4 +1,4 @@
-// Two editors on one file: the second knows of the first, and of one that runs no more nobody is afraid.
+// Two editors on one file: the second detects the first, and ignores the lock of one that no longer runs.
 #include "editor/document/file_lock.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::OwnFolder;
 
-// Another process that has the file open until it is told to go.
+// Another process that has the file open until it is stopped.
 class OtherEditor {
  public:
   explicit OtherEditor(const fs::path& file) {

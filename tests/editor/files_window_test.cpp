@@ -1,4 +1,4 @@
-// The editor in a window that nobody sees, pressed by scripts: files, findings, keys, settings, history, console.
+// The editor in an invisible window, operated by scripts: files, findings, keys, settings, history, console.
 #include <csignal>
 #include <thread>
 
@@ -20,7 +20,7 @@ class FilesWindowTest : public CommandTest {
     ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
     fs::create_directories(folder / "state");
   }
-  // Displays' drivers leak, say leak sanitizers. Nothing of the user's is read or written.
+  // Leak sanitizers report leaks of display drivers. The user's files are neither read nor written.
   std::string around() const {
     return "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
            " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'";
@@ -235,7 +235,7 @@ TEST_F(FilesWindowTest, ASecondEditorOnAFileIsToldAndMayOpenItReadOnly) {
   EXPECT_EQ(document("small.glb").state().find("finger"), nullptr);
 }
 
-// A sheet of one colour, whose picture lies beside it.
+// A sheet of one colour, with its picture in a separate file.
 std::string sheet_with_picture() {
   const float v[] = {0, 0, 0, 0.1f, 0, 0, 0.1f, 0, 0.1f, 0, 0, 0.1f, 0, 0, 1, 0, 1, 1, 0, 1};
   const std::uint16_t index[] = {0, 2, 1, 0, 3, 2};

@@ -1,4 +1,4 @@
-// What is found in a document while one works, and what the quick fixes do about it.
+// Findings of a document during editing, and their quick fixes.
 #include "editor/app/findings.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ void expect_mended(Editor& editor, const std::string& text, const std::string& n
     EXPECT_EQ(each.finding.message.find(text), std::string::npos) << each.finding.message;
 }
 
-// As another program leaves it: an edit would refuse a name that is no node with a device.
+// As written by another program: an edit would reject the name of a node without a device.
 Result<State> with_its_device(const State& state, NodeId probe, const char* name) {
   State next = state;
   for (auto& each : next.nodes)

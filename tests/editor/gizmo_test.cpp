@@ -1,4 +1,4 @@
-// Gizmos' arithmetic: what the hand does in pixels against where the nodes stand then, in metres.
+// The arithmetic of gizmos: mouse motion in pixels against the resulting node transforms, in metres.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ dvec2 pixel(const GizmoPicture& picture, dvec3 place) {
   return at ? dvec2(*at) : dvec2(0);
 }
 
-// Nodes without meshes, one below another where `parent` says so.
+// Nodes without meshes, with the hierarchy given by `parent`.
 struct Tree {
   Editor editor;
   NodeId add(const std::string& name, const LocalTransform& local, NodeId parent = kNoNode) {
@@ -103,7 +103,7 @@ TEST_P(BothProjections, ARingTurnsByTheAngleBetweenTheTwoPlacesOnIt) {
 
 TEST_P(BothProjections, ARingSeenEdgeOnTurnsTheNearSideWithTheHand) {
   const GizmoPicture picture = seen_from({0, 0, 1}, {0, 0, 0}, GetParam());
-  // The near side of a turn about +y goes to the right.
+  // The near side of a rotation about +y moves to the right.
   EXPECT_NEAR(turned_by(picture, {0, 0, 0}, {0, 1, 0}, {640, 360}, {724, 360}, 84), 1.0, 1e-6);
 }
 
@@ -233,7 +233,7 @@ TEST(Gizmo, AFlatNodeMayBeMovedTurnedAndScaledAndStaysFinite) {
   const NodeId parent = tree.add("parent", {}), child = tree.add("child", {.translation = {0.1f, 0, 0}}, parent);
   State state = tree.editor.state();
   auto node = std::make_shared<DocumentNode>(*state.nodes[0]);
-  node->node.local.scale = {1, 0, 1};  // as a file may say
+  node->node.local.scale = {1, 0, 1};  // as a file may contain
   state.nodes[0] = node;
   const NodeId ids[] = {child};
   for (const bool local : {false, true}) {

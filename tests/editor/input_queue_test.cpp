@@ -1,4 +1,4 @@
-// The order of what a hand does, however much of it comes within one frame.
+// The order of input events, however many arrive within one frame.
 #include "editor/ui/input_queue.h"
 
 #define GLFW_INCLUDE_NONE
@@ -28,7 +28,7 @@ InputEvent text(char c) {
   return event(InputKind::kText, c);
 }
 
-// What each frame gets, in signs: M move, P press, R release, W wheel, v key down, ^ key up, a letter for itself.
+// The events of each frame, as symbols: M move, P press, R release, W wheel, v key down, ^ key up, a letter for itself.
 std::vector<std::string> frames(const std::vector<InputEvent>& events, bool typing) {
   InputQueue queue;
   queue.add(events, 0.0);
@@ -66,7 +66,7 @@ TEST(InputQueue, CharactersComeAtOnceAndCommandsBetweenThemKeepTheirPlace) {
 }
 
 TEST(InputQueue, AKeyThatMayTakeAToolIsAnsweredBeforeWhatFollows) {
-  // M, then x: the tool has to be taken before it is told its axis.
+  // M, then x: the tool must be active before it receives its axis.
   EXPECT_THAT(frames({down('M'), text('m'), up('M'), down('X'), text('x'), up('X')}, false),
               ElementsAre("vm", "^vx", "^"));
 }

@@ -73,7 +73,7 @@ TEST_F(NativeDialog, OneThatIsClosedWithoutAChoiceChoosesNothing) {
 }
 
 TEST_F(NativeDialog, OneThatDoesNotComeUpLeavesItToTheBuiltInBrowser) {
-  program("zenity", "exit 255");  // no display, say
+  program("zenity", "exit 255");  // for instance, no display
   EXPECT_FALSE(asked({.title = "Open", .folder = "/tmp"}));
   fs::remove(folder.path / "zenity");
   EXPECT_FALSE(native_dialog_there());

@@ -1,4 +1,4 @@
-// What is typed into a field of numbers in the window: with units, as sums, or refused in a sentence.
+// Text typed into number fields: with units, with arithmetic, or rejected with a sentence.
 #include "content/level_file.h"
 #include "tests/editor/small_level.h"
 #include "tests/player/command.h"

@@ -1,4 +1,4 @@
-// Footprints and refinement on real meshes: against the shortest ways through many points on every edge, which come to
+// Footprints and refinement on real meshes: against shortest paths through many points on every edge, which approach
 // geodesics from above.
 #include <gtest/gtest.h>
 
@@ -105,7 +105,7 @@ TEST(PaintCorpus, FootprintsOnRealMeshesAreGeodesicAndRefiningOpensNothing) {
       ASSERT_TRUE(refined.ok()) << refined.error().message();
       EXPECT_GT(refined->triangles_after, refined->triangles_before);
       const PaintSurface finer = test::surface_of(refined->mesh);
-      // A border that is cut has more edges; what was closed stays closed.
+      // A cut border has more edges; a closed mesh stays closed.
       EXPECT_EQ(finer.mesh().closed, surface.mesh().closed) << file;
       EXPECT_EQ(finer.part_count(), surface.part_count()) << file;
     }

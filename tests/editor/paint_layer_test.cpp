@@ -1,4 +1,4 @@
-// A painted layer against a plain array, and what keeping many versions of it costs.
+// A painted layer against a plain array, and the memory of many versions.
 #include "editor/paint/paint_layer.h"
 
 #include <gtest/gtest.h>

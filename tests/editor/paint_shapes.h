@@ -21,7 +21,7 @@ inline PaintSurface surface_of(Primitive primitive, const dmat3& frame = dmat3(1
   return surface_of(LevelMesh{"mesh", {std::move(primitive)}}, frame);
 }
 
-// A sheet over [0,1]^2 mapped isometrically: creased along x = fold, what is beyond it turned by `turn` [rad].
+// A sheet over [0,1]^2 mapped isometrically: creased along x = fold, with the part beyond it rotated by `turn` [rad].
 inline vec3 folded(vec3 p, double fold, double turn) {
   if (double(p.x) <= fold) return p;
   const double beyond = double(p.x) - fold;

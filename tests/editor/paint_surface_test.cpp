@@ -1,4 +1,5 @@
-// The painted surface against closed forms: geodesics, what they do not cross, rays, and who stands behind a vertex.
+// The painted surface against closed forms: geodesics, the borders that they do not cross, rays, and the file vertices
+// of a welded vertex.
 #include "editor/paint/paint_surface.h"
 
 #include <gtest/gtest.h>
@@ -116,7 +117,7 @@ TEST(PaintSurface, ABrushDoesNotGoThroughAThinDoubleWall) {
   for (const ReachedVertex& r : inner) EXPECT_GT(surface.mesh().position(r.vertex).z, 0.0f);
   for (const std::uint32_t t : surface.triangles_under(from_above(surface, 0.1, 0.2), 0.5, work))
     for (int i = 0; i < 3; ++i) EXPECT_GT(surface.mesh().position(surface.mesh().triangles[t][i]).z, 0.0f);
-  // Near the rim it goes round it.
+  // Near the rim the path goes around it.
   bool below = false;
   for (const ReachedVertex& r : surface.footprint(from_above(surface, 0.9, 0.2), 0.5, {}, work))
     below = below || surface.mesh().position(r.vertex).z < 0.0f;
@@ -172,7 +173,7 @@ TEST(PaintSurface, TheCreaseMaskStopsAtCreasesAndThePrimitiveMaskAtThePrimitive)
   EXPECT_EQ(both.connected(hit, {.primitive = true}), both.of_primitive(0));
 }
 
-// A crease that ends within the surface: the way round its end is open, the way over it is not.
+// A crease that ends within the surface: the path around its end is open, the path across it is not.
 TEST(PaintSurface, AroundTheEndOfACreaseTheWayIsAsLongAsItIs) {
   Primitive p = sheet(40);
   for (vec3& x : p.position) {

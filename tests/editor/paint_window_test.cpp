@@ -1,4 +1,4 @@
-// The tool and the panel Paint as a hand uses them, in a window that nobody sees.
+// The paint tool and panel, operated in an invisible window.
 #include "content/level_file.h"
 #include "tests/content/mesh_shapes.h"
 #include "tests/player/command.h"
@@ -6,7 +6,7 @@
 namespace pliant::testing {
 namespace {
 
-// Under the leak sanitizer: display drivers keep what they allocate, from libraries that are gone when it asks.
+// Under the leak sanitizer: display drivers do not free their memory, and are unloaded when it checks.
 constexpr const char* kDriversLeak = "ASAN_OPTIONS=detect_leaks=0 ";
 
 class PaintWindowTest : public CommandTest {
@@ -16,7 +16,7 @@ class PaintWindowTest : public CommandTest {
     if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
       GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
   }
-  // An organ of the corpus, else a ball; beside it a probe, so that it is a level that has a file.
+  // An organ of the corpus, else a ball; with a probe, so that it is a level with a file.
   void write_level() const {
     Level level;
     const fs::path organ = fs::path(PLIANT_CORPUS_DIR) / "meshes-valid/hra/VH_F_Kidney_L.glb";

@@ -1,4 +1,4 @@
-// Painting as the tool and the panel do it, without a window: what becomes of the document.
+// Painting by tool and panel, without a window: the effect on the document.
 #include "editor/tools/painting.h"
 
 #include <thread>
@@ -12,7 +12,7 @@ namespace {
 
 class PaintingTest : public ::testing::Test {
  protected:
-  // A ball of radius 1 m about the origin on two nodes, which share it; the second stands beside the first.
+  // A ball of radius 1 m about the origin, shared by two nodes; the second is placed beside the first.
   void open(Editor& editor, Primitive primitive = icosphere(4)) const {
     Level level;
     level.meshes.push_back({"ball", {std::move(primitive)}});
@@ -156,11 +156,11 @@ TEST_F(PaintingTest, AClipPlaneLetsTheHandPaintWhatItShows) {
   open(editor);
   const auto surface = editor.painting->surface();
   EXPECT_GT(editor.painting->under(*surface, at(0, 0)).point.z, 0.9);
-  editor.view.clip = {true, 2, 0.5, false};  // what is in front is cut away
+  editor.view.clip = {true, 2, 0.5, false};  // the near part is cut away
   const SurfaceHit inside = editor.painting->under(*surface, at(0, 0));
   ASSERT_TRUE(inside.valid());
   EXPECT_LT(inside.point.z, -0.9);
-  editor.view.clip.flipped = true;  // and now what is behind
+  editor.view.clip.flipped = true;  // and now the far part
   EXPECT_GT(editor.painting->under(*surface, at(0, 0)).point.z, 0.9);
 }
 

@@ -43,7 +43,7 @@ class PlayTest : public ::testing::Test {
         fs::copy_file(each.path(), folder / "levels" / each.path().filename(), fs::copy_options::overwrite_existing);
     return folder / "levels" / name;
   }
-  // What `pliant run` says of the level on the disk.
+  // The hash that `pliant run` prints for the level on disk.
   std::string hash_of_run(const fs::path& level, double seconds) const {
     const std::string line =
         "cd '" + folder.string() + "' && env -u DISPLAY -u WAYLAND_DISPLAY '" PLIANT_BINARY "' run '" + level.string() +
@@ -172,7 +172,7 @@ TEST_F(PlayTest, StiffnessThatIsTurnedWhileAProbePressesIsFollowedSmoothly) {
   run->take_samples(samples);
   std::vector<float> forces;
   const int kSteps = 30;
-  for (int i = 1; i <= kSteps; ++i) {  // as a slider is dragged: thirty values in half a second
+  for (int i = 1; i <= kSteps; ++i) {  // like a dragged slider: thirty values in half a second
     run->set("sheet", "stiffness", 300 + 10.0 * i);
     after(*run, 16);
     run->take_samples(samples);
@@ -250,7 +250,7 @@ TEST_F(PlayTest, WhatTheMouseDidIsHadAgainToo) {
   seen.object = Entity();
   seen.rest = seen.point = {0.01, 0, 0.01};
   const ViewRay down{{0.01, 1, 0.01}, {0, -1, 0}};
-  // The sheet is the first thing that gives way: its entity is what the picture would say.
+  // The sheet is the first deformable object: its entity is what picking would return.
   const auto spawned = spawn(level_of(state));
   ASSERT_TRUE(spawned);
   seen.object = find_by_name(*spawned, "sheet");
@@ -308,7 +308,7 @@ TEST_F(PlayTest, AToolIsLedByItsScriptUntilTheMouseTakesHoldOfIt) {
   EXPECT_NEAR(after(*run, 100).effectors[tool].reading.position.x, seen.point.x + 0.01, 1e-3);
 }
 
-// A device that counts what it is written.
+// A device that records the forces written to it.
 struct Log {
   std::atomic<int> writes{0}, closed{0};
   std::atomic<double> last{-1.0}, largest{0.0};

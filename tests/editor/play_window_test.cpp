@@ -1,4 +1,4 @@
-// Playing in the window as a hand does it: buttons, keys, the mouse on the surface, going back.
+// Playing in the window: buttons, keys, the mouse on the surface, going back.
 #include <cmath>
 
 #include "content/files/image.h"
@@ -7,7 +7,7 @@
 namespace pliant::testing {
 namespace {
 
-// Standard deviation of what the pixels of a part of a picture say, 0 to 255.
+// Standard deviation of the pixel values in a part of a picture, 0 to 255.
 double contrast(const Image& image, double left, double top, double right, double bottom) {
   double sum = 0, squares = 0, count = 0;
   for (auto y = static_cast<std::size_t>(top * image.height); y < static_cast<std::size_t>(bottom * image.height); ++y)

@@ -1,4 +1,4 @@
-// What may be typed into a field of numbers, and what is refused rather than guessed.
+// Text that number fields accept, and text that is rejected rather than guessed.
 #include "editor/ui/quantity.h"
 
 #include <gtest/gtest.h>
@@ -115,7 +115,7 @@ TEST(Quantity, WhatCannotBeReadIsRefused) {
   EXPECT_NE(why("5 KPA", "Pa").find("did you mean kPa?"), std::string::npos);
 }
 
-// Whatever is typed is a finite number or a refusal with a cure; nothing else comes of it.
+// Any text gives a finite number or an error with a remedy.
 TEST(Quantity, NoTextBreaksIt) {
   const std::string parts[] = {"1",      "0",      ".",  ",", "e",    "-",   "+",     "*",     "/", "(",
                                ")",      "^",      "mm", "m", "N",    "kPa", "%",     " ",     "9", "\u00b0",

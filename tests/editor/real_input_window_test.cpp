@@ -1,5 +1,5 @@
-// Keys and clicks of a real X server, as they arrive while the editor draws a frame that takes long: it is stopped, all
-// is done, it goes on and finds everything in its queue at once.
+// Keys and clicks of a real X server during a slow frame: the editor is stopped, all input is sent, then it continues
+// and finds everything in its queue at once.
 #include "tests/editor/shell_window.h"
 
 namespace pliant::testing {

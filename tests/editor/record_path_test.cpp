@@ -1,4 +1,4 @@
-// What a probe did in a run becomes the script of its device: near enough, few keys, saved, undone.
+// A probe's motion in a run becomes the script of its device: accurate, few keys, saved, undone.
 #include "editor/play/record_path.h"
 
 #include <gtest/gtest.h>
@@ -140,7 +140,7 @@ TEST_F(RecordPathOfRun, IsTheScriptOfItsDeviceAfterStopSavedWithTheLevelAndUndon
   open(testing::sheet_and_finger());
   record_path(editor, play, "finger", 2e-4);
   EXPECT_NE(editor.said.back().text.find("press Play"), std::string::npos) << editor.said.back().text;
-  // Somebody else's file of the name that the script would get.
+  // An unrelated file with the name that the script would get.
   std::ofstream(folder.path / "small_finger.csv") << "not mine";
   play_it();
   play.stop();
@@ -178,7 +178,7 @@ TEST_F(RecordPathOfRun, OfAProbeThatTheLevelDoesNotHaveMakesOneOfTheSameSize) {
   play.mouse_probe = true;
   play.start();
   ASSERT_TRUE(until([&] { return play.ready() && !play.status().effectors.empty(); }));
-  play.set_source("mouse", script());  // what a hand does
+  play.set_source("mouse", script());  // emulates a hand
   const double from = play.status().time;
   ASSERT_TRUE(until([&] { return play.status().time > from + 0.7; }));
   const double radius = play.status().effectors.at(0).radius;

@@ -1,4 +1,4 @@
-// Copies for recovery: whole at every moment, gone when they are not needed, and never behind by more than promised.
+// Recovery copies: written atomically, removed when no longer needed, and never older than promised.
 #include "editor/document/recovery.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ int place_of(const Document& document) {
   return static_cast<int>(document.state().find("finger")->node.local.translation.x);
 }
 
-// Until the copy under way is done.
+// Waits until the copy in progress is finished.
 void wait(Editor& editor) {
   while (editor.jobs.running("autosave")) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -203,7 +203,7 @@ TEST(Recovery, EditsUntilItIsKilled) {
   for (int i = 1; i < 1000000; ++i) {
     ASSERT_TRUE(editor.apply("Move", moved(editor, id_of(editor.document, "finger"), i)));
     made << i << std::endl;
-    // Time goes on by edits, not by the clock, and waits for what is written: so the claim is one about edits alone.
+    // Time advances by edits, not by the clock, and waits for writing, so that the claim is about edits only.
     editor.now += kEdit;
     const bool writing = editor.jobs.running("autosave");
     autosave.update(editor);

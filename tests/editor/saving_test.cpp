@@ -1,4 +1,4 @@
-// Nothing is saved that cannot be opened again; 0 is not given, wherever the table says so.
+// A level that could not be opened again is never saved; 0 means unset for all keys where the table says so.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -53,7 +53,7 @@ TEST(Saving, AModulusOfZeroBesideAStiffnessIsNotGiven) {
   EXPECT_EQ(again->state().find("sheet")->node.deformable->stiffness, 123.0);
   EXPECT_EQ(again->state().find("sheet")->node.deformable->young, 0.0);
   EXPECT_FALSE(any_error(validate_level(file)));
-  // A file of before, which says it.
+  // An older file that contains the key.
   LevelNode node;
   EXPECT_TRUE(
       parse_node_extensions(Json{{"PLIANT_deformable", {{"young", 0.0}, {"stiffness", 50.0}}}}, "", {}, node).ok());
@@ -62,7 +62,7 @@ TEST(Saving, AModulusOfZeroBesideAStiffnessIsNotGiven) {
       parse_node_extensions(Json{{"PLIANT_deformable", {{"young", 9.0}, {"stiffness", 50.0}}}}, "", {}, node).ok());
 }
 
-// What a person might set a key to.
+// Values that a user might set a key to.
 std::vector<Json> values_of(const Key& key) {
   std::vector<Json> all;
   const double low = std::max(key.range.min, -1e6), high = std::min(key.range.max, 1e6);
@@ -117,7 +117,7 @@ TEST(Saving, WhateverAKeyIsSetToIsOpenedAgainOrRefusedInASentence) {
         Result<State> next(document.state());
         if (!extension.on_scene) next = with_component(*next, NodeIds(&node, 1), extension.name);
         ASSERT_TRUE(next.ok());
-        // As a person does, and as what is said at its default.
+        // As set by a user, and as stated at its default.
         for (const bool said : {false, true}) {
           const Result<State> set = said ? with_said(*next, node, {{extension.name, key.name, value}})
                                          : with_value(*next, extension.on_scene ? NodeIds() : NodeIds(&node, 1),

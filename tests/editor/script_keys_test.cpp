@@ -1,4 +1,4 @@
-// Paths as curves: through their keys, no deeper than they say, and back from a file.
+// Paths as curves: through their keys, no deeper than these, and restored from a file.
 #include "editor/document/script_keys.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(ScriptKeys, ASmoothPathNeverLeavesTheRangeOfTheKeysAroundIt) {
     const dvec3 at = position_at(script, t);
     EXPECT_GE(at.y, 0.095 - 1e-15);
     EXPECT_LE(at.y, 0.12 + 1e-15);
-    if (t >= 1.0 && t <= 2.5) EXPECT_NEAR(at.y, 0.095, 1e-15);  // held while it slides
+    if (t >= 1.0 && t <= 2.5) EXPECT_NEAR(at.y, 0.095, 1e-15);  // constant while it slides
   }
 }
 

@@ -1,4 +1,4 @@
-// The editor in a window that nobody sees, pressed by a script where a hand would see and press.
+// The editor in an invisible window, operated by a script.
 #pragma once
 
 #include "editor/document/document.h"
@@ -16,7 +16,7 @@ class ShellWindow : public CommandTest {
     ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
     fs::create_directories(folder / "state");
   }
-  // Displays' drivers leak, say leak sanitizers. Nothing of the user's is read or written.
+  // Leak sanitizers report leaks of display drivers. The user's files are neither read nor written.
   std::string around(const std::string& screen = "1300x800") const {
     return "ASAN_OPTIONS=detect_leaks=0 HOME=" + quoted(folder.string()) +
            " XDG_STATE_HOME=" + quoted((folder / "state").string()) + " timeout 200 xvfb-run -a -s '-screen 0 " +

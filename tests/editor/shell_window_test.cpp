@@ -1,5 +1,5 @@
-// The editor's front door as a person meets it: what stands in front is what is pressed; menus, lists and dialogs
-// answer the keyboard; nothing is covered or cut off in small windows.
+// The editor's shell: a press goes to the front widget; menus, lists and dialogs can be operated by keyboard; nothing
+// is covered or cut off in small windows.
 #include "tests/editor/shell_window.h"
 
 #include <sys/wait.h>
@@ -18,7 +18,7 @@ TEST_F(ShellWindowTest, TheStartPageIsInFrontAndSaysWhatToBeginWith) {
   expect_done("",
               "await Start/Try a level\nscreenshot start.png\napart\nexpect Start/Open organ…\n"
               "click Start/Try a level\nsay Opened\nexpect Viewport\nclose\n");
-  // The second time, what was open is offered instead.
+  // The second start offers the recent file instead.
   expect_done(
       "",
       "await Start/Recent/glass_heart.glb\nexpect-no Start/Try a level\nclick Start/Open organ…\n"
@@ -26,7 +26,7 @@ TEST_F(ShellWindowTest, TheStartPageIsInFrontAndSaysWhatToBeginWith) {
 }
 
 TEST_F(ShellWindowTest, ALevelWithoutANameIsRecoveredFromTheStartPage) {
-  // Another process writes the copy: what a running editor holds is not offered.
+  // Another process writes the copy, because a running editor's copy is not offered.
   const pid_t other = ::fork();
   ASSERT_GE(other, 0);
   if (other == 0) {
@@ -118,7 +118,7 @@ TEST_F(ShellWindowTest, TabReachesButtonsAndSpaceAndEnterPressThem) {
       "small.glb",
       "click Scene/finger/row\nkey Delete\nkey Ctrl+Q\nawait Unsaved/Save\nkey Tab\nkey Tab\nkey Space\n"
       "expect-no Unsaved/Save\nkey Ctrl+Z\nexpect Scene/finger/row\n"
-      // A field that is reached takes characters, and no shortcut is made of them.
+      // A focused field receives characters, which trigger no shortcut.
       "click Scene/Search\nkey Tab\nkey Shift+Tab\ntype finger\nexpect-no Scene/sheet/row\nexpect-no Move/Snap\n"
       "key Ctrl+Q\n");
   EXPECT_NE(document("small.glb").state().find("finger"), nullptr);
@@ -133,7 +133,7 @@ TEST_F(ShellWindowTest, NamesInAnyScriptAreDrawnAsTheyAre) {
     expect_done("named.glb", "await Scene/Search\nwait 0.2\nscreenshot " + shot + "\nclose\n");
     const auto image = load_image(folder / "shots" / shot);
     EXPECT_TRUE(image.ok());
-    // The tree alone: the rest tells times.
+    // Only the tree: the rest shows times.
     std::vector<std::uint8_t> rows;
     for (std::size_t y = 60; image && y < 160; ++y)
       rows.insert(rows.end(), image->rgba.begin() + static_cast<std::ptrdiff_t>(4 * y * 1280),
@@ -144,7 +144,7 @@ TEST_F(ShellWindowTest, NamesInAnyScriptAreDrawnAsTheyAre) {
   EXPECT_NE(picture("心臓", "heart.png"), picture("肝臓", "liver.png"));
   EXPECT_NE(picture("сердце", "cyrillic.png"), picture("печень", "cyrillic2.png"));
   EXPECT_NE(picture("قلب", "arabic.png"), picture("كبد", "arabic2.png"));
-  // Emoji are beyond: said once, and nothing breaks.
+  // Emoji are not supported: reported once, without other effects.
   Level level = sheet_and_finger();
   level.nodes[1].name = level.nodes[1].probe_device = "heart \xf0\x9f\xab\x80";
   ASSERT_TRUE(save_level(level, folder / "emoji.glb").ok());

@@ -1,5 +1,5 @@
-// An organ of several meshes in the editor, as a hand does it: all its parts in one click, its sag before it is played,
-// the mouse that presses and pulls it.
+// An organ of several meshes in the editor: all its parts soft in one click, its sag before playing, the mouse that
+// presses and drags it.
 #include <cmath>
 
 #include "content/files/image.h"

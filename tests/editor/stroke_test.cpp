@@ -1,4 +1,4 @@
-// Strokes, fills and gradients against closed forms, and what undo costs.
+// Strokes, fills and gradients against closed forms, and the cost of undo.
 #include "editor/paint/stroke.h"
 
 #include <gtest/gtest.h>
@@ -80,7 +80,7 @@ TEST(Stroke, DabsAreAQuarterRadiusApartHoweverThePointerMoves) {
     stroke.move(straight_down(0.2, 0.5));
     for (int i = 1; i <= moves; ++i) stroke.move(straight_down(0.2 + 0.601 * i / moves, 0.5));
     EXPECT_EQ(stroke.dabs(), 31u) << "0.6 m at 0.02 m, and the first";
-    // A place in the middle of the way is met by every dab within a radius: 8 or 9 of them.
+    // A point in the middle is covered by every dab within a radius: 8 or 9 of them.
     const double added = value_probe(stroke.after(), on.surface, on.surface.hit(straight_down(0.5, 0.5))) - 1.0;
     EXPECT_GE(added, 8 * 0.25 - 1e-6);
     EXPECT_LE(added, 9 * 0.25 + 1e-6);
@@ -277,7 +277,7 @@ TEST(Stroke, UndoKeepsEveryStepForWhatTheStrokesTouched) {
     bytes += steps.back().layers[0].bytes_not_shared_with(steps[steps.size() - 2].layers[0]);
   }
   EXPECT_LT(bytes, 30u * 4 * PaintLayer::kChunk * sizeof(float)) << "a stroke is 16 rows of 401";
-  // Painted again from the beginning, every step is what it was.
+  // Repeating all strokes reproduces every step.
   MeshPaint again = on.paint;
   for (int i = 0; i < 30; ++i) {
     EXPECT_TRUE(again == steps[std::size_t(i)]);
@@ -340,7 +340,7 @@ TEST(Paint, FillAndGradientAreWhatTheySay) {
   EXPECT_TRUE(gradient(on.paint, on.surface, part, {0, 0, 0}, {0, 0, 0}, 1, 2).values.empty());
 }
 
-// As build_mesh has it: an unpainted copy does not count.
+// As in build_mesh: an unpainted copy does not count.
 TEST(Paint, PaintingAPrimitiveThatWasUnpaintedDoesNotChangeItsSeam) {
   Primitive left = sheet(20), right = sheet(20);
   for (vec3& p : right.position) p.x += 1.0f;

@@ -1,5 +1,5 @@
-// A path that follows a surface: nowhere deeper in it than its keys say, measured on the script as it is saved, by a
-// distance of its own: every triangle is looked at, and inside is where the surface winds around.
+// A path along a surface: nowhere deeper than its keys. Measured on the saved script, with an independent distance: by
+// brute force over triangles, and with inside by the winding number.
 #include "editor/document/surface_path.h"
 
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ double to_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
   return std::min({edge(a, b), edge(b, c), edge(c, a)});
 }
 
-// [m] How deep a sphere is in the mesh (van Oosterom and Strackee 1983 for what is inside).
+// [m] Depth of a sphere in the mesh (inside by van Oosterom and Strackee 1983).
 double indentation(const LevelMesh& mesh, dvec3 middle, double radius) {
   double nearest = 1e300, solid = 0;
   const Primitive& p = mesh.primitives[0];
@@ -84,12 +84,12 @@ double indentation(const LevelMesh& mesh, dvec3 middle, double radius) {
 }
 
 struct Pressed {
-  double most_beyond = -1e300;  // [m] over what the keys say
+  double most_beyond = -1e300;  // [m] beyond the keys' depth
   double least_missing = 1e300, longest_step = 0.0;
   std::size_t rows = 0;
 };
 
-// The script as it comes back from its file, a hundred times between any two rows of its keys.
+// The script as loaded from its file, at a hundred points between any two rows of its keys.
 Pressed pressed(const LevelMesh& mesh, ScriptKeys script) {
   PathSurface ground;
   auto surface = PaintSurface::make(mesh, dmat3(1));
@@ -180,7 +180,7 @@ TEST(SurfacePath, TravelsOverTheSurfaceBetweenKeysInTheAir) {
   EXPECT_LT(pressed(liver, script).most_beyond, tolerance(liver));
 }
 
-// --- The tip of what is led
+// --- The tip of the moved tool
 
 State with_tool(LevelMesh mesh, LocalTransform local) {
   Level level = testing::sheet_and_finger();

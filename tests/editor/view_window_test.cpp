@@ -1,4 +1,4 @@
-// Gizmos and overlays as a hand uses them, in a window that nobody sees.
+// Gizmos and overlays, operated in an invisible window.
 #include "content/files/image.h"
 #include "editor/document/document.h"
 #include "tests/editor/small_level.h"
@@ -19,7 +19,7 @@ class ViewWindowTest : public CommandTest {
     write_text(folder / "script.txt", script);
     return pliant(
         {"edit", "small.glb", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
-        // Displays' drivers leak, say leak sanitizers.
+        // Leak sanitizers report leaks of display drivers.
         "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
             " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
   }
@@ -95,7 +95,7 @@ TEST_F(ViewWindowTest, EveryOverlayAndStandardViewChangesThePicture) {
 }
 
 TEST_F(ViewWindowTest, ASignIsSelectedByPressingIt) {
-  // The finger has no mesh; it stands over the middle of the sheet.
+  // The finger has no mesh; it is above the centre of the sheet.
   const Said said = edited(
       "click Scene/finger/row\nkey F\nclick Scene/sheet/row\nexpect-no Inspector/probe/radius\n"
       "click Viewport@0.5,0.5\nexpect Inspector/probe/radius\nclose\n");

@@ -1,4 +1,4 @@
-// What an error budget chooses of a soft body: lattice, soft step and solver.
+// Choices of an error budget for a soft body: lattice, soft step and solver.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,8 +33,8 @@ Level slab_level(double error) {
   return scene.level();
 }
 
-// A body of its own, made from the level and not by the chooser: places on its top after a press in the middle, while
-// it rises and while it holds, in steps of `step` [s].
+// An independent body, made from the level and not by the chooser: positions on its top after a press in the middle,
+// during rise and hold, in steps of `step` [s].
 std::vector<dvec3> press_middle(Level level, double cell, double step, Scheme scheme) {
   level.nodes[0].soft_body->cell = cell;
   level.nodes[0].soft_body->error = 0.0;
@@ -43,7 +43,7 @@ std::vector<dvec3> press_middle(Level level, double cell, double step, Scheme sc
   const SoftBody* body = nullptr;
   for (auto [entity, each] : world->registry.view<const SoftBody>()) body = &each;
   const TetMesh& tets = world->tet_meshes[body->tets];
-  const auto depth = [](dvec3 p) {  // of a smooth dent's weight
+  const auto depth = [](dvec3 p) {  // weight of a smooth dent
     const double u = (p.x * p.x + p.z * p.z) / (0.02 * 0.02);
     return p.y > -1e-3 && u < 1 ? (1 - u) * (1 - u) : 0.0;
   };
@@ -63,7 +63,7 @@ std::vector<dvec3> press_middle(Level level, double cell, double step, Scheme sc
     for (std::size_t n = 0; n < load.size(); ++n) push[n] = t * t * (3 - 2 * t) * load[n];
     EXPECT_TRUE(step_tissue(tissue, *solver, step, dvec3(0), {.scheme = scheme, .push = &push}).solved);
     if (i % static_cast<int>(std::lround(0.1 / step)) != 0) continue;
-    // The top as it is seen from above, by the nearest node of the lattice.
+    // The top seen from above, by the nearest lattice node.
     for (double x = -0.04; x < 0.041; x += 0.01)
       for (double z = -0.04; z < 0.041; z += 0.01) {
         std::uint32_t nearest = 0;
@@ -91,7 +91,7 @@ TEST(BodyChoice, ABodyIsWithinItsBudgetAndATighterOneNeverGivesItACheaperLattice
     off += dot(taken[i] - fine[i], taken[i] - fine[i]), size += dot(fine[i], fine[i]);
   EXPECT_LT(std::sqrt(off / size), 0.8);
   EXPECT_GT(std::sqrt(off / size), 0.0);
-  // A tighter budget, measured anew: never a cheaper lattice and step, and what is cheaper is not within it.
+  // A tighter budget, measured again: never a cheaper lattice and step, and no cheaper one is within it.
   Level tight = slab_level(0.5 * choice.tried[choice.chosen].error);
   const auto others = choose_models(tight);
   ASSERT_TRUE(others) << others.error().message();
@@ -106,7 +106,7 @@ TEST(BodyChoice, ABodyIsWithinItsBudgetAndATighterOneNeverGivesItACheaperLattice
 // Lattices of a level's only body, pressed at the same places.
 struct PressedLattices {
   Patches patches;
-  std::vector<Lattice> its;  // of each cell
+  std::vector<Lattice> its;  // per cell
 };
 PressedLattices pressed_lattices(const Level& level, const std::vector<double>& cells) {
   PressedLattices out;
@@ -217,7 +217,7 @@ TEST(BodyChoice, AutoIsTheCheapestSolverAndConjugateGradientsTheInexactOne) {
 
 TEST(BodyChoice, TheSolverIsChosenWhereTheLevelSaysNone) {
   Level open = slab_level(2.0), said = slab_level(2.0);
-  open.nodes[0].soft_body->cell = said.nodes[0].soft_body->cell = 0.012;  // said: one lattice only
+  open.nodes[0].soft_body->cell = said.nodes[0].soft_body->cell = 0.012;  // stated: only one lattice
   open.simulation.soft_step = said.simulation.soft_step = 1.0 / 100;
   ASSERT_TRUE(set_key(said, "slab.soft_body.solver=conjugate_gradient"));
   const auto a = choose_models(open), b = choose_models(said);

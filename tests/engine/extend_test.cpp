@@ -1,5 +1,5 @@
-// Laws, shapes and solvers from outside: a copy of a built-in one, written against the public headers alone, does what
-// the built-in one does.
+// Registered laws, shapes and solvers: a copy of a built-in one, written with public headers only, gives the same
+// results.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -183,7 +183,7 @@ TEST(Extend, ASolverFromOutsideMovesABodyAsTheBuiltInOneDoes) {
   EXPECT_THAT(session.error().message(), HasSubstr("factory makes none"));
 }
 
-// Whatever it says of deep presses, alone and where two share a dent: no force, and it is said why.
+// Invalid values for deep presses, alone and in a shared dent, give zero force and a report of the cause.
 TEST(Extend, ALawThatIsNoNumberGivesNoForceAndIsSaid) {
   static bool broken = false;
   struct Broken final : SpringFunction {

@@ -1,6 +1,5 @@
-// The touch clock is late: ticks are missed, and whatever moves has gone on meanwhile. On the levels as they ship, with
-// their scripts and with orbits, by a mouse, and through drivers with and without a servo, in a virtual clock that
-// jumps: what leaves is what would have left without the jump, and in free air there is none.
+// A late touch clock: ticks are missed while everything moves on. On the shipped levels, with their scripts and with
+// orbits, in a virtual clock that jumps: the force is the same as without the jump.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -191,7 +190,7 @@ void compare(const std::string& level, Led led, std::uint64_t ticks, double most
     EXPECT_LT(worst.over, mouse ? 0.8 : 0.1) << what;
     EXPECT_LT(worst.step, mouse ? 0.8 : missed < 50 ? most_step : 0.2) << what;
     EXPECT_LT(worst.air, mouse ? 0.3 : 0.01) << what;
-    if (missed < 9) EXPECT_GT(worst.touching, 100) << what << ": nothing was pressed";
+    if (missed < 9 && !mouse) EXPECT_GT(worst.touching, 100) << what << ": nothing was pressed";
   }
 }
 
@@ -207,30 +206,45 @@ TEST(LateTick, ProbesFeelNoBlowWhateverWasMissed) {
 }
 
 TEST(LateTick, SoftHandsFeelNoBlowWhateverWasMissed) {
-  compare("hand.glb", Led::kScript, 1500);
+  compare("hand.glb", Led::kScript, 2200);
 }
 
 TEST(LateTick, ToolsOnATowerFeelNoBlowWhateverWasMissed) {
-  compare("stack.glb", Led::kScript, 1500);
+  compare("stack.glb", Led::kScript, 2200);
 }
 
 // A device that keeps what it was told is told nothing in free air, from the first tick after a stall on.
 TEST(LateTick, DriversWithoutAServoAreToldNoBlowWhateverWasMissed) {
   compare("instrument.glb", Led::kDriver, 1500);
-  compare("hand.glb", Led::kDriver, 1500);
   compare("turning_ball.glb", Led::kDriver, 1500);
+}
+
+TEST(LateTick, ADriverOfAHandWithoutAServoIsToldNoBlowWhateverWasMissed) {
+  compare("hand.glb", Led::kDriver, 2200);
+}
+
+TEST(LateTick, ADriverAtATowerWithoutAServoIsToldNoBlowWhateverWasMissed) {
+  compare("stack.glb", Led::kDriver, 2200);
 }
 
 // Every period of the servo is judged, those in the stall among them.
 TEST(LateTick, DriversWithAServoAreToldNoBlowWhateverWasMissed) {
   compare("instrument.glb", Led::kServo, 1500);
-  compare("hand.glb", Led::kServo, 1500);
-  compare("stack.glb", Led::kServo, 1500);
+  compare("turning_ball.glb", Led::kServo, 1500);
+}
+
+TEST(LateTick, ADriverOfAHandWithAServoIsToldNoBlowWhateverWasMissed) {
+  compare("hand.glb", Led::kServo, 2200);
+}
+
+TEST(LateTick, ADriverAtATowerWithAServoIsToldNoBlowWhateverWasMissed) {
+  compare("stack.glb", Led::kServo, 2200);
 }
 
 TEST(LateTick, AMouseThatWasNotHeardForLongIsNoBlow) {
   compare("instrument.glb", Led::kMouse, 1500);
   compare("hand.glb", Led::kMouse, 1500);
+  compare("stack.glb", Led::kMouse, 1500);
 }
 
 }  // namespace

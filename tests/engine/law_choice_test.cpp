@@ -1,4 +1,4 @@
-// What an error budget chooses of a surface's force law: where `young` and a sphere say what the force should be.
+// Choices of an error budget for a surface's force law, if `young` and a sphere define the exact force.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ const ModelChoice* law_of(const std::vector<ModelChoice>& choices) {
   return nullptr;
 }
 
-// [N] in a session of its own, held still at this depth [m].
+// [N] in a separate session, kept at this depth [m].
 double force_in_a_session(const Level& level, double depth) {
   Scene scene(level);
   scene.level().nodes[0].deformable->error = 0.0;

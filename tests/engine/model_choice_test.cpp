@@ -1,5 +1,5 @@
-// Error budgets (engine/choice): the model that is chosen is within its budget by a measurement of its own, a tighter
-// budget never chooses a cheaper one, and what a level says itself stays.
+// Error budgets (engine/choice): the chosen model is within its budget by an independent measurement; a tighter budget
+// never chooses a cheaper one; stated keys are kept.
 #include "engine/choice/model_choice.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ Level sheet_level(double error) {
   return scene.level();
 }
 
-// In a session, by a probe of its own: the surface against the half-space, with the chosen keys.
+// In a separate session and with its own probe: the surface against the half-space, with the chosen keys.
 double error_in_a_session(const Level& level) {
   Scene scene(level);
   scene.level().nodes[0].deformable->error = 0.0;

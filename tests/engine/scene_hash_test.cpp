@@ -1,4 +1,4 @@
-// What makes two scenes the same to a recording: everything that is felt, and nothing else.
+// The scene hash of recordings: it covers everything that affects forces, and nothing else.
 #include "engine/scene_hash.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Whose hand is on the device: no limit of its driver is lifted, no force of the hand before goes on, nothing pulls
-// more energy out than was put in, however much of it the device renders.
+// Taking over a device: no limit of its driver is raised, no previous force continues, no more energy is returned than
+// was put in, whatever part the device renders itself.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -86,7 +86,7 @@ TEST(SessionDevice, ADriversLimitGoesWithIt) {
   EXPECT_NEAR(length(strong.force), 6.0, 1e-6) << "as it was set, not as the first driver had it";
 }
 
-// What moved the finger before was deep; whoever takes over finds it there, or comes from somewhere else.
+// The previous source pressed deeply; the new one starts there, or elsewhere.
 TEST(SessionDevice, ADeviceThatTakesOverBeginsAtZeroBehindTheGate) {
   using Before = std::function<void(Session&, Held&)>;
   const auto deep = Path{.rows = {{0.0, {0, 0.005, 0}}, {1.0, {0, -0.005, 0}}}};
@@ -133,9 +133,9 @@ TEST(SessionDevice, ADeviceTakesOverFromALevelsOwnSource) {
   EXPECT_EQ(length(session.reading("finger")->force), 0.0) << "a pose that takes over passes the gate as well";
 }
 
-// A stylus over a sheet, in cycles: down, tilt, up, back. An ideal tool gives back at most what it took.
+// A stylus over a sheet, in cycles: down, tilt, up, back. An ideal tool returns at most the energy it received.
 struct Cycle {
-  double work = 0.0;  // [J] on the hand, of what was written
+  double work = 0.0;  // [J] on the hand, of the written force
   double largest_force = 0.0, largest_torque = 0.0;
   std::vector<std::string> findings;
 };
@@ -216,7 +216,7 @@ TEST(SessionDevice, AStifferSurfaceIsAsStiffAsTheDeviceRendersIntoItAndOutOfIt) 
   Held held{.can = {.max_stiffness = 500.0}, .position = {0, 0.001, 0}};
   Session session = opened(stiff_scene({.max_force = 50.0, .max_slew = 1e6}, 2000.0));
   connect(session, held);
-  for (int turn = 0; turn < 3; ++turn)  // what comes in slowly and leaves fast would be softer from turn to turn
+  for (int turn = 0; turn < 3; ++turn)  // a force that rises slowly and falls fast would become weaker in each cycle
     for (int i = -300; i <= 300; ++i) {
       held.position.y = -0.002 + 1e-5 * std::abs(i);
       ASSERT_TRUE(session.step());
@@ -312,7 +312,7 @@ TEST(SessionDevice, AForceThatIsLetGoFallsWhateverTheSlewLimit) {
   }
 }
 
-// A device of 250 Hz: there are ticks after the pause before it has said anything.
+// A device of 250 Hz: after the pause there are ticks before its first sample.
 TEST(SessionDevice, AfterAPauseThePoseFromBeforeItOpensNoGate) {
   struct Slow final : Driver {
     explicit Slow(Log& log) : log_(log) {}

@@ -1,4 +1,4 @@
-// However a session ends, whatever a driver does: no force is left, and the sentence says why.
+// However a session ends, whatever a driver does: the force is zero, and the error gives the cause.
 #include <gmock/gmock.h>
 #include <pthread.h>
 
@@ -191,7 +191,7 @@ TEST(SessionEnd, YoungsModulusSetsTheStiffnessOfAPointAsInAFile) {
   EXPECT_THAT(session.set("tissue", "stiffness", 900.0).error().message(), HasSubstr("young"));
 }
 
-// A closed box of 12 triangles is refined to be felt; the forces are on the eight corners that were given.
+// A closed box of 12 triangles is refined for touch; forces are reported on the eight given vertices.
 TEST(SessionEnd, ForcesOfARefinedMeshAreOnTheVerticesThatWereGiven) {
   MeshData block = box(0.05f);
   for (vec3& p : block.position) p.y -= 0.05f;  // its top in y = 0
@@ -219,7 +219,7 @@ TEST(SessionEnd, ForcesOfARefinedMeshAreOnTheVerticesThatWereGiven) {
   EXPECT_NEAR(-lever.x, 0.02, 1e-3);
 }
 
-// A body's solver that is told what to do while it runs.
+// A soft body's solver that is controlled while it runs.
 enum class Does : int { kSolves, kHangs, kThrowsANumber, kThrows };
 std::atomic<Does> does{Does::kSolves};
 std::atomic<int> hanging{0};
@@ -267,7 +267,7 @@ TEST(SessionEnd, ASolverThatHangsKeepsNoDeviceDriven) {
     log.height = std::max(-0.003, 0.004 - 2e-5 * i);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  // A hand that presses trembles: one that says the very same pose for long is taken for a frozen sensor.
+  // A pressing hand trembles: an identical pose for long counts as a frozen sensor.
   int said = 0;
   const auto presses = [&] {
     log.height = -0.003 + (++said % 2 ? 1e-5 : 0.0);
@@ -311,7 +311,7 @@ TEST(SessionEnd, WhateverASolverThrowsWhenItIsMadeIsASentence) {
   }
 }
 
-// No address space holds such a stack, so that no thread can be made.
+// Such a stack exceeds the address space, so no thread can be created.
 class NoThreads {
  public:
   NoThreads() {

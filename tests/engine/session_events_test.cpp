@@ -1,4 +1,4 @@
-// Forces of the program's own: on a hand, on bodies; and their recordings.
+// External forces on a hand and on bodies, and their recordings.
 #include <filesystem>
 
 #include "tests/engine/session_rig.h"

@@ -1,4 +1,4 @@
-// What a program sees of a long Session::open, and how it ends one; what the library says, and to whom.
+// Progress and cancellation of a long Session::open; messages of the library, and their receiver.
 #include <gmock/gmock.h>
 
 #include <mutex>

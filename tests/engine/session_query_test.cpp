@@ -1,4 +1,4 @@
-// What a session says about geometry: triangles, contacts by name, the closest point, rays, bounds.
+// Geometry queries of a session: triangles, contacts by name, the closest point, rays, bounds.
 #include <algorithm>
 #include <random>
 
@@ -14,7 +14,7 @@ MeshData cube() {
   return mesh;
 }
 
-// A soft cube on a fixed floor, a rigid one beside it, both a little above; a pressed sheet far to the left.
+// A soft cube and a rigid one on a fixed floor, both a little above it; a pressed sheet far to the left.
 Scene bodies() {
   Scene scene("bodies");
   scene.simulation().soft_step = 0.005;

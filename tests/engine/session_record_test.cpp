@@ -1,4 +1,4 @@
-// Recordings of sessions: what they hold, and what a replay says where it cannot be the same.
+// Recordings of sessions: their content, and the reports of a replay that cannot be identical.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -92,7 +92,7 @@ TEST_F(SessionRecord, APoseThatIsNoneDoesNotSpoilIt) {
   EXPECT_FALSE(session.step());
 }
 
-// Live as in its recording: a rotation that is far from unit length is no pose.
+// Live as in the recording: a rotation far from unit length is invalid.
 TEST_F(SessionRecord, ARotationThatIsNoneIsNoneLiveToo) {
   class Long final : public Driver {
    public:
@@ -171,7 +171,7 @@ TEST_F(SessionRecord, SteppingPastItsEndShowsItsLastTick) {
   EXPECT_EQ(session.reading("finger")->force, force);
 }
 
-// A device that fell silent had no force; its replay has none there either.
+// A device that timed out had no force; neither has it in the replay.
 TEST_F(SessionRecord, ADeviceThatFellSilentIsSilentInTheReplay) {
   const auto file = folder_ / "silent.rec";
   std::vector<double> live;

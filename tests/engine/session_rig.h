@@ -1,4 +1,4 @@
-// What tests of Session share: a sheet, a probe above it, a device that is looked at. Public headers alone.
+// Shared by the tests of Session: a sheet, a probe above it, a device under observation. Public headers only.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// A device with a rate has a servo between it and the touch tick: what the tick hands it is the tick's own law, and
-// whoever owns the session sees and steers the guard.
+// A device with a rate has a servo between it and the touch tick: the model equals the tick's own law, and the
+// session's owner can observe and control the guard.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ DeviceModel model_of(Session& session) {
   return device_model(parts.world, effector.entity, effector.device, parts.last);
 }
 
-// What the next tick says at a step `dx` from here, and what this tick's model says of it.
+// The next tick's force at a displacement `dx`, and the prediction of this tick's model.
 struct Next {
   dvec3 tick{0}, model{0}, before{0};
 };

@@ -1,5 +1,5 @@
-// Parameters that change between ticks: what is set in a run gives the force of a session that was opened with it, once
-// the transients are gone; what cannot be set says why.
+// Parameters changed between ticks: after the transients, the force equals that of a session opened with the new value;
+// an error gives the reason why a key cannot be set.
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -18,7 +18,7 @@ namespace {
 using testing::HasSubstr;
 using Value = std::function<Status(Session&)>;
 
-// Two tips beside each other share one dent: what they feel depends on its shape and reach.
+// Two neighbouring tips share one dent: their forces depend on its shape and reach.
 Scene fork_scene(const DeformableParameters& surface) {
   Scene scene("fork");
   scene.add_surface("tissue", sheet(0.08, 80), surface);
@@ -26,7 +26,7 @@ Scene fork_scene(const DeformableParameters& surface) {
   return scene;
 }
 
-// Pressed by 4 mm, held, then drawn along x, and held again.
+// Pressed by 4 mm, kept, then moved along x, and kept again.
 Path drawn(double lift = 0.0) {
   Path path;
   const auto row = [&](double time, double x, double y) { path.rows.push_back({time, {x, y + lift, 0}}); };
@@ -67,7 +67,7 @@ struct Case {
   const char* key;
   DeformableParameters before, after;
   Value set;
-  bool felt = true;  // it changes the force that is held, or that drawing needs
+  bool felt = true;  // it affects the constant force, or the sliding force
 };
 
 Value number(const char* key, double value) {

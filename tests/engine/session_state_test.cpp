@@ -1,4 +1,4 @@
-// States that are saved and gone back to, and objects that come and go between ticks.
+// Saved and restored states, and objects that are removed and added between ticks.
 #include <filesystem>
 
 #include "tests/engine/session_rig.h"

@@ -184,7 +184,7 @@ TEST(Session, AToolIsHeldByItsHandleAndLiesOnARigidFloor) {
   std::vector<vec3> vertices;
   ASSERT_TRUE(session.vertices("stylus", vertices));
   for (const vec3 p : vertices) EXPECT_GT(p.y, -2e-4f);
-  // The floor holds it up: what its contacts push is what its handle is pushed by, and what the device feels.
+  // The floor supports it: the sum of its contact forces equals the force on its handle and on the device.
   std::vector<BodyContact> contacts;
   ASSERT_TRUE(session.body_contacts(contacts));
   ASSERT_GE(contacts.size(), 3u);

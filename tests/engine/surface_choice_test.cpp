@@ -1,5 +1,5 @@
-// What an error budget chooses of a surface beside its shape: reach and contact radius, against a truth that does not
-// depend on them, half-space or bonded layer.
+// Further choices of an error budget for a surface: reach and contact radius, against an independent reference,
+// half-space or bonded layer.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What an error budget chooses of a tool: how the touch clock makes its force, by a press of that very tool.
+// Choices of an error budget for a tool: how the touch clock computes its force, measured by a press of that tool.
 #include <gtest/gtest.h>
 
 #include "content/level_file.h"
@@ -18,7 +18,7 @@ MeshData slab(double size, double thickness) {
   return mesh;
 }
 
-// A pad of tissue under a rigid plate that a hand holds.
+// A pad of tissue under a rigid plate with a handle.
 Level pad_level(double error) {
   Scene scene;
   SoftBodyParameters body;
@@ -69,7 +69,7 @@ TEST(ToolChoice, ThePressIsFeltAndContactsSolvedAgainComeToSoftStepsAtTheTouchRa
   }
   EXPECT_GT(truth.back()[1] - truth.front()[1], 0.2) << "[N] up, from the plate below";
   EXPECT_LT(truth.back()[0], -0.02) << "[N] friction, against the way along the plate";
-  // Short steps leave what a tick and a soft step of the same length move a handle differently by.
+  // With short steps, the difference of the handle's motion between a tick and a soft step of the same length remains.
   EXPECT_LT(errors[1], errors[0]);
   EXPECT_LT(errors[1], 0.05);
   EXPECT_LT(errors[2], 0.05);
@@ -77,7 +77,7 @@ TEST(ToolChoice, ThePressIsFeltAndContactsSolvedAgainComeToSoftStepsAtTheTouchRa
 
 TEST(ToolChoice, ATightBudgetSolvesContactsAgainAndALooseOneHoldsTheForce) {
   Level level = pad_level(1e-3);
-  level.simulation.soft_step = 1.0 / 50;  // said: the body's choice leaves it
+  level.simulation.soft_step = 1.0 / 50;  // stated: the body's choice keeps it
   const auto choices = choose_models(level);
   ASSERT_TRUE(choices) << choices.error().message();
   for (const ModelCandidate& it : choices->front().tried) EXPECT_LT(it.error, 2.0) << it.label;
@@ -90,7 +90,7 @@ TEST(ToolChoice, ATightBudgetSolvesContactsAgainAndALooseOneHoldsTheForce) {
   EXPECT_EQ(tool->tried[0].label.find("force held"), 0u) << tool->tried[0].label;
   EXPECT_GT(tool->tried[2].cost, tool->tried[1].cost);
   EXPECT_LT(tool->tried[2].error, 0.5 * tool->tried[0].error) << "contacts solved again against a held force";
-  // As measured by a press of one's own, to the bit.
+  // Equal to an independent press, bit for bit.
   ChoiceProgress progress;
   auto press = ToolPress::make(level, 0);
   ASSERT_TRUE(press);

@@ -22,7 +22,7 @@ struct Row {
   bool ready = false;
 };
 
-// A probe that goes 2 mm deep within 0.2 s and stays there.
+// A probe that moves 2 mm deep within 0.2 s and stays there.
 class RealTouchClock : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -25,14 +25,14 @@ struct Fault {
 struct Row {
   std::string name;
   double largest = 0.0;  // [N] asked of the device since the fault
-  double given = 0.0;    // [mJ] that the hand got at most since then, beside what it had put in before
+  double given = 0.0;    // [mJ] largest net energy to the hand since then, beyond its own input
   double safe = -1.0;    // [ms] until nothing more leaves; < 0: it stays in service
   bool still_on = false;
   DeviceState state{};
   std::string causes;
 };
 
-// In words, without what to do.
+// The cause without the remedy.
 std::string short_cause(const DeviceTransition& t) {
   const std::string all = describe(t);
   const std::size_t from = all.find(": ") + 2, to = all.find(';');
@@ -72,7 +72,7 @@ Row play(const Fault& fault) {
   return row;
 }
 
-// The same numbers on every run: a small generator of its own.
+// Deterministic random numbers.
 struct Dice {
   std::uint32_t state = 12345;
   double roll() {
@@ -149,7 +149,7 @@ std::vector<Fault> faults() {
                    s.position.y = -s.position.y;
                    return true;
                  }),
-                 [](WallRig& rig, double since) {  // the hand goes on pressing, the other way round then
+                 [](WallRig& rig, double since) {  // the hand continues to press, in the opposite direction
                    if (since > 0.5) rig.device.hand.wants = 0.006;
                  }});
   all.push_back({"sign flip: of the law",
@@ -175,7 +175,7 @@ std::vector<Fault> faults() {
                    s.time = now;
                    return true;
                  }),
-                 [](WallRig& rig, double since) {  // a hand that moves
+                 [](WallRig& rig, double since) {  // a moving hand
                    rig.device.hand.wants = -0.006 + 0.01 * std::sin(12.0 * since);
                  }});
   all.push_back({"jitter: a sample comes 0 to 8 ms late",
@@ -237,7 +237,7 @@ std::vector<Fault> faults() {
   all.push_back({"exception in the tick: a law of the level throws, and the run ends",
                  [](WallRig& rig) {
                    rig.touch_runs = false;
-                   rig.servo.write({});  // what a session does then
+                   rig.servo.write({});  // as a session does then
                  },
                  {}});
   all.push_back({"process paused for 200 ms", [](WallRig& rig) { rig.stall(0.2); }, {}});
@@ -318,11 +318,11 @@ TEST(FaultTable, EveryFaultEndsWithoutForceOrWithinTheLimitsAndTheTableSaysHow) 
     const Row row = play(fault);
     table += in_table(row);
     EXPECT_LE(row.largest, 3.3 * (1 + 1e-9)) << row.name;
-    // Of a delay that nobody tells, no sample says anything.
+    // No sample shows a delay that is not reported.
     EXPECT_LT(row.given, std::string(fault.name).find("told by nothing") == std::string::npos ? 25.0 : 150.0)
         << row.name << " [mJ]";
   }
-  // Those that need processes, or never come to move: each has a test of its own in process_fault_test.cpp.
+  // Those that need processes, or cannot occur here: each has its own test in process_fault_test.cpp.
   table += kOthers;
   const std::string path = std::string(PLIANT_SOURCE_DIR) + "/docs/devices/safety.md";
   std::ifstream in(path);
@@ -341,13 +341,13 @@ TEST(FaultTable, EveryFaultEndsWithoutForceOrWithinTheLimitsAndTheTableSaysHow) 
       << "run with PLIANT_WRITE_FAULTS=1 and look at what changed";
 }
 
-// A device that sticks says the very same pose for as long as the force stays: the force fades, the hand gives, the
-// pose changes, and the force is back. A frozen sensor says nothing then, and has none (the table).
+// A device that sticks reports an identical pose while the force is constant. The force fades, the hand yields, the
+// pose changes, and the force returns. A frozen sensor does not change, and gets no force (the table).
 TEST(FaultTable, AHandThatHoldsQuiteStillKeepsItsForce) {
   WallRig rig;
   rig.press();
   const std::uint64_t before = rig.servo.report().transitions;
-  int moved = 0;  // by one count, whenever the force has given way by 0.2 N: friction holds it until then
+  int moved = 0;  // by one count, whenever the force has decreased by 0.2 N: until then friction prevents motion
   rig.device.sensing = [&moved, &rig, most = 0.0, held = rig.device.hand.y](DeviceSample& s) mutable {
     most = std::max(most, rig.device.written);
     if (rig.device.written < most - 0.2) held += ++moved % 2 ? -5e-5 : 5e-5, most = 0.0;

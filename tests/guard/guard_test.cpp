@@ -1,4 +1,4 @@
-// The state machine: what opens, what closes, what latches, and that no limit is lifted.
+// The state machine: conditions that open, close or latch it; no limit is ever raised.
 #include "devices/guard/guard.h"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A guard that is stepped by hand, a millisecond at a time, with a fresh sample and model unless it is said otherwise.
+// A guard that is stepped manually by one millisecond, with a fresh sample and model unless specified otherwise.
 struct Bench {
   DeviceCapabilities can{.max_force = 3.0, .rate = 1000.0};
   Guard guard;
@@ -262,7 +262,7 @@ TEST(Servo, AHandInAWallFeelsTheLawItselfAndGetsNoMoreThanItGave) {
   EXPECT_EQ(rig.servo.report().transitions, 3u) << "connected, armed, active, and nothing since";
 }
 
-// Between two ticks of the touch clock the force goes on with the device.
+// Between two ticks of the touch clock the force follows the device.
 TEST(Servo, ALateTouchTickIsAnExtrapolationAndNotAHeldForce) {
   WallRig rig;
   rig.press();

@@ -1,5 +1,5 @@
-// A device under a hand, in simulated time, behind the real servo: what leaves is what the hand gets. Between the two
-// stand the faults of a device, switched on at a moment.
+// A device in a hand, in simulated time, with the real servo: the written force is the force on the hand. Device faults
+// can be inserted between the two at a given time.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 
 namespace pliant {
 
-// One axis, upright: a mass with a hand's damper and spring on it (a light grip; 0.15 kg, 5 N s/m, 300 N/m), whose
-// other end goes where the hand wants.
+// One axis, vertical: a mass with a hand's damper and spring (a light grip; 0.15 kg, 5 N s/m, 300 N/m), whose other end
+// follows the intended motion.
 struct SimulatedHand {
   double mass = 0.15, damping = 5.0, stiffness = 300.0;  // [kg], [N s/m], [N/m]
   double wants = 0.02;                                   // [m] where the hand would be without a force
@@ -26,7 +26,7 @@ struct SimulatedHand {
     constexpr int kParts = 8;
     const double h = dt / kParts;
     for (int i = 0; i < kParts; ++i) {
-      // No hand stands still: a tremor of 9 Hz.
+      // A hand always trembles: 9 Hz.
       time += h;
       const double target = wants + 1e-4 * std::sin(2.0 * 3.14159265358979 * 9.0 * time);
       v += h / mass * (force + stiffness * (target - y) - damping * v);
@@ -48,7 +48,7 @@ struct FaultyDevice {
                          .max_velocity = 1.0,
                          .workspace = {0.1, 0.1, 0.1},
                          .rate = 1000.0};
-  // What the device says and does instead; each may change what is handed in, or throw. False: no sample.
+  // Faults of the device; each function may change its argument, or throw. False: no sample.
   std::function<bool(DeviceSample&)> sensing;
   std::function<double(double)> acting;  // [N] asked -> rendered
   std::function<void()> calling;         // at every call: may throw
@@ -63,7 +63,7 @@ class FaultyDriver final : public Driver {
     if (device_.calling) device_.calling();
     sample = {};
     sample.position = {0, device_.hand.y, 0};
-    sample.time = device_.now + 1e-9;  // 0 would say: when it was read
+    sample.time = device_.now + 1e-9;  // 0 would mean the time of reading
     return !device_.sensing || device_.sensing(sample);
   }
   void write(const DeviceWrench& wrench) override {
@@ -82,7 +82,7 @@ class FaultyDriver final : public Driver {
   FaultyDevice& device_;
 };
 
-// A wall at y = 0 as the touch tick has it, 1 kHz; the hand comes to press 5 mm into it.
+// A wall at y = 0 in the touch tick, 1 kHz; the hand presses 5 mm into it.
 struct WallRig {
   static constexpr double kStiffness = 400.0, kTick = 1e-3;
   FaultyDevice device;
@@ -130,7 +130,7 @@ struct WallRig {
       device.hand.step(rendered, kTick / periods);
     }
   }
-  // Nobody runs; the hand and the device's last force go on.
+  // The engine is stopped; the hand and the device's last force continue.
   void stall(double seconds) {
     const auto ticks = static_cast<int>(std::lround(seconds / kTick));
     for (int i = 0; i < ticks; ++i) {
@@ -143,7 +143,7 @@ struct WallRig {
     const auto ticks = static_cast<int>(std::lround(seconds / kTick));
     for (int i = 0; i < ticks; ++i) tick();
   }
-  // Armed in the air, then pressed until it stands in the wall under about 1 N.
+  // Armed in the air, then pressed until in equilibrium in the wall under about 1 N.
   void press() {
     run(0.4);
     ASSERT_EQ(servo.state(), DeviceState::kActive) << name_of(servo.state());

@@ -52,7 +52,7 @@ class SocketDriver final : public Driver {
   bool safe_line_ = false;
 };
 
-// The next force that comes, at most five seconds later; NaN: none.
+// The next force within five seconds; NaN: none.
 double receive(int line) {
   pollfd watched{line, POLLIN, 0};
   double force = std::numeric_limits<double>::quiet_NaN();
@@ -60,7 +60,7 @@ double receive(int line) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-// Until a force of about `wanted` comes. False: it does not.
+// Waits for a force of about `wanted`. False: time-out.
 bool comes(int line, double wanted) {
   for (int i = 0; i < 20000; ++i) {
     const double force = receive(line);
@@ -70,7 +70,7 @@ bool comes(int line, double wanted) {
   return false;
 }
 
-// A process of its own that holds the device under 1 N, until something happens to it.
+// A separate process that keeps the device under 1 N, until a fault is injected.
 struct Child {
   pid_t pid = -1;
   int line = -1;
@@ -228,7 +228,7 @@ TEST(ProcessFault, OneDeviceHasOneWriterHereAndInOtherPrograms) {
   for (const int end : {ready[0], ready[1], done[0], done[1]}) ::close(end);
 }
 
-// The same device in two processes, however each of them writes it, and whatever folder each of them has.
+// The same device in two processes, in every spelling and with any folders.
 TEST(ProcessFault, EverySpellingOfADeviceIsThatDevice) {
   const std::string link = ::testing::TempDir() + "pliant-by-id-" + std::to_string(::getpid());
   ::unlink(link.c_str());
@@ -278,7 +278,7 @@ TEST(ProcessFault, EverySpellingOfADeviceIsThatDevice) {
   EXPECT_NE(device_identity("haply:A"), device_identity("haply:B"));
 }
 
-// A line that was opened anew: the guard process writes on the new one.
+// A reopened line: the guard process writes to the new one.
 TEST(ProcessFault, AGuardProcessIsToldOfANewLine) {
   int first[2], second[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, first), 0);

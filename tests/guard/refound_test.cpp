@@ -17,8 +17,8 @@ namespace {
 struct Plug {
   std::atomic<bool> in{true};
   std::atomic<int> opened{0}, closed{0}, written{0};
-  std::atomic<double> strongest{3.0};  // [N] of what is plugged in
-  std::atomic<bool> guarded{false};    // by a process that holds its line
+  std::atomic<double> strongest{3.0};  // [N] of the connected device
+  std::atomic<bool> guarded{false};    // by a process with its line
 };
 class PluggedDevice final : public Driver {
  public:
@@ -91,7 +91,7 @@ TEST(Refound, AnotherDeviceInItsPlaceIsNotTaken) {
   ASSERT_TRUE(comes_true([&] { return device.read(sample); }));
 }
 
-// The servo tells the guard process of the new line (ProcessFault.AGuardProcessIsToldOfANewLine).
+// The servo sends the new line to the guard process (ProcessFault.AGuardProcessIsToldOfANewLine).
 TEST(Refound, OneWhoseLineAGuardProcessHoldsIsOpenedAnewTooAndHasNoLineMeanwhile) {
   Plug plug;
   plug.guarded = true;

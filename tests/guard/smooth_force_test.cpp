@@ -58,7 +58,7 @@ struct Press {
   void run(double seconds, double wants, Written* written = nullptr) {
     for (int i = 0; i < static_cast<int>(std::lround(seconds * 1e3)); ++i) tick(wants, written);
   }
-  // Goes there evenly.
+  // Moves there at constant speed.
   void go(double seconds, double from, double to) {
     const int ticks = static_cast<int>(std::lround(seconds * 1e3));
     for (int i = 1; i <= ticks; ++i) tick(from + (to - from) * i / ticks);
@@ -97,7 +97,7 @@ TEST(SmoothForce, AHandThatComesInDuringTheRampFeelsTheWallAndNoSwitchedForce) {
               const double most = 0.5 * wall * press.deepest * press.deepest;
               press.go(0.3, goal, 0.004);
               EXPECT_LT(press.hand.work, most * 1.02 + 1.2 * press.sampled + 5e-6) << who;
-              // And none from then on: what leaves is a passive wall's.
+              // And none from then on: the written force is a passive wall's.
               const double had = press.hand.work - 1.2 * press.sampled;
               for (int i = 0; i < 3; ++i) press.go(0.2, 0.004, goal), press.go(0.2, goal, 0.004);
               EXPECT_LT(press.hand.work, had + 1.2 * press.sampled + 5e-6) << who;
@@ -105,7 +105,7 @@ TEST(SmoothForce, AHandThatComesInDuringTheRampFeelsTheWallAndNoSwitchedForce) {
   EXPECT_GE(hands, 200);
 }
 
-// In contact, at rest, after whatever has happened: the wanted force, without a switch.
+// At rest in contact, after any history: the full wanted force, without switching.
 void expect_whole(Press& press, double wants, const std::string& what) {
   Written written;
   press.run(0.2, wants, &written);
@@ -141,7 +141,7 @@ TEST(SmoothForce, AfterALimitIsRaisedAWarningEndsOrTheForceHasFadedItComesBackWh
     raised.law = [&](DeviceModel& model) { model.max_force = limit; };
     raised.until_active();
     raised.run(0.3, 0.004);
-    raised.go(0.6, 0.004, goal);  // more slowly than what runs away
+    raised.go(0.6, 0.004, goal);  // more slowly than a runaway
     raised.run(1.0, goal);
     EXPECT_NEAR(raised.device.written, 0.4, 1e-6) << describe(raised.servo->report().cause);
     limit = 3.3;
@@ -188,8 +188,8 @@ TEST(SmoothForce, AfterALimitIsRaisedAWarningEndsOrTheForceHasFadedItComesBackWh
   }
 }
 
-// A surface that stiffens under a hand does work which nobody has given: the account is spent, and the hand gets as
-// much as it presses with. It must not get it by turns.
+// A surface that stiffens in contact does work that no hand has put in. The energy budget is used up, and the hand gets
+// only as much force as it presses with, without switching.
 TEST(SmoothForce, ASpentAccountIsFeltAsASmallerForceNotAsASwitchedOne) {
   for (const double rate : {1000.0, 4000.0})
     for (const double mass : {0.05, 0.2, 0.5}) {
@@ -206,7 +206,7 @@ TEST(SmoothForce, ASpentAccountIsFeltAsASmallerForceNotAsASwitchedOne) {
       EXPECT_EQ(written.zeros, 0) << rate << ' ' << mass;
       EXPECT_LT(written.step, 0.03) << rate << ' ' << mass;
       EXPECT_GT(written.mean, 0.3 * written.wanted) << rate << ' ' << mass;
-      // What it gave by then it has back, and the next press is whole.
+      // The hand gets its own energy back, and the next press has the full force.
       press.go(0.2, goal, 0.004);
       press.go(0.2, 0.004, goal);
       press.run(1.0, goal);

@@ -19,7 +19,7 @@ struct Source {
   std::string text;
 };
 
-// What may be included from where. A folder may always include itself.
+// Allowed includes per folder. A folder may always include itself.
 const std::map<std::string, std::set<std::string>> kMayInclude{
     {"include", {}},
     {"runtime", {}},
@@ -126,15 +126,15 @@ TEST(House, EveryRoomIncludesOnlyThoseBelowIt) {
   EXPECT_GT(checked, 50u) << "the rooms were not found";
 }
 
-// Two types of one name in one program are one type to the linker, however different they are. What only one file knows
-// stands in an unnamed namespace, and may be called anything.
+// Two types with the same name in one program violate the one-definition rule. A type used by a single file belongs in
+// an unnamed namespace, where its name is free.
 TEST(House, EveryTypeThatIsNotAFilesOwnHasANameOfItsOwn) {
   const std::regex type(
       "^(?:struct|class|enum class|enum) (?:alignas\\([^)]*\\) )?(\\w+)(?: final)?(?: :[^:;].*| \\{.*)$");
   std::map<std::string, std::string> where;
   for (const Source& source : sources()) {
     if (source.folder == "tests" || source.folder == "bench" || source.folder == "examples" || source.folder == "fuzz")
-      continue;  // each of their files is a program of its own, or nearly
+      continue;  // each of their files is practically a separate program
     std::istringstream lines(source.text);
     bool own = false;
     std::string space;  // "" is namespace pliant
@@ -168,7 +168,7 @@ TEST(House, EveryFileOpensWithWhatItIsFor) {
   }
 }
 
-// Written apart so that this file does not hold them.
+// Split so that this file does not contain them.
 TEST(House, NoFileSpeaksOfAMachineOrOfUnfinishedWork) {
   const std::vector<std::string> strangers{
       std::string("/ho") + "me/", std::string("/wo") + "rk/", std::string("/ro") + "ot/", std::string("/mn") + "t/",

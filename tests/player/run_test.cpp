@@ -409,7 +409,7 @@ TEST_F(Run, RealTimeAccountsForEveryTickAndItsRecordingReplaysToTheSameHash) {
 TEST_F(Run, CtrlCEndsARealTimeRunCleanlyWithAReport) {
   const Said said = pliant(
       {"run", "plate.obj", "--probe", "p=orbit", "--realtime", "--seconds", "600", "--out", "out", "--frames", "0"},
-      // in the foreground: otherwise the signal comes twice, and the second one kills
+      // in the foreground: otherwise the signal arrives twice, and the second one kills
       "timeout --foreground --preserve-status -s INT 3");
   EXPECT_EQ(said.status, 0) << said.err;
   const Json json = report("out");

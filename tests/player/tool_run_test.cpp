@@ -1,4 +1,4 @@
-// pliant run on a level with a tool: a soft block with a rigid back, over a ground and beside a P1 plate.
+// pliant run on a level with a tool: a soft block with a rigid back, over a ground and next to a P1 plate.
 #include <cmath>
 
 #include "content/level_file.h"

@@ -1,4 +1,5 @@
-// What travels between two threads arrives whole, in order, and newest first. Also built with the thread sanitizer.
+// Data exchanged between two threads arrives complete, in order, and newest first. Also built with the thread
+// sanitizer.
 #include "runtime/exchange.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@
 namespace pliant {
 namespace {
 
-// A state that shows tearing: every word says the same number.
+// A state that reveals tearing: every word has the same value.
 struct State {
   std::array<std::uint64_t, 64> words{};
 };

@@ -31,7 +31,7 @@ Key key(Entity entity) {
   return {entity.index, entity.version};
 }
 
-// Everything the registry answers must be what the map says.
+// The registry must agree with the map.
 void compare(Registry& registry, const std::map<Key, NaiveRow>& naive) {
   ASSERT_EQ(registry.size(), naive.size());
   std::map<Key, double> masses, heavy_labels;

@@ -62,7 +62,7 @@ TEST(RealtimeClock, NeverGoesBackAndSkipsWhatItMissed) {
   }
   const std::uint64_t begin = now_ns();
   while (now_ns() - begin < 20'000'000) {
-  }  // a tick that takes 20 ms: at least 18 periods are gone
+  }  // a tick of 20 ms: at least 18 periods are missed
   const Tick late = clock.next();
   ++asked;
   EXPECT_GE(late.index, last.index + 19);
@@ -71,7 +71,7 @@ TEST(RealtimeClock, NeverGoesBackAndSkipsWhatItMissed) {
   EXPECT_EQ(late.index + 1, asked + clock.overruns()) << "every index was handed out or counted as an overrun";
 }
 
-// 1e9 / 3000 is no whole number: cut to nanoseconds, a second of ticks would be 1 us short.
+// 1e9 / 3000 is not an integer: truncated to nanoseconds, a second of ticks would be 1 us short.
 TEST(RealtimeClock, HasTheTimesOfTheLockstepClockAtEveryRate) {
   for (const double rate : {1000.0, 1024.0, 3000.0, 100000.0 / 7.0}) {
     RealtimeClock clock(rate);

@@ -1,5 +1,5 @@
-// A straight bar of tetrahedra for tests: cells along x, y, z in Kuhn's six each; which nodes are free, on the handle
-// or pinned is said by a predicate. Its collision mesh is its own border, a vertex on each border node.
+// A straight bar of tetrahedra for tests: cells along x, y, z with Kuhn's six each; a predicate tells which nodes are
+// free, on the handle or pinned. Its collision mesh is its border, with a vertex on each border node.
 #pragma once
 
 #include <algorithm>
@@ -89,7 +89,7 @@ Bar make_bar(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double cell, 
   return bar;
 }
 
-// A finger: held at x <= held, free beyond.
+// A finger: pinned at x <= held, free beyond.
 inline Bar make_finger(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double cell, std::uint32_t held = 1) {
   return make_bar(nx, ny, nz, cell, [held](std::uint32_t i, std::uint32_t, std::uint32_t) {
     return i <= held ? Role::kHandle : Role::kFree;

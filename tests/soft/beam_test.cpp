@@ -1,5 +1,5 @@
-// A clamped beam against beam theory. Linear tetrahedra lock in bending: they are too stiff by a part that falls with
-// the square of their size, so what is judged is where refinement leads.
+// A clamped beam against beam theory. Linear tetrahedra lock in bending: they are too stiff by an error quadratic in
+// their size, so the extrapolated limit of refinement is tested.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -106,13 +106,13 @@ TEST(Beam, SmallDeflectionConvergesToBeamTheory) {
     const double limit = lack[2] - (lack[1] - lack[2]) / 3;  // errors of order two
     EXPECT_GT(std::log2(lack[0] / lack[1]), 1.3) << poisson;
     EXPECT_GT(std::log2(lack[1] / lack[2]), 1.5) << poisson;
-    // With a Poisson's ratio the clamp holds the cross-section's width too, which beam theory does not know.
+    // With a Poisson's ratio the clamp also constrains the cross-section's width, which beam theory neglects.
     EXPECT_NEAR(limit, 0, poisson > 0 ? 0.025 : 0.01);
   }
 }
 
-// The table of methods.md 3.3. The beam's own stiffness, with its locking, comes from its small deflection: here only
-// the large turns are judged.
+// The table of methods.md 3.3. The beam's own stiffness, including locking, is taken from its small deflection: only
+// large rotations are tested here.
 TEST(Beam, LargeDeflectionIsTheElastica) {
   constexpr std::array<std::array<double, 3>, 4> kElastica{
       {{1, .30172, .05643}, {2, .49346, .16064}, {5, .71379, .38763}, {10, .81061, .55500}}};

@@ -91,7 +91,7 @@ TEST(CoarseContact, APlankOverTwoWallsBearsItsLoadByTheLever) {
     EXPECT_LT(tilt(beam), 1e-5) << at;
     EXPECT_LT(tilt(box), 1e-5) << at;
     EXPECT_NEAR(box.centre().x, at, 1e-4);
-    // Each wall pushes somewhere on its 10 mm: moments about the middle of what they do push at.
+    // Each wall pushes somewhere on its 10 mm: moments about the centre of these forces.
     double left = 0, right = 0, moment = 0;
     for (const ContactPoint& c : loop.contacts) {
       if (c.body_a > 1 && c.body_b > 1) continue;
@@ -150,7 +150,7 @@ Pressed press_middle(int squares) {
   return out;
 }
 
-// The level's box of twelve triangles gives way as one that was meshed finely.
+// The level's box of twelve triangles deforms like a finely meshed one.
 TEST(CoarseContact, ASoftPlateOfTwelveTrianglesGivesWayWhereItIsPressed) {
   const Pressed coarse = press_middle(1), fine = press_middle(16);
   EXPECT_GT(fine.box, 5e-4);

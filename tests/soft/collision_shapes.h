@@ -21,7 +21,7 @@ inline Mesh sphere_mesh(float r, int levels) {
   return mesh_of(p);
 }
 
-// The surface of the cells [m] for which `full` says so, of a grid of nx x ny x nz; its corner at `origin`.
+// The surface of those cells [m] of an nx x ny x nz grid for which `full` is true; its corner is at `origin`.
 inline Mesh voxel_mesh(int nx, int ny, int nz, vec3 cell, vec3 origin, const std::function<bool(int, int, int)>& full) {
   Primitive p;
   const auto at = [&](int i, int j, int k) {

@@ -1,5 +1,5 @@
-// What rests in grooves, bowls and corners: the walls carry what statics says, normals stay the walls' own, nothing
-// sinks in and nothing creeps. Grooves and bowls also as sheets, the surface alone.
+// Bodies at rest in grooves, bowls and corners: wall forces satisfy statics, normals are the walls' own, nothing sinks
+// in or creeps. Grooves and bowls also as sheets.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ struct Rest {
       if (dot(normal(c), wall) > 0.999) sum += c.impulse.x / kConcaveStep;
     return sum;
   }
-  double pressed() const {  // [N] along whatever normals
+  double pressed() const {  // [N] along all normals
     double sum = 0;
     for (const ContactPoint& c : loop.contacts) sum += c.impulse.x / kConcaveStep;
     return sum;
@@ -110,7 +110,7 @@ TEST(ConcaveContact, WhatLiesInAGrooveNeitherSinksInNorCreeps) {
     }
 }
 
-// A paraboloid: the ball comes to rest at its bottom, under normals that point at the ball all the way.
+// A paraboloid: the ball comes to rest at its bottom, with normals towards the ball all the way.
 TEST(ConcaveContact, ABallRollsToTheBottomOfABowlAndStays) {
   const auto bowl = [](auto x, auto z) { return (x * x + z * z) / static_cast<decltype(x)>(0.08); };
   for (const bool soft : {false, true})

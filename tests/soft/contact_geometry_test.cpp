@@ -1,4 +1,4 @@
-// Where contacts are predicted to be, against the smooth surfaces that the meshes stand for.
+// Predicted contacts against the smooth surfaces that the meshes approximate.
 #include "systems/soft/collide/contact_geometry.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ constexpr double kGeometryStep = 1.0 / 60.0;          // [s]
 constexpr double kBallRadius = 0.03, kSmall = 0.012;  // [m]
 constexpr dvec3 kUp{0, 1, 0};
 
-// A collision mesh that went by `went` in the last step and stands at `at` now.
+// A collision mesh that moved by `went` in the last step and is at `at` now.
 struct Going {
   Mesh mesh;
   FixedBody body;
@@ -89,7 +89,7 @@ TEST(ContactGeometry, TheNormalIsTheOneWhereTheStepEnds) {
       EXPECT_NEAR(contact.turning[column][row], column == row ? 1.0 / kBallRadius : 0.0, 0.15 / kBallRadius);
 }
 
-// It has not moved yet, and the step itself tells where it will be.
+// It has not moved yet; the step's own velocities give its next position.
 TEST(ContactGeometry, TheSecondLookIsWhereTheStepsOwnVelocitiesLead) {
   const dvec3 went(0.003, 0, 0.001), now = kBallRadius * normalize(dvec3(-0.002, 0.03, 0.0)), end = now + went;
   CornerOnSphere scene(now, dvec3(0));
@@ -112,7 +112,7 @@ TEST(ContactGeometry, TheSecondLookIsWhereTheStepsOwnVelocitiesLead) {
   EXPECT_LT(length(scene.block.collision_mesh.ahead(scene.vertex) - now), 1e-9) << "the next step knows nothing of it";
 }
 
-// Soft things are dented by what slides over them, and the dent comes along: curvature is that of the shape at rest.
+// A soft body is dented by a sliding object, and the dent moves along: curvature is that of the rest shape.
 TEST(ContactGeometry, ADentDoesNotCountAsCurvature) {
   const dvec3 now = kBallRadius * kUp;
   CornerOnSphere scene(now, dvec3(0));
@@ -133,7 +133,7 @@ TEST(ContactGeometry, ADentDoesNotCountAsCurvature) {
       EXPECT_NEAR(contact.turning[column][row], column == row ? 1.0 / kBallRadius : 0.0, 0.2 / kBallRadius);
 }
 
-// Vertices of one sphere beside the point where it touches another: both surfaces lean there, the contact does not.
+// Vertices of one sphere next to its contact point with another: both surfaces are inclined there, the contact is not.
 TEST(ContactGeometry, BesideTheTouchingPointTheTwoSurfacesCancel) {
   const dvec3 towards = normalize(dvec3(0.2, 1.0, 0.3));
   const Going large(test::sphere_mesh(float(kBallRadius), 3), dvec3(0), dvec3(0));
@@ -154,7 +154,7 @@ TEST(ContactGeometry, BesideTheTouchingPointTheTwoSurfacesCancel) {
   EXPECT_GT(looked_at, 3);
 }
 
-// What has come to rest stays where it is, also in what is predicted of it.
+// For a body at rest the prediction is no motion.
 TEST(ContactGeometry, WhatStopsIsForetoldWhereItStands) {
   Going block(test::block_mesh(vec3(0.01f)), dvec3(0.02, 0, 0), dvec3(0.003, 0, 0.001));
   for (int i = 0; i < 3; ++i) block.collision_mesh.refit(block.body, kGeometryStep, 1e-3);

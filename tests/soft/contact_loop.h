@@ -17,7 +17,7 @@ struct ContactLoop {
   SweepReport report;
   SweepLimits limits{.sweeps = 200, .tolerance = 1e-8};
   dvec3 gravity{0, -9.81, 0};           // [m/s2]
-  std::optional<double> margin = 1e-3;  // [m] of all pairs; none: of each its own
+  std::optional<double> margin = 1e-3;  // [m] for all pairs; none: one per pair
   double beta = 0.15;                   // [1]
   double last = 0.0;                    // [s] length of the last step
 

@@ -1,5 +1,5 @@
-// The contact solver against what defines its answer: Signorini's and Coulomb's conditions evaluated afresh,
-// enumeration of active sets, and closed forms.
+// The contact solver against the definition of its solution: Signorini's and Coulomb's conditions evaluated
+// independently, enumeration of active sets, and closed forms.
 #include "systems/soft/contact/contact_problem.h"
 
 #include <gtest/gtest.h>
@@ -178,8 +178,8 @@ TEST(ContactProblem, WithoutFrictionNothingIsHeldSideways) {
 }
 
 TEST(ContactProblem, ABlockHoldsToTheStaticConeAndThenSlipsWithSlidingFriction) {
-  // A point of mass m pressed down at speed 1 and drawn sideways at s: holds for s <= mu_static, else slips with
-  // friction mu_sliding, and once slipping holds again only for s <= mu_sliding.
+  // A point of mass m pressed down at speed 1 and pulled sideways at s: sticks for s <= mu_static, else slips with
+  // friction mu_sliding; after slipping it sticks again only for s <= mu_sliding.
   const auto run = [](double s, bool slipped) {
     ContactProblem p;
     p.resize(1);

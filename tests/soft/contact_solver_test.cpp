@@ -66,7 +66,7 @@ TEST(ContactNewton, EndsWhereLongSweepsEnd) {
     }
 }
 
-// Three times as many contacts as there are ways to move: impulses are not unique, what moves is.
+// Three times as many contacts as degrees of freedom: impulses are not unique, velocities are.
 TEST(ContactNewton, SettlesOnRedundantContactsInFewSweeps) {
   int newton = 0, plain = 0;
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
@@ -110,7 +110,7 @@ TEST(ContactNewton, AllocatesNothingOnceItHasItsMemory) {
   EXPECT_EQ((again.impulse - first).norm(), 0.0) << "the same bits every time";
 }
 
-// Blocks on one floor. `at`: where each one's centre is, [m].
+// Blocks on one floor. `at`: centre of each, [m].
 struct Pile {
   Mesh ground = test::block_mesh(vec3(4.0f, 1.0f, 4.0f)), block = test::block_mesh(vec3(0.1f));
   ContactLoop loop;
@@ -221,7 +221,7 @@ TEST(ContactSolver, PlatesThatPinchASoftBlockPushEquallyAndOppositely) {
   EXPECT_EQ(unsettled, 0);
 }
 
-// A wall of blocks: one island, of which each contact knows but a few others.
+// A wall of blocks: one island, in which each contact is coupled to a few others.
 Pile wall(int rows, int columns) {
   Pile out;
   for (int row = 0; row < rows; ++row)
@@ -350,7 +350,7 @@ TEST(ContactAdmm, SettlesAWallAtAnImpact) {
   EXPECT_LT((p.velocity - q.velocity).head(3 * p.count).cwiseAbs().maxCoeff(), 1e-5);
 }
 
-// What costs too much is left as it is.
+// A factorisation that is too expensive is skipped.
 TEST(ContactAdmm, DoesNothingWhereAFactorCostsTooMuch) {
   ContactProblem p = random_problem(24, 72, 0.4, 1);
   ContactSweeps sweeps(p);
@@ -389,12 +389,12 @@ TEST(ContactBudget, CutsWhatCarriesLeastAndCountsIt) {
     const bool kept = std::any_of(contacts.begin(), contacts.end(), [&](const auto& c) { return c.key == key; });
     if (carried || key % 3 == 0) EXPECT_TRUE(kept) << key;
   }
-  // Of those that carried nothing the deepest two are left: 10 of the first block carried.
+  // Of the contacts without impulse the deepest two remain: 10 of the first block carried.
   EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(), [](const auto& c) { return c.key == 29; }));
   EXPECT_FALSE(std::any_of(contacts.begin(), contacts.end(), [](const auto& c) { return c.key == 1; }));
 }
 
-// What joins a solve that is full: the contacts that there are stay, however little they carry.
+// Contacts that join a full solve: the existing ones are kept, however small their impulses.
 TEST(ContactBudget, WhatJoinsLateTakesTheRoomThatIsLeft) {
   Pile pile;
   pile.add(dvec3(0, 0.05, 0));

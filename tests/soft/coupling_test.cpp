@@ -126,7 +126,7 @@ TEST(Coupling, StiffnessIsTheForcesDerivativeToSecondOrder) {
                h * at.stiffness * along;
       };
       EXPECT_NEAR(slope([&](double h) { return change(h).head<3>().norm(); }, 0.1), 2.0, 0.05);
-      // The torque's skew part does no work: what is left of the difference along the motion is of second order.
+      // The torque's skew part does no work: the remaining difference along the motion is of second order.
       EXPECT_NEAR(slope(
                       [&](double h) {
                         return std::abs(angular(along).x * change(h)[3] + angular(along).y * change(h)[4] +
@@ -153,7 +153,7 @@ TEST(Coupling, DampingIsTheForcesDerivativeToSecondOrder) {
 }
 
 TEST(Coupling, TheSkewPartOfTheTorquesDerivativeIsHalfTheTorque) {
-  // What the symmetric tangent leaves out: -(1/2) [tau]x, exactly, wherever the spring is not saturated.
+  // The part omitted by the symmetric tangent: -(1/2) [tau]x, exactly, where the spring is not saturated.
   Dice dice(6);
   Handle6 strong = kHandle;
   strong.max_torque = 1e6;

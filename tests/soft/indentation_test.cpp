@@ -1,7 +1,7 @@
-// A deep block under a punch and under a sphere against the closed forms of the half space (methods.md 3.2), for
-// nu = 0.3. A quarter of a disc of tissue, rings around the contact, growing outwards; what stands on the symmetry
-// planes slides in them. One factorisation gives the compliance W between the nodes of the surface; punch and sphere
-// are small contact problems over it, without friction.
+// A deep block under a punch and under a sphere against the closed forms of the half-space (methods.md 3.2), for nu =
+// 0.3. A quarter of a disc of tissue, in rings around the contact that grow outwards; nodes on the symmetry planes
+// slide in them. One factorisation gives the compliance W between surface nodes; punch and sphere are small
+// frictionless contact problems on it.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -31,7 +31,7 @@ class QuarterBlock {
     Vector down;          // [m] of each node of the disc
   };
   Contact punch(double a, double d) const;   // nodes with r <= a go down by d
-  Contact sphere(double R, double d) const;  // a sphere of radius R goes down by d
+  Contact sphere(double R, double d) const;  // a sphere of radius R at depth d
   const std::vector<double>& radius() const { return radius_; }
 
  private:
@@ -90,7 +90,7 @@ QuarterBlock::Contact QuarterBlock::punch(double a, double d) const {
 }
 
 QuarterBlock::Contact QuarterBlock::sphere(double R, double d) const {
-  // 0 <= f _|_ W f - (d - r^2/2R) >= 0, by active sets: out what pulls, in what is pierced.
+  // 0 <= f _|_ W f - (d - r^2/2R) >= 0, by active sets: remove tensile nodes, add penetrated ones.
   const auto count = static_cast<Eigen::Index>(radius_.size());
   Vector reach(count);
   for (Eigen::Index k = 0; k < count; ++k) reach[k] = d - radius_[k] * radius_[k] / (2 * R);
@@ -118,7 +118,7 @@ QuarterBlock::Contact QuarterBlock::sphere(double R, double d) const {
   return {};
 }
 
-// Errors of forces, relative to the closed form, and of how far the surface beside a punch goes down for its force.
+// Relative errors of forces, and of the surface displacement beside a punch for its force.
 struct Errors {
   double punch, sphere, beside;
 };
@@ -133,7 +133,7 @@ Errors errors(int rings, int growing, double factor) {
   const QuarterBlock::Contact ball = block.sphere(R, d);
   EXPECT_NEAR(ball.radius, contact, kRadius / rings);
   out.sphere = ball.force / (4.0 / 3 * kEStar * std::sqrt(R) * std::pow(d, 1.5)) - 1;
-  // u(r) = F / (pi E* c) asin(c / r) beside a punch of radius c: here a/2, seen at r = a.
+  // u(r) = F / (pi E* c) asin(c / r) beside a punch of radius c: here a/2, at r = a.
   const QuarterBlock::Contact half = block.punch(a / 2, d);
   const double theory = half.force / (kPiOfHertz * kEStar * (a / 2)) * std::asin(0.5);
   out.beside = 0;

@@ -1,6 +1,6 @@
-// From which Poisson's ratio on the lattice's linear tetrahedra lock: a block stands on the ground, bonded, and a patch
-// in the middle of its top is pushed down. The reference is the same block in two finer lattices, extrapolated to no
-// cell at all; each is compared with itself at 0.3, so that the patch's own coarseness drops out.
+// The Poisson's ratio from which the lattice's linear tetrahedra lock: a block bonded to the ground, with a patch in
+// the middle of its top pushed down. The reference is the same block in two finer lattices, extrapolated to cell size
+// zero. Each is compared with itself at 0.3, which cancels the patch's discretisation error.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,7 +49,7 @@ class LockingBlock {
     return 1.0 / sum;
   }
 
-  double risen(double poisson) const { return stiffness(poisson) / usual_; }  // [1] over what it is at 0.3
+  double risen(double poisson) const { return stiffness(poisson) / usual_; }  // [1] relative to 0.3
 
  private:
   TetMesh mesh_;

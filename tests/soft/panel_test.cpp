@@ -40,12 +40,11 @@ TEST(PanelKernels, UseTheWidestRegistersOfTheMachine) {
 TEST(PanelKernels, GiveTheSameBitsWithEveryWidth) {
   for (const int columns : {3, 8, 13, 24})
     for (const int strips : {4, 7}) {
-      if (strips * kStrip < columns) continue;  // no panel: its rows hold at least its columns
+      if (strips * kStrip < columns) continue;  // not a panel: it needs at least as many rows as columns
       const auto size = static_cast<std::size_t>(columns * strips);
       FactorPanel panel{nullptr, columns, strips};
-      Strips wide =
-          random_strips(size + 64, 1);   // kernels may read, and leave alone, what follows a panel in its array
-      for (int c = 0; c < columns; ++c)  // a heavy diagonal: positive definite
+      Strips wide = random_strips(size + 64, 1);  // kernels may read beyond a panel in its array, but not change it
+      for (int c = 0; c < columns; ++c)           // a heavy diagonal: positive definite
         wide[static_cast<std::size_t>(c / kStrip * columns + c)].lane[c % kStrip] = 2 * columns;
       Strips plain = wide, reciprocal = random_strips(size, 2), plain_reciprocal = reciprocal;
       ASSERT_TRUE(factorise_panel(wide.front().lane, panel, reciprocal.front().lane));

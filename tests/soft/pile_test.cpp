@@ -1,5 +1,5 @@
-// What lies on what lies on a floor: columns, pyramids and drops, of rigid and soft bodies. Nothing sinks in, nothing
-// falls through, all comes to rest; and nothing feels what lies elsewhere.
+// Stacks on a floor: columns, pyramids and drops, of rigid and soft bodies. Nothing sinks in or falls through,
+// everything comes to rest, and distant bodies have no effect.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -107,7 +107,7 @@ TEST(BoxPile, ABodyThatFallsOnOneAtRestLiesOnIt) {
   }
 }
 
-// Solved to the last digit: what is tested is which pairs are found. 2 mm apart all fall at once, and each meets the
+// Solved to the last digit: this tests which pairs are found. With gaps of 2 mm all fall at once, and each touches the
 // one below only because that has been stopped.
 TEST(BoxPile, AColumnOfTenBoxesStands) {
   const Mesh ground = test::block_mesh(vec3(1.0f, 0.2f, 1.0f)), box = test::block_mesh(vec3(float(kBoxSize)));
@@ -141,7 +141,7 @@ TEST(BoxPile, ColumnsOfFourSoftCubesStand) {
   EXPECT_LT(pile.fastest(), 1e-4);
 }
 
-// As the soft step solves it, ten seconds long, turned so that no two boxes' corners lie above each other.
+// With the soft step's own limits, ten seconds long, rotated so that no two boxes' corners are above each other.
 TEST(BoxPile, AColumnOfTenBoxesStandsAtTheSoftStepsOwnLimits) {
   for (const double turned : {0.0, 0.05}) {
     BoxPile pile;
@@ -166,8 +166,8 @@ TEST(BoxPile, ABlockOfSixtyFourBoxesStands) {
   EXPECT_LT(pile.fastest(), 1e-4);
 }
 
-// Two cards that lean on each other stand where the floor's friction holds what each pushes out with: seen from the
-// side a card's weight W turns about its foot, W (l / 2) sin(a) = N l cos(a), so that N = W tan(a) / 2 <= mu W.
+// Two cards that lean on each other stand if the floor's friction supports their outward push. The moment of a card's
+// weight W about its foot is W (l / 2) sin(a) = N l cos(a), so that N = W tan(a) / 2 <= mu W.
 TEST(BoxPile, ACardHouseStandsUpToTheAngleOfFriction) {
   constexpr double kLong = 0.06, kThick = 0.001;  // [m]
   for (const double mu : {0.2, 0.4})
@@ -272,7 +272,7 @@ TEST(BoxPile, APebbleElsewhereChangesNothing) {
   EXPECT_LT(apart, 1e-6 * alone[0].x);
 }
 
-// Two bodies that begin inside each other by `depth`, without gravity; body 1 is to leave body 0 along `way`.
+// Two bodies with an initial overlap of `depth`, without gravity; body 1 must leave body 0 along `way`.
 struct Overlap {
   dvec3 size_a, size_b, at;
   double depth;
@@ -308,7 +308,7 @@ TEST(BoxPile, WhatBeginsInsideIsPushedOutTheShortestWay) {
   }
 }
 
-// [1] of a point: how often a collision mesh goes round it, by solid angles (Van Oosterom & Strackee 1983).
+// [1] Winding number of a collision mesh at a point, by solid angles (Van Oosterom & Strackee 1983).
 double winding(const Body& body, dvec3 p) {
   double angle = 0.0;
   for (const uvec3& t : body.collision_mesh->triangles) {
@@ -327,7 +327,7 @@ void throw_down(BoxPile& pile, std::size_t body, double speed) {
   tissue.advance(kPileStep);
 }
 
-// At 3 m/s a body goes 50 mm in a step.
+// At 3 m/s a body moves 50 mm in a step.
 TEST(BoxPile, SoftBodiesThrownAtAFloorOrAThinBarDoNotPass) {
   for (const bool bar : {false, true})
     for (const int kind : {0, 1, 2})

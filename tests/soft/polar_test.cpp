@@ -19,7 +19,7 @@ Eigen::Matrix3d to_eigen(const dmat3& m) {
   return out;
 }
 
-// The slower twin. `gap`: s2 + s3 of the signed singular values over s1, how firmly F says which rotation.
+// The slower reference. `gap`: s2 + s3 of the signed singular values over s1: how well F determines the rotation.
 Eigen::Matrix3d by_svd(const dmat3& F, double& gap) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(to_eigen(F), Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d U = svd.matrixU();
@@ -91,7 +91,8 @@ TEST(Polar, TheTwinFromHornsMatrixAgreesToo) {
   }
 }
 
-// Flat in one direction the answer is still one; in two, about an axis it is the guess's; a point says nothing.
+// Flat in one direction, the solution is still unique; flat in two, the rotation about the axis is the guess's; a point
+// gives the guess.
 TEST(Polar, CollapsedMatricesKeepWhatTheGuessKnew) {
   MatrixDice dice;
   for (int i = 0; i < 2000; ++i) {
@@ -114,7 +115,7 @@ TEST(Polar, CollapsedMatricesKeepWhatTheGuessKnew) {
 }
 
 TEST(Polar, AThinInvertedElementIsPushedOutThroughItsThinSide) {
-  // A reflected sheet: of all rotations the nearest is the one that flips the thin direction only.
+  // A reflected sheet: the nearest rotation flips only the thin direction.
   dquat q(1, 0, 0, 0);
   const dmat3 F(1, 0, 0, 0, -0.05, 0, 0, 0, 1);
   extract_rotation(F, q);

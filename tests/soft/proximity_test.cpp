@@ -1,4 +1,4 @@
-// The search for contacts against a brute-force twin, and against what it is for: nothing passes through anything.
+// The search for contacts against a brute-force reference, and against its purpose: nothing passes through anything.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 using test::ContactLoop;
 constexpr double kProximityStep = 1.0 / 60.0;  // [s]
 
-// A collision mesh that moves as a test says, vertex by vertex.
+// A collision mesh whose vertices move as the test prescribes.
 class ScriptedBody : public FixedBody {
  public:
   explicit ScriptedBody(const Mesh& mesh) : FixedBody(mesh, {}) {}
@@ -39,7 +39,7 @@ dvec3 random_direction(std::mt19937& random) {
   return normalize(dvec3(normal(random), normal(random), normal(random)));
 }
 
-// A blob that wobbles as it comes: waves over a sphere, turning and moving.
+// A wobbling blob: waves on a sphere, rotating and moving.
 struct Wobble {
   dvec3 from, velocity, axis, wave;
   double spin;
@@ -180,10 +180,10 @@ Depth throw_at_plate(const Mesh& mesh, const RigidMass& mass, double radius, dve
   return depth;
 }
 
-// At 5 m/s a body travels 83 mm in a step and turns by more than a radian in the one in which it is stopped: contacts
-// hold its first order, the second is worked off afterwards.
-// A flat collision mesh, tilted by 0.2 rad about its edge, comes down on a ridge. Where it has come to lie flat when
-// the edges cross, they touch; where it stays tilted, what lies lower than its edge does.
+// At 5 m/s a body moves 83 mm in a step and rotates by more than a radian in the step in which it is stopped: contacts
+// limit the first order of this motion, the second is corrected afterwards. A flat collision mesh, tilted by 0.2 rad
+// about its edge, comes down on a ridge. If it lies flat when the edges cross, they touch; if it stays tilted, the part
+// lower than its edge does.
 TEST(Proximity, EdgesMeetIfTheySupportEachOtherWhereTheyCross) {
   const std::array<Moving, 2> edge{Moving{{-0.01, 0.002, 0.0}, {0, -0.003, 0}},
                                    Moving{{0.01, 0.002, 0.0}, {0, -0.003, 0}}};

@@ -21,7 +21,7 @@ inline ContactProblem random_problem(int contacts, int freedoms, double mu, std:
   Eigen::MatrixXd J(3 * contacts, freedoms);
   for (double& x : J.reshaped()) x = normal(random) / std::sqrt(double(freedoms));
   p.W = J * J.transpose();
-  Vector v(freedoms);  // what the bodies would do alone: in J's range, so that an answer exists even if W is singular
+  Vector v(freedoms);  // free motion of the bodies: in J's range, so that a solution exists even if W is singular
   for (double& x : v) x = normal(random);
   p.bias = J * v;
   p.impulse.setZero();

@@ -1,5 +1,5 @@
-// Rigid bodies with friction against the closed forms of methods.md 3.5 and 3.6, and free bodies against what they
-// must conserve.
+// Rigid bodies with friction against the closed forms of methods.md 3.5 and 3.6, and free bodies against conservation
+// laws.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -185,7 +185,7 @@ TEST(RigidContact, AFallIsTheParabola) {
               1e-9);  // implicit Euler's own parabola
 }
 
-// Contacts between two rigid bodies, one of them asked by unit impulses what W says of it.
+// Contacts between two rigid bodies: unit impulses on one of them give the entries of W.
 TEST(RigidContact, TheDelassusOperatorIsWhatUnitImpulsesDo) {
   const Mesh block = test::block_mesh(vec3(0.1f, 0.05f, 0.08f));
   ContactLoop loop;
@@ -231,7 +231,7 @@ TEST(RigidContact, TheDelassusOperatorIsWhatUnitImpulsesDo) {
   }
 }
 
-// Two pads close on a cube and lift it: pads give way by 1e-4 m/N, so they press with a known force.
+// Two pads close on a cube and lift it: the pads' compliance is 1e-4 m/N, so they press with a known force.
 double dropped_in_grip(double mu) {
   const Mesh finger = test::block_mesh(vec3(0.02f, 0.06f, 0.06f)), cube = test::block_mesh(vec3(0.05f), 2);
   ContactLoop loop;

@@ -16,7 +16,7 @@ namespace {
 constexpr double kSchurStep = 1.0 / 60;  // [s]
 constexpr dvec3 kSchurGravity{0, -9.81, 0};
 
-// What a solver of this kind promises: direct ones the digits there are, iterative ones their own tolerance.
+// Guaranteed accuracy of a solver kind: machine precision for direct ones, their own tolerance for iterative ones.
 double promised(SolverKind kind) {
   return kind == SolverKind::kConjugateGradient ? 1e-6 : 1e-10;
 }
@@ -52,7 +52,7 @@ class CountingSolver final : public LinearSolver {
   std::unique_ptr<LinearSolver> inner_;
 };
 
-// A finger on its way: dragged by its device, bent, turned, and in motion.
+// A moving finger: pulled by its device, bent, rotated.
 struct Finger {
   Bar bar = make_finger(4, 2, 2, 0.01);
   SoftBody body;
@@ -62,7 +62,7 @@ struct Finger {
   Finger(Attachment attachment, std::unique_ptr<LinearSolver> solver) {
     body.rayleigh = {0.3, 2e-3};
     handle.attachment = attachment;
-    handle.carried = false;  // what carries it is no part of the matrix
+    handle.carried = false;  // the compensation is not part of the matrix
     const Pose placement{{0.1, 0.2, -0.1}, rotation_of({0.3, -0.5, 0.2})};
     state = std::make_unique<SoftBodyState>(bar.tets, bar.collision_mesh, body, &handle, placement, std::move(solver));
     const Pose there{{0.12, 0.21, -0.1}, rotation_of({0.6, -0.5, 0.9})};

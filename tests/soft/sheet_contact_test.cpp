@@ -1,5 +1,5 @@
-// A sheet is a fixed surface that encloses nothing, a single layer. Its front stops what falls on it; what comes from
-// behind passes as if nothing were there.
+// A sheet is a fixed surface with a single layer that encloses nothing. Its front stops falling objects; from behind,
+// objects pass freely.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -72,7 +72,7 @@ TEST(SheetContact, WhatIsThrownOnTheFrontRestsOnItHoweverCoarseTheSheet) {
           }
           SCOPED_TRACE(testing::Message()
                        << "round " << round << ", " << squares << " squares, " << speed << " m/s, " << seed);
-          // What turns while it is stopped: (4 rad/s / 60)^2 / 2 of its radius at least.
+          // Rotation while it is stopped: (4 rad/s / 60)^2 / 2 of its radius at least.
           EXPECT_LT(worst, 6e-4);
           EXPECT_LT(std::abs(flight.lowest()), 2e-6);
           EXPECT_NEAR(flight.force().y, kSheetMass * kSheetGravity, 0.01 * kSheetMass * kSheetGravity);

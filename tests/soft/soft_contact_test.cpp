@@ -1,4 +1,4 @@
-// Tissue in contact: what rests is carried by its weight, what is gripped is held as far as the cone goes.
+// Tissue in contact: at rest, contact forces balance the weight; gripped tissue sticks within the friction cone.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -99,7 +99,8 @@ double dropped(double mu) {
   return 0.05 - (mean(body.tissue().position()).y - before);
 }
 
-// E A strain = 20 kPa x 25 cm2 x 4 mm / 50 mm = 4 N a side, more for the sides that are held; the weight is 1.23 N.
+// E A strain = 20 kPa x 25 cm2 x 4 mm / 50 mm = 4 N per side, more because of the constrained sides; the weight is 1.23
+// N.
 TEST(SoftContact, ASoftCubeIsLiftedByTwoFingersAsFarAsTheConeHolds) {
   EXPECT_LT(std::abs(dropped(0.4)), 2e-3);
   EXPECT_GT(dropped(0.1), 0.02);
@@ -148,7 +149,7 @@ TEST(SoftContact, ABallPressedDeepIntoTissueLeavesItWhole) {
   double change = 0;
   for (std::size_t v = 0; v < rested.size(); ++v)
     change = std::max(change, std::abs(body.surface_position[v].y - rested[v].y));
-  EXPECT_LT(change, 5e-4);  // friction on the ground holds a little of how it was squeezed
+  EXPECT_LT(change, 5e-4);  // friction on the ground preserves a little of the squeezed shape
 }
 
 // [m] from p to a triangle's plane inside it, or to the nearest of its edges.
@@ -223,7 +224,7 @@ TEST(SoftContact, TissueThrownAtTissueDoesNotPassThroughIt) {
   }
 }
 
-// Two fingers of one hand, 20 mm apart, struck together by plates that come at 1 m/s from both sides.
+// Two fingers of one hand, 20 mm apart, struck together by plates that move at 1 m/s from both sides.
 TEST(SoftContact, FingersStruckTogetherDoNotPassThroughEachOther) {
   const float cell = 0.0025f;
   const Mesh collision_mesh = test::voxel_mesh(16, 28, 4, vec3(cell), vec3(-0.02f, -0.01f, -0.005f),

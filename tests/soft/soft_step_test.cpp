@@ -104,7 +104,7 @@ TEST(SoftStep, TheLowerOfTwoSoftCubesCarriesBoth) {
   EXPECT_NEAR(stage.contact_force(lower, floor).y, both, 0.01 * both);
 }
 
-// Two rigid fingers of a scripted gripper hold a soft cube between them.
+// Two rigid fingers of a scripted gripper with a soft cube between them.
 struct GripOfBar {
   explicit GripOfBar(double friction, double step = kSoftStepLength) : stage(step) {
     SoftBody body = rubber();
@@ -133,7 +133,7 @@ struct GripOfBar {
 
 TEST(SoftStep, AGripLiftsACubeInsideTheConeAndLosesItOutside) {
   for (const bool holds : {true, false}) {
-    // Squeezed by F, the cube is held while 2 mu F > m g; F is measured, and mu chosen to either side of that.
+    // Squeezed by F, the cube sticks while 2 mu F > m g; F is measured, and mu chosen on either side of that.
     GripOfBar probe(0.5);
     probe.stage.world.simulation.gravity = dvec3(0);
     probe.stage.prepare();
@@ -168,7 +168,7 @@ TEST(SoftStep, AHeldCubeNeverGainsEnergyOverTenThousandSteps) {
   grip.move({0.05, 0, 0}, {-0.05, 0, 0}, 0.08);
   grip.stage.world.simulation.gravity = dvec3(0, -9.81, 0);
   grip.move({}, {}, 0.1);
-  // The fingers stand still: nothing does work on the cube but its weight.
+  // The fingers are at rest: only the weight does work on the cube.
   const double m = weight(grip.stage, grip.soft) / 9.81;
   const auto energy = [&] {
     double potential = 0.0;

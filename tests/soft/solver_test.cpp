@@ -145,7 +145,7 @@ TEST_P(EverySolver, SolvesManyColumnsAsItSolvesEach) {
     for (int c = 0; c < count; ++c) columns.col(c) = random_vector(60, 10u + static_cast<unsigned>(c));
     const Rows right = columns;
     if (count == 3) {
-      Rows larger(200, count);  // a coupled system of which these are the upper rows
+      Rows larger(200, count);  // a coupled system whose upper rows are these
       larger << columns, Rows::Ones(20, count);
       solver->solve_many(larger.topRows(180));
       EXPECT_TRUE(larger.bottomRows(20).isOnes(0));

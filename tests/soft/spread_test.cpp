@@ -1,5 +1,5 @@
-// What a point of a soft body's collision mesh pulls at and follows, against its Jacobian written out over all twelve
-// nodes that it may ride on.
+// Force distribution and motion of a point of a soft body's collision mesh, against its explicit Jacobian over all of
+// up to twelve nodes.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -14,7 +14,7 @@ namespace {
 const dmat3 kAxes = glm::mat3_cast(rotation_of({0.2, 0.4, -0.7}));
 const dvec3 kPlaces[]{{1, 0, 0}, {0, 0, 1}, {0.5, 0.5, 0}, {0.2, 0.5, 0.3}};  // barycentric
 
-// A finger whose last layer is pinned. Its collision mesh stands on its nodes, or rides inside its tetrahedra.
+// A finger whose last layer is pinned. Its collision mesh vertices are nodes, or embedded in its tetrahedra.
 struct SpreadFinger {
   Bar bar = make_bar(4, 2, 2, 0.01, [](std::uint32_t i, std::uint32_t, std::uint32_t) {
     return i == 4 ? Role::kPinned : i <= 1 ? Role::kHandle : Role::kFree;

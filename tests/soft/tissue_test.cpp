@@ -1,5 +1,5 @@
-// Co-rotational tetrahedra by themselves: what every elastic solid must obey. What broken
-// elements must survive is among the hard cases (lab/study/hard).
+// Co-rotational tetrahedra alone: laws of every elastic solid. Degenerate elements are among the hard cases
+// (player/study/hard).
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -117,7 +117,7 @@ TEST(Tissue, MatrixIsTheGradientOfTheForceAtRestAndSymmetricEverywhere) {
   EXPECT_GT(spectrum.eigenvalues().minCoeff(), 0.0);
 }
 
-// The whole of A with every node moving, against what a tissue hands out that has handle nodes and pinned ones.
+// The full A with every node moving, against the blocks of a tissue with handle nodes and pinned ones.
 TEST(Tissue, InnerOuterAndCornerAreTheWholeMatrixCutInPieces) {
   TetMesh mesh = shaken_block(3);
   tets::hold(
@@ -155,7 +155,7 @@ TEST(Tissue, InnerOuterAndCornerAreTheWholeMatrixCutInPieces) {
 
 struct Momentum {
   dvec3 linear{0}, angular{0};
-  double size = 0.0, arm_size = 0.0;  // sums of magnitudes, what rounding is measured by
+  double size = 0.0, arm_size = 0.0;  // sums of magnitudes, the scale of rounding errors
 };
 Momentum momentum(const Tissue& tissue) {
   Momentum out;
@@ -217,7 +217,7 @@ TEST(Tissue, AngularMomentumOfAFreeBodyIsKeptByTheIteratedMidpoint) {
   EXPECT_LT(length(momentum(tissue).angular - before.angular), 1e-12 * before.arm_size);
 }
 
-// u = d sin(pi x) sin(pi y) sin(pi z) on the unit cube, held exactly on the surface, with the load it needs:
+// u = d sin(pi x) sin(pi y) sin(pi z) on the unit cube, prescribed exactly on the surface, with the corresponding load:
 // f = -mu lap u - (lambda + mu) grad div u, lumped to the nodes.
 double manufactured_error(int n) {
   TetMesh mesh = tets::box(n, n, n, dvec3(0), dvec3(1));
@@ -264,7 +264,7 @@ double energy(const Tissue& tissue) {
   return tissue.elastic_energy() + kinetic_energy(tissue);
 }
 
-// A little bar, held at one end, bent sideways and let go.
+// A small bar, pinned at one end, bent sideways and released.
 TetMesh bar() {
   TetMesh mesh = tets::box(4, 1, 1, dvec3(0), dvec3(0.08, 0.02, 0.02));
   tets::hold(mesh, [](dvec3 p) { return p.x < 1e-9; });
@@ -291,7 +291,7 @@ TEST(Tissue, MidpointKeepsTheEnergyOfALinearVibration) {
   }
 }
 
-// The largest change of energy on the way, in the energy's own size.
+// The largest relative change of energy during the motion.
 double midpoint_drift(double T) {
   const TetMesh mesh = bar();
   Tissue tissue(mesh, kTissue, mesh.free_count);
@@ -313,7 +313,7 @@ TEST(Tissue, MidpointDriftsInACorotationalVibrationByTheSquareOfTheStep) {
   EXPECT_LT(fine, 0.01);
 }
 
-// Of 1e4 steps of a thrown, spinning, shaking bar: the largest gain in a step, and over all of them, in parts.
+// Over 1e4 steps of a thrown, spinning, vibrating bar: the largest relative energy gain in a step, and in total.
 struct Gain {
   double step = -1.0, total = -1.0;
 };

@@ -1,4 +1,4 @@
-// What a hand feels of a tool that nothing carries: its weight and the moment of it, which come in slowly.
+// The force of a tool without weight compensation: its weight and moment, which are ramped up.
 #include <gtest/gtest.h>
 
 #include "scenes/scenes.h"
@@ -13,7 +13,7 @@ namespace {
 
 using scenes::ToolStage;
 
-// A block of 30 mm whose lower half is tissue, held 10 mm beside its middle.
+// A block of 30 mm whose lower half is tissue, with its handle 10 mm off its centre.
 struct Held {
   ToolStage stage{1.0 / 60.0};
   Entity tool;
@@ -62,7 +62,7 @@ TEST(Weight, OfAToolThatNothingCarriesIsFeltAndComesInAgainAfterALoss) {
   expect_all_of_it();
 }
 
-// Tissue hangs as it will rest: nothing falls, and the hand is given nothing.
+// Tissue starts in equilibrium: nothing falls, and no energy reaches the hand.
 TEST(Weight, OfTissueHangsFromTheBeginning) {
   Held held(true);
   const std::vector<dvec3> first = held.stage.tissue(held.tool).tissue().position();
@@ -77,7 +77,7 @@ TEST(Weight, OfTissueHangsFromTheBeginning) {
   EXPECT_GT(sag, 1e-6) << "the lowest nodes are lower than at rest";
 }
 
-// ... unless it would hang through what is below it: then it begins above that, and falls on it.
+// If it would sag into an object below, it starts above that and falls on it.
 TEST(Weight, OfTissueThatWouldHangThroughAFloorFallsOnItInstead) {
   for (const double gap : {1e-5, 0.05}) {
     ToolStage stage(1.0 / 60.0);

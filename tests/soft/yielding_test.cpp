@@ -35,7 +35,7 @@ struct Law {
     const Entity entity = stage.add(scenes::sheet(kCells, kSize), deformable);
     body = std::make_unique<YieldingBody>(stage.mesh(entity), deformable, Pose{}, 0);
   }
-  // Somebody's point at x, `depth` below the plate.
+  // A probe's point at x, `depth` below the plate.
   void press(double x, double depth) {
     ContactPoint contact;
     contact.body_a = 1;  // the tissue; the plate is body 0
@@ -46,7 +46,7 @@ struct Law {
     contact.key = contacts.size();
     contacts.push_back(contact);
   }
-  // The forces that hold every point where it is. [N]
+  // The forces that keep every point in place. [N]
   Vector hold(double T) {
     body->place(contacts, 0, T);
     const auto n = static_cast<Eigen::Index>(contacts.size());
@@ -97,7 +97,7 @@ TEST(Yielding, CoincidentContactsDoNotAddUp) {
   Law law(plate());
   for (int i = 0; i < 4; ++i) law.press(1e-6 * i, 2e-3);
   law.body->place(law.contacts, 0, kYieldingStep);
-  // Four alike: any split of the one force holds them; the mean mobility is a single contact's.
+  // Four equal ones: the distribution of the total force is not unique; the mean mobility is a single contact's.
   std::vector<Body::Side> sides;
   for (int i = 0; i < 4; ++i) sides.push_back({i, &law.contacts[static_cast<std::size_t>(i)].b});
   Eigen::MatrixXd w = Eigen::MatrixXd::Zero(12, 12);
@@ -138,7 +138,7 @@ TEST(Yielding, AContactBesideAnOpenRimIsDropped) {
   EXPECT_EQ(law.contacts[0].key, 1u);
 }
 
-// --- A soft block, held by its handle from above, against the plate.
+// --- A soft block, moved by its handle from above, against the plate.
 
 SoftBody yielding_rubber() {
   SoftBody body;
@@ -169,7 +169,7 @@ struct Press {
     for (const vec4& v : stage.field(surface).stream) least = std::min(least, v.w);
     return -double(least);
   }
-  double amplitude_force() {  // [N] that P1's law gives for the dent that the touch clock holds down
+  double amplitude_force() {  // [N] P1's force for the dent that the touch clock keeps
     double sum = 0.0;
     for (auto [entity, contact] : stage.world.registry.view<Contact>())
       if (contact.probe == kNoEntity && contact.state == ContactState::kTouching) sum += kStiffness * contact.amplitude;
@@ -190,7 +190,7 @@ TEST(Yielding, ABlockPressedOntoAPlateIsInBalanceAndDentsItAsP1Says) {
     const Vector6 coupling = press.stage.tissue(press.tool).coupling_wrench();
     EXPECT_NEAR(force.y, -coupling[1], 0.01 * force.y);             // balance at rest
     EXPECT_NEAR(press.amplitude_force(), force.y, 0.05 * force.y);  // P1's law for that dent
-    double depth = 0.0;                                             // of the tissue's underside
+    double depth = 0.0;                                             // of the tissue's lower side
     for (const dvec3 x : press.stage.body(press.tool).surface_position) depth = std::max(depth, -x.y);
     EXPECT_NEAR(press.deepest(), depth, 0.05 * depth);  // the surface is down where the tissue is
     EXPECT_GT(depth, 1e-3);

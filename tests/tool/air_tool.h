@@ -1,4 +1,4 @@
-// A tool in the air for tests: a finger whose first cells are rigid, and a device that may hold it.
+// A free tool for tests: a finger whose first cells are rigid, and optionally a device that moves it.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ struct AirTool {
     for (std::uint32_t i = 0; i < bar.tets.pinned_begin(); ++i) sum += state->tissue().mass()[i];
     return sum;
   }
-  // [kg m/s], [kg m2/s about the world's origin]; the handle's nodes are the handle's, however they are attached.
+  // [kg m/s], [kg m2/s about the world's origin]; handle nodes move with the handle, whatever their attachment.
   Vector6 momentum() const {
     const Tissue& tissue = state->tissue();
     const Vector6 h = state->handle().mass_matrix() * state->handle().motion().velocity;

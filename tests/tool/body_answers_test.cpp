@@ -77,7 +77,7 @@ TEST(ToolContacts, LeaveOutAnOpenContactThatNothingCouldBePredictedOf) {
     pushing += c.impulse.x > 0.0;
     open += c.impulse.x == 0.0 && c.depth == 0.0;
     ASSERT_TRUE(chosen(i));
-    c.predicted = false;  // its plane stands where its features were
+    c.predicted = false;  // its plane is at its features' positions
     EXPECT_EQ(chosen(i), c.impulse.x > 0.0 || c.depth > 0.0) << "contact " << i;
   }
   EXPECT_GT(pushing, 0u);

@@ -1,4 +1,4 @@
-// What a soft step says about its handle, against the full solve with the handle moved as it is told.
+// The linear model of a soft step's handle, against the full solve with a prescribed handle.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -84,9 +84,8 @@ TEST(Linearise, ATickOfTheStepsOwnLengthIsThatStepWhateverBecomesOfTheContacts) 
   EXPECT_GE(changed, 12);
 }
 
-// A bar between its handle and a wall, settled at every offset with steps so long that inertia does not count: what a
-// slow hand feels. (Under load the tissue's K' = R K R^T leaves out how R turns with the stress, an error of first
-// order.)
+// A bar between its handle and a wall, settled at every offset with steps so long that inertia is negligible: the force
+// on a slow hand. (Under load the tissue's K' = R K R^T neglects the change of R with stress, an error of first order.)
 class Tied {
  public:
   static constexpr double T = 1.0;

@@ -25,7 +25,7 @@ inline Mesh ground_mesh() {
   return mesh;
 }
 
-// What moves the handle: it is where `pose` says, as stiffly as double precision allows.
+// A device that prescribes the handle's pose, as stiffly as double precision allows.
 inline Handle6 firm_handle() {
   Handle6 handle;
   handle.translation = {1e8, 0.0};

@@ -1,5 +1,5 @@
-// Probes among soft and rigid bodies. Oracles: the coupling's law where nothing gives way, action and reaction,
-// weights, the same bits where a body is out of reach.
+// Probes among soft and rigid bodies. Oracles: the coupling's law against rigid objects, action and reaction, weights,
+// the same bits if a body is out of reach.
 #include "systems/soft/body/probe_tool.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ Entity add_fixed(ToolStage& stage, dvec3 size, dvec3 centre) {
   return stage.add_rigid(scenes::box(size), body, at(centre));
 }
 
-// [N] What a coupling of `probe` sends back at a stretch [m].
+// [N] Force of a coupling of `probe` at an extension [m].
 double law(const ToolStage& stage, Entity probe, double stretch) {
   const Probe& p = stage.world.registry.get<Probe>(probe);
   const Handle6 handle = probe_handle(p, stage.world.registry.get<HapticDevice>(p.device));
@@ -104,7 +104,7 @@ TEST(ProbeTool, ASoftBodyGivesWayAndPushesBack) {
   EXPECT_GT(last, 0.1);
 }
 
-// A slab that is a yielding surface beside a rigid table.
+// A slab that is a yielding surface next to a rigid table.
 TEST(ProbeTool, MeetsWhatItIsToldTo) {
   for (const ProbeMeets meets : {ProbeMeets::kAll, ProbeMeets::kSurfaces, ProbeMeets::kBodies}) {
     SCOPED_TRACE(static_cast<int>(meets));
@@ -130,7 +130,7 @@ TEST(ProbeTool, MeetsWhatItIsToldTo) {
   }
 }
 
-// The same bits on a yielding surface, whether or not a body stands somewhere else.
+// The same bits on a yielding surface, whether or not there is a body elsewhere.
 TEST(ProbeTool, ABodyOutOfReachChangesNothing) {
   const auto forces = [](bool with_body) {
     ToolStage stage(kSoftStep);

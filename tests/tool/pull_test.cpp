@@ -1,4 +1,4 @@
-// Bodies that the mouse presses and pulls. Oracles: a spring's law, action and reaction, the energy of what is let go.
+// Bodies pressed and dragged by the mouse. Oracles: a spring's law, action and reaction, the energy after release.
 #include "systems/tool/pull.h"
 
 #include <gtest/gtest.h>

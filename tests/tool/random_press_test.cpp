@@ -1,7 +1,7 @@
-// The shipped levels' tools in a hand that does whatever it likes: random ways in all six degrees of freedom, presses,
-// stops and turns, at 0.1 to 3 m/s, and a device that jumps. Oracles: the handle stays near the hand, the force is what
-// the device may have, the hand gets no energy, nothing sinks in, and the same hand gets the same bits.
-// PLIANT_PRESSES: how many of each speed (2).
+// The shipped levels' tools with random hand motion: random paths in all six degrees of freedom, presses, stops and
+// rotations, at 0.1 to 3 m/s, and a device that jumps. Oracles: the handle stays near the hand, the force is within the
+// device's limit, the hand gains no energy, nothing sinks in, and the same motion gives the same bits. PLIANT_PRESSES:
+// how many of each speed (2).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ World open(const std::string& name) {
   return std::move(world).value();
 }
 
-// A walk from where the level's own script begins: straight ways, half of them down towards what lies there.
+// A random walk from the start of the level's own script: straight segments, half of them down towards the objects.
 std::vector<PathRow> random_path(const PathRow& start, double speed, bool jumps, unsigned seed) {
   std::mt19937 random(seed);
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
@@ -121,7 +121,7 @@ TEST_P(RandomPress, TheHandleStaysInTheHand) {
     for (int i = 0; i < presses(); ++i) {
       SCOPED_TRACE(testing::Message() << speed << " m/s, press " << i);
       const Felt felt = press(open(GetParam()), speed, false, 100u + static_cast<unsigned>(i));
-      // Against something that does not move, the hand goes on alone: at most as far as its ways are long.
+      // Against an immovable object, only the hand moves: at most by the length of its segments.
       EXPECT_LT(felt.most_stretch, 0.2);
       EXPECT_LE(felt.most_force, 12.0 * (1 + 1e-9));
       EXPECT_LE(felt.work, kPassivityShare * felt.stored + 1e-3);
@@ -148,7 +148,7 @@ TEST_P(RandomPress, TheSameHandFeelsTheSameBits) {
   EXPECT_EQ(press(open(GetParam()), 1.0, false, 7).hash, press(open(GetParam()), 1.0, false, 7).hash);
 }
 
-// A soft finger over one of other people's meshes, which stands and is soft too.
+// A soft finger over a soft standing mesh of the corpus.
 World finger_over(const std::filesystem::path& mesh) {
   Result<TetFile> file = load_tets(mesh);
   EXPECT_TRUE(file.ok()) << mesh;
@@ -181,7 +181,7 @@ TEST(RandomPressCorpus, AFingerIsHeldByEveryMesh) {
     EXPECT_LT(felt.most_stretch, 0.2);
     EXPECT_LE(felt.most_force, 12.0 * (1 + 1e-9));
     EXPECT_LE(felt.work, kPassivityShare * felt.stored + 1e-3);
-    // Of 18 meshes at 3 m/s only the bunny, between its ears, comes near to the larger bound: never through the finger.
+    // Of 18 meshes at 3 m/s only the bunny, between its ears, comes near the larger bound: never through the finger.
     EXPECT_LT(felt.deepest, speed < 1.0 ? 3e-3 : 10e-3) << "[m] into each other";
     EXPECT_EQ(felt.dropped & (kDroppedNonFinite | kDroppedMotion | kDroppedFactor | kDroppedSetBack), 0u);
   }

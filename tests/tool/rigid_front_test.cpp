@@ -1,5 +1,5 @@
-// Tools whose rigid part touches what cannot give way: a fixed body, another tool's rigid part, a rigid object between
-// the two. Oracle: at rest the hand feels its coupling alone, F_max tanh(k d / F_max) of the way d between device and
+// Tools whose rigid part touches rigid objects: a fixed body, another tool's rigid part, a rigid object between the
+// two. Oracle: at rest the hand feels only its coupling, F_max tanh(k d / F_max) for the distance d between device and
 // handle.
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ SoftBody tissue(double young = 2e4) {
   return body;
 }
 
-// What is felt of a tool on its way: the largest force, its largest rise in a tick.
+// Observed force of a tool: the maximum, and the largest rise in a tick.
 struct Watch {
   Entity tool;
   double most_force = 0.0, most_rise = 0.0;  // [N]
@@ -83,7 +83,7 @@ void add_front_floor(ToolStage& stage) {
   stage.add_rigid(scenes::box(dvec3(0.2, 0.02, 0.2)), floor, Pose{dvec3(0, -0.01, 0), {1, 0, 0, 0}});
 }
 
-// A tool pressed `depth` [m] into a fixed floor in `way` [s] and held there.
+// A tool pressed `depth` [m] into a fixed floor in `way` [s] and kept there.
 void expect_the_coupling_is_felt_on_a_floor(Rigid rigid, double young, double depth, double way = 0.3) {
   SCOPED_TRACE(testing::Message() << "young " << young << ", depth " << depth);
   ToolStage stage(kFrontStep);
@@ -138,7 +138,7 @@ TEST(RigidFront, TwoToolsPressedTogetherFeelTheirCouplings) {
   stage.lead(above.tool, dvec3(0, 0.012, 0), 0.3, look);
   stage.lead(below.tool, dvec3(0.003, -0.012, 0.002), 0.3, look);
   stage.lead(above.tool, dvec3(0, 0.012, 0), 1.0, look);
-  // 6 mm too near: that is what the two are left behind, between them.
+  // 6 mm too near: the sum of the distances of the two handles from their devices.
   const double above_stretch = -behind(stage, above.tool), below_stretch = behind(stage, below.tool);
   EXPECT_NEAR(above_stretch + below_stretch, 6e-3, 5e-4);
   EXPECT_NEAR(linear(front_state(stage, above.tool).device_wrench).y, coupling_law(above_stretch), 1e-3);
@@ -149,7 +149,7 @@ TEST(RigidFront, TwoToolsPressedTogetherFeelTheirCouplings) {
   }
 }
 
-// Dragged along the floor, the rigid front slides with Coulomb's friction, once the handle has come to its speed.
+// Dragged along the floor, the rigid front slides with Coulomb friction, once the handle has reached its speed.
 TEST(RigidFront, SlidesWithCoulombsFriction) {
   ToolStage stage(kFrontStep);
   stage.world.simulation.gravity = dvec3(0);
@@ -167,7 +167,7 @@ TEST(RigidFront, SlidesWithCoulombsFriction) {
   EXPECT_NEAR(tangential / normal, SoftBody{}.friction_sliding, 0.02);
 }
 
-// A rigid box between a rigid tool and the floor gives way to neither.
+// A rigid box between a rigid tool and the floor is immovable.
 TEST(RigidFront, ARigidBoxOnTheFloorIsAsGoodAsTheFloor) {
   ToolStage stage(kFrontStep);
   add_front_floor(stage);

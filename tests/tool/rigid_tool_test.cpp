@@ -1,5 +1,5 @@
-// A rigid body with a handle: an instrument. Oracles: the coupling's law F_max tanh(k d / F_max) where nothing gives
-// way, a tool of tissue that is rigid all through as a twin, the instrument's weight, action and reaction.
+// A rigid body with a handle: an instrument. Oracles: the coupling's law F_max tanh(k d / F_max) against rigid objects,
+// an equivalent tool of fully rigid tissue, the instrument's weight, action and reaction.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -79,7 +79,7 @@ TEST(RigidTool, OnAFloorItsCouplingIsFelt) {
     }
 }
 
-// A rigid cube between the instrument and the floor, however fast the hand comes.
+// A rigid cube between the instrument and the floor, for any speed of the hand.
 TEST(RigidTool, ThroughARigidCubeOnTheFloorItsCouplingIsFelt) {
   for (const double speed : {0.02, 0.04, 0.1, 0.3, 1.0}) {
     SCOPED_TRACE(speed);
@@ -99,8 +99,7 @@ TEST(RigidTool, ThroughARigidCubeOnTheFloorItsCouplingIsFelt) {
   }
 }
 
-// Pressed askew and to the side, so that friction holds it all: nothing creeps, and nothing is heard of the models that
-// come 60 times a second.
+// Pressed obliquely, within the friction cone: nothing creeps, and the new models at 60 Hz cause no perceptible change.
 TEST(RigidTool, OnATowerTheForceIsStillForAsLongAsItIsHeld) {
   ToolStage stage(kRigidToolStep);
   add_floor(stage);
@@ -164,7 +163,7 @@ TEST(RigidTool, FeelsAsAToolOfTissueThatIsRigidAllThrough) {
   for (std::size_t i = 0; i < twin.size(); ++i) EXPECT_NEAR(rigid[i], twin[i], 0.02 * most) << i;
 }
 
-// Two hands, one on a coupling three times as stiff as the other: what the one feels, the other feels too.
+// Two hands, one with a coupling three times as stiff: both feel the same force.
 TEST(RigidTool, TwoInstrumentsPressOnEachOther) {
   ToolStage stage(kRigidToolStep);
   stage.world.simulation.gravity = dvec3(0);
@@ -238,7 +237,7 @@ TEST(RigidTool, TwoInstrumentsPinchASoftCubeAtAnySpeed) {
   }
 }
 
-// Farther from its device than any hand reaches: nothing is felt meanwhile, and it is in the hand again.
+// Farther from its device than a hand can reach: no force meanwhile, then it is reset to the device.
 TEST(RigidTool, WhatGetsAwayIsSetBackIntoTheHand) {
   ToolStage stage(kRigidToolStep);
   const Entity tool = add_instrument(stage, pose_at({0, 0.1, 0}));

@@ -1,4 +1,5 @@
-// What changes of a contact as it slips: where two surfaces touch goes over both, and what gives way there with it.
+// Changes of a contact during slip: the contact point moves over both surfaces, and the compliance there changes with
+// it.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -29,7 +30,7 @@ void find_neighbours(Mesh& mesh, float edge) {
   mesh.mean_edge = edge;
 }
 
-// A soft bar along x, its far end the handle, lies on a ridge across it that does not give way, without friction.
+// A soft bar along x, with its far end as handle, lies on a rigid ridge across it, without friction.
 class BarOnRidge {
  public:
   static constexpr double kCell = 0.01, kLong = 0.08, kRidge = 0.02;  // [m]; the ridge is so far from the free end
@@ -44,7 +45,7 @@ class BarOnRidge {
     model.contacts.resize(kMaxCondensed, kMaxModes);
     rest_ = tool().handle().motion().pose;
   }
-  // [N], [N m] on the handle, that has gone by `by` [m] at the step's end.
+  // [N], [N m] on the handle, which has moved by `by` [m] at the step's end.
   Vector6 step(double T, dvec3 by) {
     const Pose end{rest_.position + by, rest_.rotation};
     tool().lead_handle({end, join((by - went_) / T, dvec3(0))});
@@ -69,8 +70,8 @@ class BarOnRidge {
 
  private:
   SoftBodyState& tool() { return static_cast<SoftBodyState&>(*bodies_[0]); }
-  // Of the bar's lower face over the ridge at y = 0. Beside it, by `aside` [m] along the bar, it lies far below: as in
-  // any scene, contacts near those that touch tell the model how the bar gives way there.
+  // Of the bar's lower face over the ridge at y = 0. Another one, `aside` [m] along the bar, is far below: as in any
+  // scene, contacts near those that touch give the model the bar's compliance there.
   ContactPoint contact(double aside) {
     ContactPoint c;
     c.body_a = 0, c.body_b = 1;
@@ -141,7 +142,7 @@ TEST(Slip, ALeverBecomesLongerAsItIsDrawnOverARidge) {
   }
 }
 
-// [J] of the handle's wrench on a hand that leads it around a rectangle in half a second a side, the second time round.
+// [J] of the handle's wrench on a hand that moves it around a rectangle in half a second per side, in the second round.
 double work_around(const HandleModel& model, const std::array<dvec3, 4>& sides, double& size) {
   CondensedState state;
   state.resize(kMaxCondensed, kMaxModes);
@@ -162,8 +163,8 @@ double work_around(const HandleModel& model, const std::array<dvec3, 4>& sides, 
   return work;
 }
 
-// The bar's damping takes the same whichever way round: a model whose levers and normals did not belong together would
-// give a part of the work back one way and take it the other.
+// The bar's damping dissipates the same in both directions. A model with inconsistent lever arms and normals would
+// return a part of the work in one direction and take it in the other.
 TEST(Slip, NothingIsGainedAroundALoop) {
   BarOnRidge scene;
   scene.settle(dvec3(0, -3e-3, 0));

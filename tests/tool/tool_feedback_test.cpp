@@ -1,5 +1,5 @@
-// The tool's touch tick in a world of its own: stability against the table of exact limits, updates that are not felt,
-// models that grow old, budgets that are missed, memory that is not asked for.
+// The tool's touch tick in a separate world: stability against the table of exact limits, smooth updates, aging models,
+// missed budgets, no allocations.
 #include "systems/tool/tool_feedback.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 #include "tests/tool/press_scene.h"
 
 #ifndef PLIANT_SANITIZED
-// Every allocation, Eigen's too, comes by here; the sanitizers have their own.
+// Counts every allocation, including Eigen's; the sanitizers have their own.
 namespace {
 std::atomic<std::uint64_t> g_allocations{0};
 }
@@ -116,8 +116,8 @@ TEST(ToolFeedback, IsStableAgainstARigidWallUpToTheExactLimitOfTheDevice) {
   }
 }
 
-// The clock skips 12 ticks while the device goes on at 50 mm/s: it has moved 0.65 mm in what the next tick takes for
-// one tick. Taken for 13 times its speed, the coupling's damper alone would push 1.2 N.
+// The clock skips 12 ticks while the device continues at 50 mm/s: it has moved 0.65 mm in the next tick. If this
+// counted as 13 times its speed, the coupling's damper alone would push 1.2 N.
 TEST(ToolFeedback, ALateTickIsNoBlow) {
   Handle6 settings = coupling(200.0);
   settings.translation[1] = 2.0;
@@ -137,7 +137,7 @@ TEST(ToolFeedback, ALateTickIsNoBlow) {
   follow();
   EXPECT_NEAR(stage.state().sensed.velocity[0], speed, 1e-9);
   EXPECT_NEAR(stage.state().sensed.velocity[5], 0.4, 1e-9);
-  // The spring has the way of 13 ticks to answer for, no more.
+  // The spring responds to the displacement of 13 ticks, no more.
   EXPECT_LT(std::abs(stage.state().device_wrench[0]), before + 1.01 * 200.0 * 13 * kTick * speed);
 }
 
@@ -306,8 +306,8 @@ TEST(ToolFeedback, NothingIsFeltOfADeviceThatIsLost) {
   EXPECT_EQ(length(stage.hand().force_sent), 0.0);
 }
 
-// Lost in the middle of a motion, back 50 mm away: the tool waits where it is, goes to its device, and only when it is
-// there is anything felt, rising no faster than the device allows.
+// The device is lost during a motion, and back 50 mm away: the tool waits in place, then moves to its device. Only
+// there is a force rendered, rising no faster than the device allows.
 TEST(ToolFeedback, AToolWhoseDeviceIsLostWaitsAndIsTakenUpAgainWithoutAJump) {
   Handle6 settings = coupling(200.0);
   settings.translation[1] = 2.0;
@@ -365,7 +365,7 @@ TEST(ToolFeedback, ACarriedToolIsLetGoWhenItsModelIsTooOldToBeBelieved) {
   for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts}) {
     Stage stage(coupling(200.0));
     stage.state().wanted = mode;
-    // Tissue pulls down with its weight, what carries it holds against that: the hand feels nothing.
+    // Tissue pulls down with its weight, the compensation balances it: zero force on the hand.
     stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = -0.5;
     stage.model.handle_load[1] = 0.5;
     stage.publish();
@@ -444,7 +444,7 @@ TEST(ToolFeedback, ADeviceThatMovesAProbeAlreadyIsRefused) {
   Stage stage;
   const Entity probe = stage.world.registry.create();
   stage.world.registry.add<Probe>(probe, {}).device = stage.device;
-  // Names come from files and are no formats.
+  // Names come from files and must not be used as format strings.
   const std::string odd = "a{b}%s%n{}{0}";
   stage.world.registry.add<Name>(probe, {"tip" + odd});
   stage.world.registry.get<Name>(stage.device).value = odd;

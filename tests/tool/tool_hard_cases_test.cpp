@@ -1,5 +1,4 @@
-// Tools where it is hard: jumps, devices that talk nonsense, a handle of few nodes or of all, none at all, pinned
-// tissue.
+// Hard cases of tools: jumps, devices with invalid values, a handle of few nodes or of all, none at all, pinned tissue.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -17,7 +16,7 @@ TEST(Tool, ArrivesWhereItsDeviceHasJumpedAndFlipped) {
     for (const double dt : {kHardStep, 0.1}) {
       AirTool tool(attachment);
       const Pose jump{{1, 0, 0}, rotation_of({0, 3.14159265358979, 0})};
-      tool.state->set_device(jump, join({60, 0, 0}, {0, 180, 0}));  // as a device's speed reads that jumps in a frame
+      tool.state->set_device(jump, join({60, 0, 0}, {0, 180, 0}));  // velocity of a device that jumps in a frame
       tool.run(1, dt, kGravity);
       tool.state->set_device(jump, Vector6::Zero());
       tool.run(static_cast<int>(10 / dt), dt, dvec3(0));
@@ -76,7 +75,7 @@ TEST(Tool, ThatIsAllHandleIsARigidBody) {
 }
 
 TEST(Tool, WithoutAHandleIsTissueThatFalls) {
-  const Bar bar = make_finger(2, 1, 1, 0.01);  // whose handle nobody declares
+  const Bar bar = make_finger(2, 1, 1, 0.01);  // a handle that is not declared
   SoftBody body;
   SoftBodyState state(bar.tets, bar.collision_mesh, body, nullptr, Pose{{0, 1, 0}, {1, 0, 0, 0}},
                       SolverKind::kEigenCholesky);
@@ -103,7 +102,7 @@ TEST(Tool, IsPinnedWhereItIsPinned) {
     tool.run(300, kHardStep, dvec3(0));
     for (std::uint32_t i = bar.tets.pinned_begin(); i < bar.tets.node_count(); ++i)
       EXPECT_EQ(tool.state->tissue().position()[i], bar.tets.nodes[i]);
-    // It is stretched; the hand holds against it.
+    // It is stretched; the device resists it.
     EXPECT_LT(linear(tool.state->coupling_wrench()).x, -1e-3);
     EXPECT_NEAR((tool.state->coupling_wrench() + tool.state->tissue_wrench()).norm(), 0.0, 1e-6);
   }

@@ -1,4 +1,4 @@
-// Tools of handle and tissue: rigid motion, momentum, equilibrium, and what collision mesh and device see of them.
+// Tools of handle and tissue: rigid motion, momentum, equilibrium, and the view of collision mesh and device.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -89,10 +89,10 @@ TEST(Tool, HangsFromItsDeviceWithItsWeight) {
     const double weight = 9.81 * tool.mass();
     EXPECT_LT(weight, tool.handle.max_force);
     EXPECT_LT(length(linear(tool.state->coupling_wrench()) - dvec3(0, weight, 0)), 1e-9 * weight);
-    // What tissue adds is the weight of what is not the handle's.
+    // The tissue contributes the weight of the nodes that are not on the handle.
     const dvec3 tissue = linear(tool.state->tissue_wrench() + tool.state->handle_load());
     EXPECT_LT(length(tissue - dvec3(0, -weight, 0)), 1e-9 * weight);
-    // And its moment about the handle's centre is what the coupling holds.
+    // Its moment about the handle's centre is balanced by the coupling.
     const Vector6 left = tool.state->coupling_wrench() + tool.state->tissue_wrench() + tool.state->handle_load();
     EXPECT_LT(left.tail<3>().norm(), 1e-9 * weight * 0.05);
     EXPECT_GT(length(angular(tool.state->coupling_wrench())), 1e-3 * weight * 0.05);
@@ -140,7 +140,7 @@ TEST(Tool, SpringsThatStiffenLeadToTheToolOfSlavedNodes) {
 }
 
 TEST(Tool, TheHandlesMotionIsWhatTissueCouplingAndWeightMakeOfIt) {
-  // M_h (w1 - w0) = T (load + F(w1) + coupling), F linear in w: the books of one step balance.
+  // M_h (w1 - w0) = T (load + F(w1) + coupling), F linear in w: the momentum balance of one step.
   for (const Attachment attachment : kBoth) {
     AirTool tool(attachment);
     tool.state->set_device({{0.05, 0.02, 0}, rotation_of({0, 0.3, 1})}, join({1, 0, 0}, {0, 2, 0}));

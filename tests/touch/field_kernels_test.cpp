@@ -1,4 +1,4 @@
-// What the zone kernels compute many vertices at a time, against the same computed one by one.
+// The vectorised zone kernels, against the same computation one vertex at a time.
 #include "systems/touch/field_kernels.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(FieldKernels, TargetsOfAZoneAreThoseOfItsVerticesForEveryShape) {
         float height = 0, normal = 0, steepest = source.amplitude / reach;
         for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {
           ZoneTargets targets;
-          targets.h.fill(7.0f);  // what stood there does not count
+          targets.h.fill(7.0f);  // previous content does not matter
           add_targets(mesh, zone, source, true, targets);
           for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
             const std::uint32_t i = v - mesh.zone_begin(zone);
@@ -81,7 +81,7 @@ Motion motion_of(SpringLaw law, double mass, double damping, double hardening) {
   return m;
 }
 
-// What stiffens, and what softens.
+// Stiffening and softening.
 constexpr std::pair<SpringLaw, double> kHardening[] = {
     {SpringLaw::kCubic, 1e5}, {SpringLaw::kExponential, 150.0}, {SpringLaw::kExponential, -80.0}};
 

@@ -1,4 +1,4 @@
-// The field as a list of sources, which the GPU evaluates, against the field that the processor steps zone by zone.
+// The field as a list of sources, which the GPU evaluates, against the field that the CPU steps zone by zone.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 using scenes::Stage;
 
-// Two probes press, slide, one leaves fast and one slowly, and one comes back.
+// Two probes press and slide, one leaves fast and one slowly, and one returns.
 void play(Stage& stage, Entity a, Entity b, int ticks) {
   for (int i = 0; i < ticks; ++i) {
     const double s = 0.004 * i;
@@ -117,7 +117,7 @@ TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
   EXPECT_GE(ticks, 50u);
   EXPECT_LT(events, 20 * ticks) << "only what changes is told";
 
-  // Nobody listens: the ring runs full.
+  // Without a reader the ring fills up.
   int waited = 0;
   while (object.teller.tells() && ++waited < 100000) {
     gpu.stage.place(gpu.a, 0.095 * normalize(dvec3(std::sin(1e-3 * waited), 1, 0)));
@@ -127,7 +127,7 @@ TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
   const ObjectSnapshot& streams = newest();
   EXPECT_FALSE(streams.told);
   EXPECT_GT(streams.zone_count, 0u);
-  // At rest, and seen to be: it begins anew.
+  // At rest, as confirmed by the reader: it restarts.
   gpu.stage.place(gpu.a, {0, 0.2, 0});
   gpu.stage.place(gpu.b, {0, 0.2, 0});
   gpu.stage.wait(2.0);

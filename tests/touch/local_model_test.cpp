@@ -43,7 +43,7 @@ TEST(LocalModel, ExactStepEqualsTheClosedFormOverTheWholeRangeOfMaterialsAndStep
     const double m = log_uniform(1e-6, 1), k = log_uniform(1, 1e6), T = log_uniform(1e-5, 0.1);
     const double zeta = n % 5 == 0 ? 1.0 : n % 5 == 1 ? 0.0 : log_uniform(1e-3, 100);
     const double b = 2 * zeta * std::sqrt(k * m), w = std::sqrt(k / m);
-    // The phase wT is known to half a bit of itself: relative error grows with it, whatever the formula.
+    // The phase wT has a relative error of half a bit: the absolute error grows with it, whatever the formula.
     if (w * T > 300) continue;
     const HeightState start{1e-3, 0.3 * 1e-3 * w};
     const HeightState got = step_oscillator(start, m, b, k, 0, T), want = Closed{m, b, k}.at(start, T);

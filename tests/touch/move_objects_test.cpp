@@ -211,8 +211,8 @@ TEST(MoveObjects, ATickDoesNotAllocateAndTheSameMotionHasTheSameHash) {
   EXPECT_NE(hashes[0], hashes[2]);
 }
 
-// A sheet that rises under a hand which gives way more slowly: the sheet's engine does work on the hand, which
-// passivity against the room would not allow.
+// A sheet rises against a hand that yields more slowly: its prescribed motion does work on the hand, which passivity
+// relative to the world would not allow.
 TEST(MoveObjects, ASurfaceThatComesMayPushAHandAway) {
   Stage stage;
   Deformable deformable;

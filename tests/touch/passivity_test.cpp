@@ -1,4 +1,4 @@
-// The passivity observer and its damping: what must never be touched, and what must be taken back.
+// The passivity observer and its damping: forces that must not be changed, and energy that must be recovered.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ HapticDevice device_of_a_test() {
   return device;
 }
 
-// A hand that is moved along a path through a field of forces.
+// A hand moved along a path through a force field.
 struct Hand {
   SafetyState state;
   HapticDevice device = device_of_a_test();
@@ -100,7 +100,7 @@ TEST(Passivity, FrictionIsNeverWithheld) {
   EXPECT_EQ(hand.withheld().ticks, 0u);
 }
 
-// A press, then a slide along which the surface pushes and lets go in jumps; nothing of that is a gradient.
+// A press, then a slide along which the force jumps; it is not a gradient.
 TEST(Passivity, WhatAJumpyForceGivesIsTakenBackInsideTheSlewLimitAndNeverByAZero) {
   Hand hand;
   dvec3 x(0, 1e-3, 0);
@@ -127,12 +127,12 @@ TEST(Passivity, WhatAJumpyForceGivesIsTakenBackInsideTheSlewLimitAndNeverByAZero
   EXPECT_LT(hand.work, kPassivityShare * hand.state.stored + 1e-9) << "and in the end nothing";
 }
 
-// An engine at full force. The stopping distance holds for a hand that goes on like this; what is left are the
-// trapezoids of steps that nobody foresaw.
+// An active force at its limit. The stopping distance holds for a hand that continues in this way; the rest is the
+// trapezoidal error of unpredicted steps.
 TEST(Passivity, AnActiveForceAtItsLimitPumpsLessThanATickOfItForEver) {
   std::mt19937 random(11);
   std::normal_distribution<double> g;
-  for (const double shake : {0.0, 0.005})    // [m/s] of a hand that trembles
+  for (const double shake : {0.0, 0.005})    // [m/s] of a trembling hand
     for (const double turns : {0.5, 3.0}) {  // [1/s]
       Hand hand;
       dvec3 x(0), tremble(0);
@@ -145,13 +145,13 @@ TEST(Passivity, AnActiveForceAtItsLimitPumpsLessThanATickOfItForEver) {
         x += kDt * v;
         hand.go(x, length(v) > 0 ? 3.0 / length(v) * v : dvec3(0));
       }
-      const double one_tick = 3.0 * fastest * kDt;  // [J] what the engine would give in every tick
+      const double one_tick = 3.0 * fastest * kDt;  // [J] work of the active force in every tick
       EXPECT_LT(hand.most_work, 0.1 * one_tick + kPassivityShare * hand.state.stored);
       EXPECT_LE(hand.largest_step, hand.device.max_slew * kDt * (1 + 1e-9));
     }
 }
 
-// The hand lets go of more than it gave: a spring that stiffened while it was held.
+// The hand would get more energy than it put in: a spring that stiffened meanwhile.
 TEST(Passivity, ASpringThatStiffensWhileItIsHeldGivesBackNoMoreThanItTook) {
   for (const double speed : {0.005, 0.05, 0.2}) {
     Hand hand;
@@ -159,7 +159,7 @@ TEST(Passivity, ASpringThatStiffensWhileItIsHeldGivesBackNoMoreThanItTook) {
     for (; y > -3e-3; y -= speed * kDt) hand.go({0, y, 0}, {0, std::max(0.0, -300 * y), 0});
     for (int n = 0; n < 100; ++n) hand.go({0, y, 0}, {0, -900 * y, 0});
     for (; y < 2e-3; y += speed * kDt) hand.go({0, y, 0}, {0, std::max(0.0, -900 * y), 0});
-    const double step = speed * kDt;  // [m] and what a spring of 900 N/m is uncertain by, sampled at such steps
+    const double step = speed * kDt;  // [m] and the sampling uncertainty of a spring of 900 N/m at such steps
     EXPECT_LT(hand.work, 2 * kPassivityShare * hand.state.stored + 0.25 * 900 * step * step);
     EXPECT_GT(hand.withheld().ticks, 0u);
     EXPECT_LE(hand.largest_step, hand.device.max_slew * kDt * (1 + 1e-9));

@@ -1,4 +1,4 @@
-// What a tick may not do, and what it must cost: allocation, sleep, publishing.
+// Constraints on a tick: allocations, sleeping zones, publishing.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -20,7 +20,7 @@ namespace {
 
 using scenes::Stage;
 
-// Press, slide together, release, leave, come back.
+// Press, slide together, release, leave, return.
 void play(Stage& stage, Entity a, Entity b) {
   for (int i = 0; i < 400; ++i) {
     const double s = 0.01 * i, lift = i % 150 > 100 ? 0.01 : 0.0;
@@ -55,7 +55,7 @@ TEST(Tick, NeverAllocatesWhateverTheLawTheShapeOrTheDistance) {
   }
 }
 
-// Rates are over the time since the tick before, however many were skipped: else a late tick would feel a hand that
+// Rates are over the time since the previous tick, including skipped ones: otherwise a late tick would see a hand that
 // moved ten times as fast.
 TEST(Tick, AfterSkippedTicksRatesAreOverTheTimeThatPassed) {
   for (const bool slides : {false, true}) {
@@ -153,7 +153,7 @@ TEST(Publish, ASlowReaderStillSeesEveryZoneAsItFinallyIs) {
   EXPECT_EQ(shown, stage.field(surface).stream);
 }
 
-// A snapshot that nobody took is replaced by the next; what it held alone has to travel once more.
+// A snapshot that was not taken is replaced by the next, which must include its data.
 TEST(Publish, WhoTakesUntilNothingWaitsHasAllOfASnapshotThatWasReplacedUnseen) {
   Stage stage;
   Deformable d;
@@ -173,7 +173,7 @@ TEST(Publish, WhoTakesUntilNothingWaitsHasAllOfASnapshotThatWasReplacedUnseen) {
       }
     } while (waits_to_be_published(stage.world));
   };
-  for (int ticks = 1; ticks < 16; ++ticks) {  // however snapshots fall between them
+  for (int ticks = 1; ticks < 16; ++ticks) {  // for any positions of snapshots between them
     stage.place(probe, {-0.05, -0.003, 0});
     stage.wait(0.01);
     take_all();
@@ -232,8 +232,8 @@ TEST(Amplitudes, SolveTheComplementarityProblemOfOverlappingFields) {
       for (int i = 0; i < 2; ++i) {
         const double reached = A[2 * i] * alpha[0] + A[2 * i + 1] * alpha[1];
         EXPECT_GE(alpha[i], 0);
-        EXPECT_GE(reached, d[i] - 1e-8);                        // no probe stands below the surface
-        if (alpha[i] > 1e-9) EXPECT_NEAR(reached, d[i], 1e-8);  // who presses stands at its own depth
+        EXPECT_GE(reached, d[i] - 1e-8);                        // no probe is below the surface
+        if (alpha[i] > 1e-9) EXPECT_NEAR(reached, d[i], 1e-8);  // a loaded probe is at its own depth
       }
     }
   }

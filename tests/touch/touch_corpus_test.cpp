@@ -1,6 +1,6 @@
-// The stored energy on what people bring: one to eight probes wander about on every mesh of the corpus, and no hand
-// gets more work out of it than went in (methods.md 1.10: the force is minus the gradient of one energy; what a
-// vanishing minimum loses may be lost).
+// The stored energy on real meshes: one to eight probes move randomly on every mesh of the corpus, and no hand gets
+// more work than it put in (methods.md 1.10: the force is minus the gradient of one energy; a vanishing minimum may
+// lose energy).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ TEST_P(CorpusTouch, GivesOutNoMoreThanWentIn) {
   std::vector<Hand> hands;
   std::mt19937 random(11);
   std::normal_distribution<double> g;
-  // A hand that begins inside is pushed out by nobody's work: all begin outside.
+  // A hand that starts inside would be pushed out without input work: all start outside.
   const auto outside = [&](dvec3 x, double radius) {
     return std::all_of(surfaces.begin(), surfaces.end(), [&](Entity each) {
       const Mesh& mesh = stage.mesh(each);
@@ -80,7 +80,7 @@ TEST_P(CorpusTouch, GivesOutNoMoreThanWentIn) {
   };
   dvec3 place(0), normal(0);
   for (int i = 0, tries = 0; i < 8 && tries < 1000; ++tries) {
-    const bool beside = i % 2 == 1;  // of the one before
+    const bool beside = i % 2 == 1;  // next to the previous one
     if (!beside) {
       const Entity surface = surfaces[random() % surfaces.size()];
       const Mesh& mesh = stage.mesh(surface);

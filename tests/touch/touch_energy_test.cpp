@@ -26,7 +26,7 @@ TEST(TouchEnergy, ForceIsMinusTheGradientOfTheStoredEnergyForAnyProbesLawAndSurf
         Deformable d = frictionless(kind);
         d.shape = shape;
         d.stiffening = alpha;
-        d.contact_radius = alpha < 0 ? 0.012 : 0.0;  // of the shape hertz: its kernel is found for this ratio
+        d.contact_radius = alpha < 0 ? 0.012 : 0.0;  // of the shape hertz: its kernel is computed for this ratio
         d.cubic = 3e6;
         const bool ball = scene == 1, box = scene >= 3;
         stage.add(scene == 0   ? painted_sheet(60, 0.2)
@@ -62,7 +62,7 @@ TEST(TouchEnergy, ForceIsMinusTheGradientOfTheStoredEnergyForAnyProbesLawAndSurf
                ball ? (0.1 - depth) * normalize(dvec3(0, 1, 0) + 10.0 * a) : a + dvec3(box ? 0.028 : 0.0, -depth, 0));
           }
           for (std::size_t i = 0; i < 3; ++i) {
-            if (i == 0) stage.wait(0.6);  // what was recovering has come to rest
+            if (i == 0) stage.wait(0.6);  // recovery has ended
             dvec3 gradient(0);
             const double h = 1e-6;
             for (int k = 0; k < 3; ++k) {
@@ -113,7 +113,7 @@ TEST(TouchEnergy, ManyProbesOnOneSurfaceStoreWhatTheirForcesGiveBack) {
       double work = 0, most = 0, energy = 0;
       for (int n = 0; n < 4000; ++n) {
         for (int i = 0; i < count; ++i) {
-          // A hand that wanders, drawn to a few millimetres of depth and to the middle.
+          // A random walk of the hand, attracted to a few millimetres of depth and to the middle.
           const dvec3 home = scene == 0 ? 0.097 * normalize(x[i]) : dvec3(0.9 * x[i].x, -0.003, 0.9 * x[i].z);
           v[i] += 0.002 * dvec3(g(random), g(random), g(random)) + 0.125 * (home - x[i]) - 0.0125 * v[i];
           const dvec3 dx = v[i] * stage.dt();
@@ -130,7 +130,7 @@ TEST(TouchEnergy, ManyProbesOnOneSurfaceStoreWhatTheirForcesGiveBack) {
         most = std::max(most, energy);
       }
       EXPECT_GT(most, 1e-3);
-      EXPECT_LT(work + energy, 1e-3 * most) << count << ' ' << scene;  // nothing came from nowhere
+      EXPECT_LT(work + energy, 1e-3 * most) << count << ' ' << scene;  // no energy is created
       EXPECT_GT(work + energy, -0.05 * most) << count << ' ' << scene;
     }
   }

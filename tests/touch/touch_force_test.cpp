@@ -26,7 +26,7 @@ TEST(Touch, QuasiStaticForceIsTheLawOfTheDepthForEveryLaw) {
       ASSERT_NEAR(r.normal_force, law(d, r.depth),
                   1e-3 * law(d, r.depth) + (kind == SpringLaw::kStandardLinearSolid ? 1e-3 : 0.0))
           << int(kind);
-      // The slope of what the tissue remembers is known at vertices 5 mm apart: a hundredth of the force.
+      // The slope of the tissue's memory is sampled at vertices 5 mm apart: an error of a hundredth of the force.
       ASSERT_NEAR(r.tangential_force, 0, kind == SpringLaw::kStandardLinearSolid ? 1e-2 * law(d, r.depth) : 1e-9);
     });
   }
@@ -63,7 +63,7 @@ TEST(Touch, StandardLinearSolidRelaxesByItsClosedForm) {
   const double depth = 0.005;
   stage.place(probe, {0, -depth, 0});
   stage.tick();
-  // A step of depth within one tick: the arm has relaxed on the way by the mean of e^(-t/tau) over the tick.
+  // A step of depth within one tick: the arm has relaxed by the mean of e^(-t/tau) over the tick.
   const double T = stage.dt(), tau = d.relaxation_time, E = std::exp(-T / tau);
   for (int n = 0; n < 1000; ++n) {
     const double want = depth * (d.stiffness + d.relaxation_stiffness * (tau / T) * (1 - E) * std::exp(-n * T / tau));

@@ -1,4 +1,4 @@
-// Friction of a touch, and the energy that a hand gets back from press, slide and release.
+// Friction of a touch, and the energy returned to a hand by press, slide and release.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ TEST(Touch, SlidingFrictionStaysOnTheConeAndOpposesTheMotion) {
   EXPECT_GT(peak, 0.45);  // the static limit was reached before it slipped
 }
 
-// A block on an incline, held by the probe's friction: a mass whose weight presses the probe into a soft plane.
+// A block on an incline, supported by the probe's friction: a mass whose weight presses the probe into a soft plane.
 double slid(double mu, double degrees) {
   Stage stage;
   Deformable d;
@@ -56,8 +56,8 @@ double slid(double mu, double degrees) {
   stage.move(probe, x, 0.5);
   const dvec3 start = x;
   for (int n = 0; n < 3000; ++n) {
-    // Stiffly damped along the normal so that only the slide is left to watch.
-    // The weight's pull along the slope comes on slowly, so that the bristle is loaded and not struck.
+    // Strong damping along the normal, so that only the slide remains. The weight's component along the slope is ramped
+    // up, so that the bristle is loaded without impact.
     const dvec3 weight = mass * dvec3(0, -9.81, 0), across = dot(weight, normal) * normal;
     dvec3 force = stage.read(probe).force + across + std::min(1.0, n / 1500.0) * (weight - across);
     force -= 5.0 * dot(v, normal) * normal;

@@ -1,4 +1,4 @@
-// A touched surface in time: how it recovers, lags and goes to sleep.
+// A touched surface over time: recovery, lag and sleep.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The shape of a touched surface: where it stands, what volume and normals it keeps, how far a dent reaches.
+// The shape of a touched surface: its position, volume and normals, and the extent of a dent.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ TEST(Touch, SurfaceStandsExactlyUnderEveryProbeForEveryShapeAndStaysFarAwayAtRes
       ASSERT_TRUE(r.in_contact) << int(shape);
       EXPECT_NEAR(r.height, -r.depth, 1e-5 * 0.006) << int(shape);  // each its own equilibrium depth
     }
-    // Nothing is dented beyond the reach.
+    // No dent beyond the reach.
     const Mesh& mesh = stage.mesh(sheet);
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
       double near = 1;
@@ -76,8 +76,8 @@ TEST(Touch, APunchOfItsOwnContactRadiusDentsTheSurfaceOfAHalfSpace) {
   }
 }
 
-// What neighbours share their load by: for every contact radius as near to the shape as for the usual one, as far as a
-// function that is positive definite can be flat.
+// The kernel that distributes load between neighbours: for every contact radius as near to the shape as for the default
+// one, as far as a positive definite function can be flat.
 TEST(Touch, TheKernelOfALoadFollowsTheContactRadius) {
   const auto half = [](const ShareKernel& kernel) {  // [1] where it has fallen to a half
     double r = 0.0;
@@ -160,7 +160,7 @@ TEST(Touch, VolumeShapeLeavesNoNetVolumeOnFlatAndCurvedSurfaces) {
       };
       net = volume([&](std::uint32_t v) { return field.stream[v].w; });
       indented = volume([&](std::uint32_t v) { return std::min(0.0f, field.stream[v].w); });
-      // What the indentation alone would displace without a rim: (1-u)^3 of the same amplitude.
+      // The volume of the indentation alone without a rim: (1-u)^3 of the same amplitude.
       const double bare = volume([&](std::uint32_t v) {
         const double u =
             std::min(1.0, std::pow(length(dvec3(mesh.position(v)) - stage.contact(probe).foot) / d.reach, 2));
@@ -230,7 +230,7 @@ TEST(Touch, CorrectedNormalsAgreeWithTheDeformedTriangles) {
     for (const double ratio : {0.02, 0.1, 0.3}) {
       double p99 = 0;
       const double mean = normal_error(ratio, shape, &p99);
-      // On a plane the correction is the exact gradient; what is left is the triangles' own discretisation (1/30 of R).
+      // On a plane the correction is the exact gradient; the rest is the triangles' discretisation error (1/30 of R).
       EXPECT_LT(mean, 0.5 + 2 * ratio) << int(shape) << ' ' << ratio;
       EXPECT_LT(p99, 3 + 10 * ratio) << int(shape) << ' ' << ratio;
     }

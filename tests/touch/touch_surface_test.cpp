@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-// Where the curved surface is met on the way along a unit vector, from the origin. [m]
+// Intersection of the curved surface with a ray from the origin along a unit vector. [m]
 dvec3 surface_on_the_way(const Mesh& mesh, dvec3 along) {
   const Entry entry = first_entry(mesh, dvec3(0), 0.1 * along);
   EXPECT_TRUE(entry.valid());
@@ -26,7 +26,7 @@ dvec3 surface_on_the_way(const Mesh& mesh, dvec3 along) {
   return x;
 }
 
-// What it feels there is a hard case (lab/study/hard).
+// The force there is a hard case (player/study/hard).
 TEST(TouchSurface, ASphereInAGrooveShowsAnArrowForEachWall) {
   Stage stage;
   stage.add(scenes::valley(40, 0.2, M_PI / 4), frictionless());
@@ -83,7 +83,7 @@ TEST(TouchSurface, ADentGoesOnOverASeamAsIfThereWereNone) {
     const auto go = [&](dvec3 to, double seconds) {
       for (std::size_t i = 0; i < scenes.size(); ++i) {
         scenes[i].first->move(hands[i], to, seconds);
-        scenes[i].first->wait(0.003);  // what is beyond a seam is known a tick later
+        scenes[i].first->wait(0.003);  // the far side of a seam is known a tick later
       }
     };
     const auto compare = [&](const char* when) {
@@ -162,7 +162,7 @@ TEST(TouchSurface, FourNodesLookAsOneUnderTwoProbes) {
   EXPECT_LT(corner, -0.001) << "in the node that no probe is on";
 }
 
-// Off the end of a seam there is nothing to wait between.
+// Past the end of a seam there is nothing to interpolate.
 TEST(TouchSurface, AContactThatRunsOffTheEndOfASeamEnds) {
   Stage stage;
   const Primitive half = scenes::sheet(10, 0.1);
@@ -225,7 +225,7 @@ TEST(TouchSurface, ACapsuleLyingOnASurfaceIsHeldUpAlongItsLengthAndOneOnAnEdgeIs
   const dvec3 f = raw_force(stage, lying);
   EXPECT_GT(f.y, 2.5 * law(d, 0.001));  // several dents' worth
   EXPECT_LT(std::hypot(f.x, f.z), 1e-3 * f.y);
-  // Held up evenly: the torque about its middle is none.
+  // Supported evenly: zero torque about its centre.
   const dvec3 torque = stage.world.registry.get<Probe>(lying).torque - cross(dvec3(0.02, 0, 0), f);
   EXPECT_LT(length(torque), 1e-3 * 0.02 * f.y);
 
@@ -247,13 +247,12 @@ TEST(TouchSurface, ACapsuleLyingOnASurfaceIsHeldUpAlongItsLengthAndOneOnAnEdgeIs
     high = std::max(high, length(raw_force(box, shaft)));
   }
   EXPECT_GT(low, 0.4);
-  EXPECT_LT(high - low, 0.2 * high);  // the row of spheres is felt by 3 % of a radius
+  EXPECT_LT(high - low, 0.2 * high);  // the row of spheres changes the force by 3 % of a radius
 }
 
-// A wall that a tip was pressed through does not catch it on its way back; a wall behind that one is touched all the
-// same.
-// Seen from its middle a bowl's curved surface stands behind its triangles. A tip between the two touches nothing yet,
-// and is no less caught when it goes on, fast or slow.
+// A tip that was pressed through a wall is not caught by it on its way back; a second wall behind it is touched. Seen
+// from the inside, a bowl's curved surface is behind its triangles. A tip between the two does not touch yet, and is
+// caught when it moves on, fast or slow.
 TEST(TouchSurface, ATipBetweenATriangleAndItsCurvedSurfaceIsCaughtHoweverFastItGoesOn) {
   constexpr double kRadius = 0.05;
   const Primitive bowl = scenes::bowl(4, kRadius);

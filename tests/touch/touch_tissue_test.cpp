@@ -1,4 +1,4 @@
-// What the tissue is like where it is touched: modulus, paint, memory, slowness (methods.md 1.2, 1.8).
+// Material properties at a touch: modulus, paint, memory, lag (methods.md 1.2, 1.8).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,12 +32,12 @@ TEST(TouchTissue, TheTissueRemembersWhereItWasPressed) {
   go({0.03, -0.003, 0}, 0.06);
   EXPECT_NEAR(stage.read(probe).normal_force, first, 0.05 * first);  // fresh tissue
   go({-0.03, -0.003, 0}, 0.06);
-  EXPECT_NEAR(stage.read(probe).normal_force, 200 * 0.003, 0.1);  // what was left
+  EXPECT_NEAR(stage.read(probe).normal_force, 200 * 0.003, 0.1);  // the remaining force
   go({-0.03, 0.003, 0}, 0.02);
   EXPECT_LT(meter.work, 0.0);
 }
 
-// The trail of a slide comes to rest while the probe still presses: that must not touch what is remembered under it.
+// The trail of a slide comes to rest while the probe still presses: the memory under the probe must not change.
 TEST(TouchTissue, APressThatIsHeldKeepsItsMemoryWhenItsTrailHasGone) {
   Stage stage;
   Deformable d = frictionless(SpringLaw::kStandardLinearSolid);

@@ -1,6 +1,6 @@
-// Two simulated devices in simulated hands that press into a wall, in real time, for as long as PLIANT_DEVICE_SECONDS
-// says: what must not change with time is memory, the distance between two clocks, and what may leave. What a busy
-// machine may change (periods that begin late, force that is taken away) is printed, and not judged.
+// Two simulated devices in simulated hands press into a wall in real time, for PLIANT_DEVICE_SECONDS. Memory, clock
+// offset and force limits must not change with time. Effects of a busy machine (late periods, removed force) are
+// printed, not tested.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -44,7 +44,7 @@ struct SeenLong {
   std::atomic<std::uint64_t> nonsense{0}, back{0};  // writes that are no number; samples not newer than the last
 };
 
-// In front of a device: what goes through.
+// Wraps a device and observes its data.
 class Watched final : public Driver {
  public:
   Watched(std::unique_ptr<Driver> inner, SeenLong& seen) : inner_(std::move(inner)), seen_(seen) {}
@@ -162,7 +162,7 @@ TEST(TwoDevices, KeepTheirMemoryClocksAndLimitsHoweverLongTheyRun) {
   });
   std::uint64_t allocations = 0, trips = 0;
   long first = 0, last = 0;
-  double fast[2] = {};  // [1] periods beyond what the rate allows
+  double fast[2] = {};  // [1] periods beyond the rate's limit
   {
     while (now() - began < 0.2 * seconds) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     first = resident();

@@ -1,5 +1,5 @@
-// Two devices in real time, each with a servo of its own, under one touch clock, with orders from a third thread: for
-// the thread sanitizer.
+// Two devices in real time, each with its own servo, under one touch clock, with orders from a third thread: for the
+// thread sanitizer.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-// Seen from outside: what is written, by which thread, and when it was closed.
+// Observations: written values, the writing thread, and when it was closed.
 struct Seen {
   std::atomic<int> writes{0}, reads{0}, after_close{0}, made_safe{0};
   std::atomic<double> last{-1.0}, largest{0.0};

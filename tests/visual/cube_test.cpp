@@ -1,4 +1,4 @@
-// The filtered surroundings: against closed forms and a brute-force twin, and what is kept of them on disk.
+// The filtered environment: against closed forms and a brute-force reference, and its cache on disk.
 #include "systems/visual/cube.h"
 
 #include <gtest/gtest.h>
@@ -129,7 +129,7 @@ TEST_F(CubeCache, WhatIsKeptIsWhatWasMadeAndIsReadTheNextTime) {
   const Panorama panorama = panorama_of(64, lobes);
   const Cube made = cached_cube(panorama);
   EXPECT_EQ(made.rgb, filtered_cube(panorama).rgb);
-  ASSERT_EQ(files().size(), 1u);  // and nothing half written beside it
+  ASSERT_EQ(files().size(), 1u);  // and no partial file beside it
   const auto written = fs::last_write_time(files()[0]);
   EXPECT_EQ(cached_cube(panorama).rgb, made.rgb);
   EXPECT_EQ(fs::last_write_time(files()[0]), written);

@@ -1,6 +1,5 @@
-// One picture for each thing the renderer can do, beside a picture that somebody has looked at (golden/). Each test
-// also draws with that one thing switched off, and that picture must fail the same comparison: it is what the test is
-// about.
+// One picture for each feature of the renderer, against a manually verified picture (golden/). Each test also draws
+// without the feature, and that picture must fail the same comparison.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +25,7 @@ const Viewpoint kFeatureFront{.eye = {0, 0.8, 4}, .target = {0, 0, 0}};
 const Viewpoint kFeatureNear{.eye = {0.2, 1.0, 0.6}, .target = {-0.12, -0.1, 0}};
 const Viewpoint kFeatureSlanted{.eye = {0, 1.5, 1.4}, .target = {0, 0, 0.05}};
 
-// A sky of soft coloured tiles over a dark chequered floor: whatever bends light bends lines.
+// A sky of soft coloured tiles over a dark chequered floor: refraction bends its lines.
 Panorama tiles() {
   constexpr float kPi = std::numbers::pi_v<float>;
   Panorama p{.name = "tiles", .width = 256, .height = 128, .rgb = {}};
@@ -58,7 +57,7 @@ void light_low(World& world) {
   world.registry.add<WorldTransform>(light, {m});
 }
 
-// The sheet of snapshot_of(stream), by the stream's own function, and what light_low's lamp reaches of it.
+// The sheet of snapshot_of(stream), by the stream's function, and the part of it that light_low's lamp reaches.
 struct StreamCheck {
   test::StreamAt stream;
   double height(double x, double z) const { return stream(vec3(x, 0, z), {0, 1, 0}).w; }
@@ -112,7 +111,7 @@ World clay_sheet() {
   return world;
 }
 
-// Draws `world` twice, with and without what `switch_off` takes away.
+// Draws `world` twice, with and without the feature that `switch_off` disables.
 template <class SwitchOff>
 void expect_option(const std::string& name, const World& world, const Snapshot& pressed, const Viewpoint& view,
                    SwitchOff switch_off) {
@@ -207,7 +206,7 @@ TEST(Shadow, FallsWhereARayToTheLampMeetsTheDentAndNowhereElse) {
   renderer->options().shadows = false;
   const Image without = renderer->picture(above, kFeatureWidth, kFeatureHeight);
 
-  // Along the middle row, where what is seen can be told from the same function that made the dent.
+  // Along the middle row, where the expected picture follows from the function of the dent.
   const double metre = kFeatureHeight / 2 / std::tan(0.5 * above.yfov);
   int dark = 0, bright = 0;
   for (double x = -0.95; x < 0.95; x += 0.01) {

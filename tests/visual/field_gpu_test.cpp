@@ -1,4 +1,4 @@
-// The compute shader against the processor's field, on scripted scenes with several probes.
+// The compute shader against the CPU's field, on scripted scenes with several probes.
 #include "systems/visual/field_gpu.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ TEST(FieldOnGpu, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
       EXPECT_LT(height, 1e-5 * largest) << int(law) << ' ' << int(shape);
       EXPECT_LT(angle, 0.1) << int(law) << ' ' << int(shape);
 
-      EXPECT_EQ(field.evaluate(*program, {}, stream), 0u);  // everything has come to rest: zeros once, then nothing
+      EXPECT_EQ(field.evaluate(*program, {}, stream), 0u);  // everything is at rest: zeros once, then no work
       for (const vec4& s : read_back<vec4>(stream, mesh.vertex_count)) ASSERT_EQ(s, vec4(0));
     }
   }

@@ -33,7 +33,7 @@ struct Twin {
   }
   const Mesh& mesh() const { return stage.mesh(surface); }
   std::uint32_t streamed = 0;  // zones of the last picture
-  // A picture: what has been told since the last one, and how far GPU and CPU are apart then.
+  // A frame: the changes since the last one, and the difference between GPU and CPU.
   bool picture(const ReplayProgram& program) {
     publish(stage.world,
             {static_cast<std::uint64_t>(std::lround(stage.time() / stage.dt())), stage.time(), stage.dt()});
@@ -109,7 +109,7 @@ TEST_P(FieldReplayTest, StepsWhatTheProcessorSteps) {
     return (0.1 - depth) * normalize(dvec3(std::sin(0.004 * i) + x, 1, 0.1 - 0.8 * x));
   };
   int next = 5, pictures = 0;
-  for (int i = 0; i < 400; ++i) {  // press, slide, one leaves and comes back, both leave
+  for (int i = 0; i < 400; ++i) {  // press, slide, one leaves and returns, both leave
     const double pressed = std::min(1.0, i / 60.0);
     stage.place(a, out(i > 330 ? -0.02 : 0.005 * pressed, i, 0));
     stage.place(b, out((i > 180 && i < 230) || i > 340 ? -0.02 : 0.004 * pressed, i, 0.25));
@@ -173,7 +173,7 @@ TEST(FieldReplay, AReaderThatComesLateIsGivenTheStreamsAndThenBegins) {
   stage.prepare();
   stage.move(a, {0, 0.095, 0}, 0.05);
   ASSERT_TRUE(twin.picture(*program));
-  twin.replay = FieldReplay(twin.mesh(), d, stage.dt());  // the window has come back with nothing
+  twin.replay = FieldReplay(twin.mesh(), d, stage.dt());  // the window is empty again
   twin.picture(*program);                                 // and finds it out
   stage.tick();
   EXPECT_FALSE(twin.picture(*program));

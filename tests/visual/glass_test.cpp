@@ -1,4 +1,4 @@
-// What is seen through things: textures of transmission and thickness, what stands behind glass, layers that blend.
+// Transparency: textures of transmission and thickness, objects behind glass, blended layers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ vec3 at(const Image& image, double x, double y) {
   return {p[0], p[1], p[2]};
 }
 
-// Before a bright wall, in a dark room: what transmits is bright.
+// In front of a bright wall, in a dark room: transmitting material is bright.
 World glass_ball() {
   World world = test::sphere(48);
   world.meshes[world.registry.get<Deformable>(test::object_of(world)).mesh].closed = true;
@@ -142,7 +142,7 @@ TEST(Glass, TheOutlineOfAProbeInFrontIsNotSeenThroughTheBody) {
   EXPECT_EQ(ghosts, 0);
 }
 
-// Two films before each other, made in this order and the other way round.
+// Two films one behind the other, created in this order and in reverse.
 TEST(Glass, WhatBlendsIsDrawnFromTheBackToTheFrontWhateverItsOrderInTheLevel) {
   NEEDS_A_CONTEXT();
   auto picture_of = [](bool far_first, const Viewpoint& view) {

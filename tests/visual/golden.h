@@ -1,5 +1,5 @@
-// Pictures that somebody has looked at (golden/). To make them anew: PLIANT_WRITE_GOLDEN=FOLDER test_visual
-// --gtest_filter='Feature.*:Skin.*', look, then copy.
+// Manually verified pictures (golden/). To renew them: PLIANT_WRITE_GOLDEN=FOLDER test_visual
+// --gtest_filter='Feature.*:Skin.*', check them, then copy.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace pliant::test {
 
 inline constexpr double kTolerance = 1.0;  // [of 255] see perceived_difference
 
-// The picture `on` against golden/NAME.png, and `off`, which lacks what the test is about, against both: it must fail.
+// Compares the picture `on` with golden/NAME.png. `off`, without the tested feature, must differ from both.
 void expect_golden(const std::string& name, const Image& on, const Image& off);
 
 }  // namespace pliant::test

@@ -1,4 +1,4 @@
-// What probes and forces look like from where people look: towards the surface, so that arrows point at the eye.
+// Probe and force markers from typical views: towards the surface, so that arrows point at the eye.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// What an animation carries is drawn, picked and shadowed where it is: the picture of a world that has moved there is
-// the picture of a world that stands there.
+// Animated objects are drawn, picked and shadowed at their current pose: the picture equals that of a static world in
+// this pose.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,7 +64,7 @@ TEST(Moving, ADentGoesWithTheSheetAndIsPickedThere) {
   const Pose turned{{0, 0, 0}, glm::angleAxis(0.5 * std::numbers::pi, dvec3(0, 1, 0))};
   snapshot.moved.push_back({sheet, turned.matrix()});
   renderer->update(snapshot);
-  // Straight down on the dent's middle, where it has gone.
+  // Straight down on the dent's current centre.
   const dvec3 there = turned.to_world(dvec3(center));
   const Viewpoint down{.eye = there + dvec3(0, 2, 0), .target = there, .up = {0, 0, -1}};
   renderer->pick({kMovingWidth / 2.0, kMovingHeight / 2.0, kMovingWidth, kMovingHeight});
@@ -76,7 +76,7 @@ TEST(Moving, ADentGoesWithTheSheetAndIsPickedThere) {
   EXPECT_LT(length(answer->seen->rest - there), 2e-3);
 }
 
-// A sheet, 1 m wide, that turns about the vertical once in two seconds; `touched`: it gives way.
+// A sheet, 1 m wide, that rotates about the vertical once in two seconds; `touched`: it is deformable.
 Level turning_sheet(bool touched) {
   Level level;
   level.meshes.push_back({"sheet", {scenes::sheet(8, 1.0)}});

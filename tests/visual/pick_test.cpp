@@ -1,4 +1,4 @@
-// What stands at a pixel, against geometry: the analytic dent, and rays cast at the displaced triangles one by one.
+// Picking, against geometry: the analytic dent, and rays cast at the displaced triangles one by one.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,8 +41,8 @@ std::optional<Picked> pick(Renderer& renderer, const Viewpoint& view, double x, 
   return answer ? answer->seen : std::nullopt;
 }
 
-// The nearest triangle of the mesh, given way by the stream, that the ray meets (Moller and Trumbore, 1997): the slow
-// twin of the picking pass.
+// The nearest triangle hit by the ray in the mesh displaced by the stream (Moller and Trumbore, 1997): the slow
+// reference of the picking pass.
 std::optional<dvec3> cast(const Ray& ray, const World& world, const ObjectSnapshot& object) {
   const Mesh& mesh = test::mesh_of(world);
   auto moved = [&](std::uint32_t v) {
@@ -82,7 +82,7 @@ TEST(Picking, OnADentedPlateIsTheDentedSurfaceUnderThePixelAndItsPlaceAtRest) {
       ++seen;
       EXPECT_EQ(picked->object, test::object_of(world));
       EXPECT_LT(length(picked->point - *twin), 2e-5) << x << ' ' << y;
-      // A facet of edge e = 1/48 m lies off the curve by at most f'' e^2 / 8 each way, f'' = 16 depth / reach^2.
+      // A facet of edge e = 1/48 m is off the curve by at most f'' e^2 / 8 each way, f'' = 16 depth / reach^2.
       const vec4 s = stream(vec3(picked->rest), {0, 1, 0});
       EXPECT_NEAR(picked->point.y, s.w, 2 * 16 * kDepth / (kReach * kReach) / (48.0 * 48.0) / 8) << x << ' ' << y;
       EXPECT_LT(length(dvec2(picked->point.x - picked->rest.x, picked->point.z - picked->rest.z)), 1e-6);

@@ -1,4 +1,4 @@
-// Whole pictures, against what geometry says must be where.
+// Whole pictures, against positions computed from geometry.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using test::snapshot_of;
 
 constexpr int kWidth = 160, kHeight = 120;
 
-// Where a world point is seen, in pixels from the top left.
+// The projection of a world point, in pixels from the top left.
 vec2 pixel_of(const Viewpoint& view, const World& world, vec3 point) {
   const mat4 projection = projection_of(view, drawn_box(world, false), static_cast<float>(kWidth) / kHeight);
   const vec4 clip = projection * view_of(view) * vec4(point, 1);
@@ -254,7 +254,7 @@ TEST(Picture, LeavingOutTheBackOfAClosedBodyChangesNothing) {
   Mesh& mesh = world.meshes[world.registry.get<Deformable>(test::object_of(world)).mesh];
   mesh.closed = true;
   EXPECT_LE(differing_pixels(both, renderer_for(world)->picture(kFront, kWidth, kHeight)), 4);
-  for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);  // inside out: its back is all there is to see
+  for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);  // inside out: only its back is visible
   EXPECT_EQ(differing_pixels(both, renderer_for(world)->picture(kFront, kWidth, kHeight)), 0);
 }
 

@@ -58,7 +58,7 @@ TEST(Pictures, SeesTheDentAndOutlivesNeitherARestartNorItsSession) {
     std::vector<vec3> vertices;
     if (i % 50 == 0) ASSERT_TRUE(session->vertices("tissue", vertices)) << "what others look at is not lost to it";
   }
-  ASSERT_TRUE(session->move("finger", {0, 0.03, 0}));  // out of the way: only the dent is left to see
+  ASSERT_TRUE(session->move("finger", {0, 0.03, 0}));  // out of the way: only the dent is visible
   ASSERT_TRUE(session->step());
   const auto dented = pictures->picture(above, 160, 90);
   ASSERT_TRUE(dented);

@@ -1,4 +1,4 @@
-// What a buffer on the GPU holds.
+// Reads back a GPU buffer.
 #pragma once
 
 #include <vector>

@@ -27,7 +27,7 @@ Entity add_probe(World& world, dvec3 position, double radius = 0.0);
 // A cube of soft matter, 1 m wide, standing on y = 0 with its middle over the origin, of n x n squares a face; inside,
 // 2 x 2 x 2 cells of six tetrahedra.
 World soft_block(std::uint32_t n);
-// Where its skin and its nodes are when every point p of it has gone to `where(p)`.
+// Its collision mesh and nodes after every point p has moved to `where(p)`.
 using Where = std::function<vec3(vec3 rest)>;
 SoftSnapshot soft_snapshot_of(const World& world, const Where& where);
 

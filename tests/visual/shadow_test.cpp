@@ -1,4 +1,4 @@
-// When the shadow map is drawn, and what stands in it besides surfaces.
+// When the shadow map is drawn, and its content besides surfaces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -72,7 +72,7 @@ TEST(ShadowPass, APictureWithoutItIsTheSame) {
 TEST(ShadowPass, AProbeCastsItsShadowWhereTheLampSaysAndNowhereElse) {
   NEEDS_A_CONTEXT();
   World world = lit_sheet();
-  constexpr double kUp = 0.3;  // [m] so much to the right of itself its shadow lies
+  constexpr double kUp = 0.3;  // [m] offset of its shadow to the right
   test::add_probe(world, {-0.2, kUp, 0}, 0.08);
   const std::unique_ptr<Renderer> renderer = renderer_for(world);
   ASSERT_TRUE(renderer);

@@ -1,4 +1,4 @@
-// Soft and rigid bodies that move: their skin as the soft clock says, in every pass.
+// Moving soft and rigid bodies: their drawn surface follows the soft clock, in every pass.
 #include "systems/visual/skin.h"
 
 #include <gtest/gtest.h>
@@ -143,7 +143,7 @@ TEST(Skin, ItsShadowGoesWhereItGoes) {
                row = static_cast<int>(kSkinHeight / 2 + metre * z);
     return int{image.rgba[4 * static_cast<std::size_t>(row * kSkinWidth + column)]};
   };
-  // The lamp stands at (-1, 0.9, 0.3): a point at height y throws its shadow (y / 0.9) (1, -0.3) further.
+  // The lamp is at (-1, 0.9, 0.3): a point at height y throws its shadow (y / 0.9) (1, -0.3) further.
   renderer->update(soft_snapshot_of(world, [](vec3 p) { return p; }));
   const Image low = renderer->picture(above, kSkinWidth, kSkinHeight);
   renderer->update(soft_snapshot_of(world, [](vec3 p) { return p * vec3(1, 0.3f, 1); }));
@@ -179,7 +179,7 @@ TEST(Skin, SixteenBytesAVertexTravelAndNoneWhileItStandsStill) {
   renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight, &stats);
   const std::uint64_t constants = stats.upload_bytes;
   renderer->update(soft_snapshot_of(world, squeezed));
-  renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight, &stats);  // and the placement, which now says that it rides
+  renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight, &stats);  // and the placement, which now follows the body
   EXPECT_EQ(stats.upload_bytes - constants, 16u * 6 * 17 * 17 + 144u);
   renderer->update(soft_snapshot_of(world, squeezed));
   renderer->picture(kSkinSlanted, kSkinWidth, kSkinHeight, &stats);

@@ -1,4 +1,4 @@
-// What can be shown of soft bodies for looking closer: tetrahedra, contacts, handles.
+// Debug overlays of soft bodies: tetrahedra, contacts, handles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ vec3 leaning(vec3 p) {
   return p + vec3(0.4f * p.y * p.y, 0, 0);
 }
 
-// Pixels in which `wanted` colour leads the other two by some way.
+// Pixels in which `wanted` colour clearly exceeds the other two.
 int leading(const Image& image, int wanted, const Image& before) {
   int count = 0;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
@@ -84,7 +84,7 @@ TEST(SoftOverlay, MoreContactsThanThereIsRoomForAreCutShort) {
   SoftSnapshot snapshot;
   snapshot.contacts.assign(3 * kMaxShownContacts, {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}, false});
   snapshot.contact_count = 5 * kMaxShownContacts;
-  snapshot.handles.resize(9);  // of tools that this level does not have
+  snapshot.handles.resize(9);  // of tools that are not in this level
   renderer->update(snapshot);
   FrameStats stats;
   renderer->picture(kSlanted, kOverlayWidth, kOverlayHeight, &stats);

@@ -1,4 +1,4 @@
-// Where pictures are taken from, what lights them, and where they go: all without a gpu.
+// Views, lights and output paths of pictures: all without a GPU.
 #include "systems/visual/viewpoint.h"
 
 #include <gtest/gtest.h>

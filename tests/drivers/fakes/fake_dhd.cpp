@@ -1,4 +1,4 @@
-// A stand-in for Force Dimension's libdhd: an omega whose every call is checked. Misuse aborts, as no test can miss.
+// A fake of Force Dimension's libdhd: an omega that checks every call. Misuse aborts, so that a test cannot miss it.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -61,7 +61,7 @@ int dhdGetPosition(double* x, double* y, double* z, char id) {
   ++fake.exchanges;
   return 1;  // the guard of time: no new value, and no error
 }
-// Turned by 90 degrees about its vertical: x goes to y.
+// Rotated by 90 degrees about its vertical: x goes to y.
 #ifndef SHORT
 int dhdGetOrientationFrame(double frame[3][3], char id) {
   const DeviceCall call(id);
@@ -117,7 +117,7 @@ int dhdGetSystemType(char id) {
   return fake.type;
 }
 
-// What nobody may do to a limit of the maker.
+// Calls that would change the vendor's limits are forbidden.
 int dhdEnableExpertMode() {
   std::abort();
 }

@@ -1,5 +1,5 @@
-// A stand-in for 3D Systems' libHD: one device and its scheduler, a thread of 1 kHz. Misuse aborts, as no test can
-// miss.
+// A fake of 3D Systems' libHD: one device and its scheduler, a thread of 1 kHz. Misuse aborts, so that a test cannot
+// miss it.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -146,7 +146,7 @@ void hdStartScheduler() {
   fake.running = true;
   std::atomic<bool> begun{false};
   scheduler = std::thread([&begun] {
-    while (!begun) std::this_thread::yield();  // until `scheduler` says who we are
+    while (!begun) std::this_thread::yield();  // until `scheduler` has its thread id
     while (!stopping) {
       {
         const std::lock_guard lock(mutex);

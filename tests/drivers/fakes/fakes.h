@@ -1,5 +1,5 @@
-// What tests see of the fake libraries of makers, and set there. Each library exports one of these under the name of
-// its function fake_dhd or fake_hd.
+// Interface between tests and the fake vendor libraries. Each library exports one of these through its function
+// fake_dhd or fake_hd.
 #pragma once
 
 #include <atomic>
