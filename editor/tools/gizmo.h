@@ -39,7 +39,7 @@ class GizmoTool : public ViewTool {
   virtual void more_options(Editor&) {}
 
   Settings& settings_;
-  GizmoGrip grip_;                          // during a drag: the initial state
+  GizmoGrip grip_;                     // during a drag: the initial state
   GizmoPart part_ = GizmoPart::kNone;  // the dragged part
   dvec2 from_{0}, last_{0};            // [pixel] start of the drag, and the mouse in the last frame
 

@@ -67,7 +67,8 @@ std::optional<dvec3> moved_by(const GizmoPicture& picture, const GizmoGrip& grip
 // Rotation about `axis` between two pixels [rad]; add small ones for a large rotation.
 double turned_by(const GizmoPicture& picture, dvec3 pivot, dvec3 axis, dvec2 from, dvec2 to, double radius_pixels);
 // Factors along the grip's axes between two pixels.
-std::optional<dvec3> scaled_by(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, dvec2 from, dvec2 to);
+std::optional<dvec3> scaled_by(const GizmoPicture& picture, const GizmoGrip& grip, GizmoPart part, dvec2 from,
+                               dvec2 to);
 
 // The resulting transforms.
 std::vector<Placing> moved(const GizmoGrip& grip, dvec3 by);                   // `by` [m] world

@@ -8,8 +8,8 @@
 #include "content/files/file_io.h"
 #include "content/keys/extension_table.h"
 #include "content/level_file.h"
-#include "engine/run/sources.h"
 #include "engine/run/scene_hash.h"
+#include "engine/run/sources.h"
 #include "pliant/content.h"
 #include "runtime/hash.h"
 

@@ -13,9 +13,9 @@
 #include "engine/run/journal.h"
 #include "engine/run/pose_recorder.h"
 #include "lab/console/interrupt.h"
+#include "player/record/approach.h"
 #include "player/record/body_keeper.h"
 #include "player/record/trace.h"
-#include "player/record/approach.h"
 
 namespace pliant {
 

@@ -18,8 +18,8 @@ TEST_F(Samples, TheOrganIsInspectedTouchedAndMadeALevel) {
   const Said seen = pliant({"inspect", sample("organ.obj")});
   ASSERT_EQ(seen.status, 0) << seen.err;
   EXPECT_THAT(seen.out, HasSubstr("can be touched as it is"));
-  const Said run = pliant({"run", sample("organ.obj"), "--probe", "finger=orbit", "--seconds", "1", "--frames", "0",
-                           "--out", "out"});
+  const Said run = pliant(
+      {"run", sample("organ.obj"), "--probe", "finger=orbit", "--seconds", "1", "--frames", "0", "--out", "out"});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_GT(report("out")["probes"][0]["contact_ticks"], 0);
   const Said made = pliant({"convert", sample("organ.obj"), "organ.glb"});
@@ -35,8 +35,8 @@ TEST_F(Samples, ABareMeshShowsTheCandidatesOfAUsualBudget) {
 
 // 6 kPa, Poisson's ratio 0.49, a sphere of 3 mm: F = 4/3 E / (1 - nu^2) sqrt(R) d^(3/2) (Hertz 1881), noise of 0.2 mN.
 TEST_F(Samples, TheIndentersModulusIsFound) {
-  const Said fit = pliant({"fit", sample("indenter.csv"), "--law", "hertz", "--radius", "0.003", "--poisson", "0.49",
-                           "--report", "fit"});
+  const Said fit = pliant(
+      {"fit", sample("indenter.csv"), "--law", "hertz", "--radius", "0.003", "--poisson", "0.49", "--report", "fit"});
   ASSERT_EQ(fit.status, 0) << fit.err;
   const std::size_t at = fit.out.find("young = ");
   ASSERT_NE(at, std::string::npos) << fit.out;

@@ -30,8 +30,8 @@ void ToolBody::set_device(const Pose& pose, const Vector6& velocity) {
   device_ = device;
 }
 
-// Force that supports the whole tool in its rest shape. Without it, a hand that lifts the weight and lowers it elsewhere
-// would get back work that it never put into a surface, which a passive device must not give.
+// Force that supports the whole tool in its rest shape. Without it, a hand that lifts the weight and lowers it
+// elsewhere would get back work that it never put into a surface, which a passive device must not give.
 Vector6 ToolBody::support(dvec3 gravity) const {
   if (!(device_ || led_) || !settings_.carried) return Vector6::Zero();
   const dvec3 force = -mass_ * gravity;
