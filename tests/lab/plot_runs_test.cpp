@@ -9,6 +9,7 @@
 #include "lab/sweep/plot_scale.h"
 #include "player/record/plot.h"
 #include "plot/panel.h"
+#include "plot/ticks.h"
 #include "tests/player/command.h"
 
 namespace pliant {

@@ -22,6 +22,7 @@
 #include "player/run/tool_words.h"
 #include "player/verbs/panorama_preview.h"
 #include "plot/pen.h"
+#include "plot/ticks.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/soft/soft_state.h"
