@@ -247,7 +247,8 @@ void Guard::decide(const GuardWish& wish, const GuardOrders& orders, double now)
   if (state() != DeviceState::kArmed || !finite(wish.wrench) || (warnings_ & kDeviceBatteryLow)) return;
   if (parameters_.dead_man != 0) {
     if (held) to(DeviceState::kActive, DeviceCause::kDeadManHeld, now);
-  } else if (length(wish.wrench.force - wish.weight) < kEngageForce && length(wish.wrench.torque) < kGateTorque) {
+  } else if (!wish.easing && length(wish.wrench.force - wish.weight) < kEngageForce &&
+             length(wish.wrench.torque) < kGateTorque) {
     to(DeviceState::kActive, DeviceCause::kSmallForce, now);
   }
   if (state() == DeviceState::kActive) changed_at_ = now;

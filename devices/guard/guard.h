@@ -59,6 +59,7 @@ struct GuardWish {
   dvec3 velocity{0};                                // [m/s] DeviceModel::carried
   double stiffness = 0.0, turning_stiffness = 0.0;  // [N/m], [N m/rad] of the model along the wrench; 0: unknown
   double max_force = 0.0, max_torque = 0.0;
+  bool easing = false;  // DeviceModel::easing
 };
 
 // [N/m] The largest stiffness that is passive for any hand at this damping, rate and latency (Colgate and Schenkel

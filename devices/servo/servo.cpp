@@ -180,6 +180,7 @@ GuardWish Servo::wish(double now) {
   wish.turning_stiffness = stiffness_along(model.torque_by_turn, wish.wrench.torque);
   wish.max_force = model.max_force;
   wish.max_torque = model.max_torque;
+  wish.easing = model.easing;
   figures_.oldest_model = std::max(figures_.oldest_model, 1e6 * wish.age);
   if (wish.age > kLateModel) ++figures_.late_models;
   return wish;

@@ -34,7 +34,7 @@ PoseRecorder::PoseRecorder(RecordingWriter writer, std::size_t effectors)
 void PoseRecorder::note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready, bool felt) {
   RecordedPose& last = last_[effector];
   const bool sound = plausible_position(device.position) && plausible_rotation(device.rotation);
-  if (sound) last = {device.position, device.rotation / glm::length(device.rotation), ready};
+  if (sound) last = {device.position, device.rotation, ready};
   last.ready = sound && ready;
   last.felt = felt;
   rows_.record({tick, effector, last});

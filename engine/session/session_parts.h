@@ -17,8 +17,8 @@
 #include "content/level/level.h"
 #include "engine/run/driver_link.h"
 #include "engine/run/pose_recorder.h"
+#include "engine/run/pose_replay.h"
 #include "engine/run/recording.h"
-#include "engine/run/replay.h"
 #include "engine/run/runner.h"
 #include "engine/session/object_shape.h"
 #include "engine/session/session_history.h"
@@ -123,7 +123,7 @@ struct Session::Parts {
   std::shared_ptr<int> run;                             // lifetime token of this world for its observers
   std::unique_ptr<PoseRecorder> recorder;               // null: not recording
   std::optional<Recording> replayed;
-  std::optional<Replay> replay;                 // of `replayed`
+  std::optional<PoseReplay> replay;             // of `replayed`
   std::map<std::string, std::string> settings;  // NODE.EXT.KEY -> value: changed by set()
   bool after_pause = false;                     // touch clock's: the next tick is the first after a pause
   Tick last;                                    // touch clock's: the current tick, or the last

@@ -62,6 +62,7 @@ struct DeviceModel {
   dvec3 weight{0};                // [N] part of the force that may do work: weight of a tool that is not carried
   double max_force = 0.0;         // [N] the level's limit, which also limits the model's force; 0: none
   double max_torque = 0.0;        // [N m] the same
+  bool easing = false;            // the force fades in after a stall: small or not, no gate opens on it
 };
 
 // The trigger of the next sample.

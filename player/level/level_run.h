@@ -10,7 +10,7 @@
 #include "engine/run/body_journal.h"
 #include "engine/run/device_links.h"
 #include "engine/run/journal.h"
-#include "engine/run/replay.h"
+#include "engine/run/pose_replay.h"
 #include "engine/run/runner.h"
 #include "lab/console/interrupt.h"
 #include "lab/files/output_folder.h"
@@ -74,7 +74,7 @@ class LevelRun {
   std::optional<Keeper> keeper_;
   PoseRecorder* recorder_ = nullptr;  // the keeper's; null: not recording
   std::unique_ptr<Frames> frames_;
-  std::optional<Replay> replay_;
+  std::optional<PoseReplay> replay_;
   std::optional<Runner> runner_;
   std::vector<std::uint64_t> frame_ticks_;
   Ran ran_;

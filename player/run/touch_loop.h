@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/run/journal.h"
-#include "engine/run/replay.h"
+#include "engine/run/pose_replay.h"
 #include "engine/run/runner.h"
 #include "lab/console/interrupt.h"
 #include "lab/files/output_folder.h"
@@ -26,7 +26,7 @@ struct TouchLoop {
   std::uint64_t ticks = 0;                 // number to run
   Frames* frames = nullptr;                // null: no pictures
   std::vector<std::uint64_t> frame_ticks;  // ticks after which a picture is taken, ascending
-  Replay* replay = nullptr;                // poses for every tick, lockstep only
+  PoseReplay* replay = nullptr;            // poses for every tick, lockstep only
 };
 
 Status run_lockstep(TouchLoop& loop);

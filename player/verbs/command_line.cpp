@@ -86,7 +86,7 @@ Status check_arguments(const std::vector<std::string>& arguments) {
   app.require_subcommand(1);
   int ignored = kDone;
   for (const AddVerb add : kVerbs) add(app, ignored);
-  for (CLI::App* const verb : app.get_subcommands([](const CLI::App*) { return true; })) verb->callback({});
+  app.parse_complete_callback([] { throw CLI::Success(); });             // before any verb does its work
   const double factor = limit_factor();                                  // --limits would take effect at once
   std::vector<std::string> words(arguments.rbegin(), arguments.rend());  // CLI11 expects reverse order
   std::optional<Error> wrong;

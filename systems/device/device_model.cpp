@@ -121,6 +121,7 @@ DeviceModel device_model(const World& world, Entity effector, Entity entity, Tic
     model.max_torque = torque_limits(device, settings_of(world, *tool)).force;
   }
   if (!pushing) return model;
+  model.easing = pushing->eased < 1.0 || (turning && turning->eased < 1.0);
   for (dmat3* slope : {&slopes.stiffness, &slopes.damping, &slopes.lever_stiffness, &slopes.turning_stiffness,
                        &slopes.turning_damping})
     *slope *= pushing->share;

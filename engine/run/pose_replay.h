@@ -10,11 +10,11 @@
 
 namespace pliant {
 
-class Replay {
+class PoseReplay {
  public:
   // A prepared world with the hands (hands(world)) of the recording, in that order. Both must outlive it. The devices'
   // previous sources no longer move them.
-  Replay(World& world, const Recording& recording);
+  PoseReplay(World& world, const Recording& recording);
 
   std::size_t size() const { return recording_->ticks.size(); }  // [ticks]
   // Starts tick `n` of the recording, below size(), including the ticks that its run missed before it, and sets its

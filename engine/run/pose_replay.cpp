@@ -1,4 +1,4 @@
-#include "engine/run/replay.h"
+#include "engine/run/pose_replay.h"
 
 #include "systems/device/hands.h"
 #include "systems/device/softening.h"
@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-Replay::Replay(World& world, const Recording& recording)
+PoseReplay::PoseReplay(World& world, const Recording& recording)
     : world_(&world), recording_(&recording), hands_(hands(world)) {
   for (const Entity hand : hands_) {
     devices_.push_back(find_device(world, hand) ? device_of(world, hand) : kNoEntity);
@@ -17,7 +17,7 @@ Replay::Replay(World& world, const Recording& recording)
   }
 }
 
-Tick Replay::begin_tick(std::size_t n) {
+Tick PoseReplay::begin_tick(std::size_t n) {
   const double dt = 1.0 / world_->simulation.touch_rate;
   const std::uint64_t index = recording_->ticks[n], next = n > 0 ? recording_->ticks[n - 1] + 1 : index;
   const Tick tick{index, dt, static_cast<double>(index) * dt,
@@ -35,7 +35,7 @@ Tick Replay::begin_tick(std::size_t n) {
   return tick;
 }
 
-void Replay::end_tick() {
+void PoseReplay::end_tick() {
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     const SafetyState* const safety = safety_of(*world_, hands_[i]);
     if (devices_[i] == kNoEntity || !safety || safety->felt) continue;
