@@ -63,6 +63,18 @@ TEST(Guard, ADeviceArmsItselfOnceSamplesAreFreshAndForceLeavesOnlyBehindTheGateA
   EXPECT_NEAR(last, 1.0, 1e-9);
 }
 
+// After a stall the touch tick's force fades in from zero: small, although a hand presses.
+TEST(Guard, ASmallForceThatFadesInOpensNoGate) {
+  Bench bench;
+  bench.wish.wrench.force = {0, 0.1, 0};
+  bench.wish.easing = true;
+  bench.run(300);
+  EXPECT_EQ(bench.guard.state(), DeviceState::kArmed);
+  bench.wish.easing = false;
+  bench.step();
+  EXPECT_EQ(bench.guard.state(), DeviceState::kActive);
+}
+
 TEST(Guard, ADeviceThatIsArmedByHandDoesNotArmItself) {
   Bench bench({.arming = Arming::kByHand});
   bench.run(1000);
