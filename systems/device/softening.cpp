@@ -16,9 +16,15 @@ double at_least_largest(const dmat3& m) {
   return most;
 }
 
-}  // namespace
+// The larger of the law's slope at this depth and its force over the depth: of a softening law the slope alone would
+// say that the hand had gone far for its force, and credit energy that it never gave.
+double steepest(const Contact& contact) {
+  const double depth = -contact.height - contact.unpushed;
+  return depth > 0.0 ? std::max(contact.stiffness, contact.normal_force / depth) : contact.stiffness;
+}
 
-double felt_stiffness(const World& world, Entity effector) {
+template <class Stiffness>
+double stiffness_of(const World& world, Entity effector, const Stiffness& of) {
   double stiffness = 0.0;
   if (const ToolTouchState* const tool = find_tool(world, effector); tool && tool->placed && tool->sensing)
     stiffness += settings_of(world, *tool).translation[0];
@@ -26,9 +32,15 @@ double felt_stiffness(const World& world, Entity effector) {
   dmat3 sum(0.0);
   for_contacts_of(world, effector, [&](const Contact& contact) {
     if (contact.state == ContactState::kTouching)
-      sum += contact.stiffness * glm::outerProduct(contact.gradient, contact.gradient);
+      sum += of(contact) * glm::outerProduct(contact.gradient, contact.gradient);
   });
   return stiffness + at_least_largest(sum);
+}
+
+}  // namespace
+
+double felt_stiffness(const World& world, Entity effector) {
+  return stiffness_of(world, effector, [](const Contact& contact) { return contact.stiffness; });
 }
 
 double soften(const World& world, Entity effector, const HapticDevice& device, SafetyState& state) {
@@ -38,7 +50,7 @@ double soften(const World& world, Entity effector, const HapticDevice& device, S
   else if (felt * state.share > most)
     state.share = most / felt;
   state.least_share = std::min(state.least_share, state.share);
-  return felt * state.share;
+  return stiffness_of(world, effector, steepest) * device.workspace * state.share;
 }
 
 SafetyState* safety_of(World& world, Entity hand) {

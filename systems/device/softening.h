@@ -16,8 +16,8 @@ namespace pliant {
 // contacts along their normals; bristles are left out, since friction bounds their force. Tool: its coupling.
 double felt_stiffness(const World& world, Entity effector);
 
-// Writes state.share for this tick. Before the force goes into the safety layer. [N/m] of the hand's metres: how
-// steeply the share grows, at most (SafetyLimits::touched).
+// Writes state.share for this tick. Before the force goes into the safety layer. Returns
+// SafetyLimits::touched [N/m], per metre of the hand.
 double soften(const World& world, Entity effector, const HapticDevice& device, SafetyState& state);
 
 // SafetyState of the force of a prepared probe or tool; null for others.

@@ -110,10 +110,16 @@ double limit_now(SafetyState& state, const SafetyLimits& limits, double dt) {
 
 // [J] What the hand would have given to a spring of the stiffness that is touched from `before` [N] to `most`, where
 // `whole` is wanted. It has gone that way against less; without it a force that is let in would owe the account.
-double given_beyond(const SafetyLimits& limits, double before, double most, double whole) {
+double given_beyond(double touched, double before, double most, double whole) {
   const double force = std::min(most, whole);
-  if (!(limits.touched > 0.0) || !(force > before)) return 0.0;
-  return (force - before) * (whole - 0.5 * (before + force)) / limits.touched;
+  if (!(touched > 0.0) || !(force > before)) return 0.0;
+  return (force - before) * (whole - 0.5 * (before + force)) / touched;
+}
+
+// Energy that the hand can no longer get back, since its force was taken away: the reverse of given_beyond(), or the
+// same contact would be credited again whenever the force comes back. Never more than the account holds.
+void forfeit(SafetyState& state, double energy) {
+  state.work += std::min(energy, std::max(0.0, -state.work));
 }
 
 // Of a level's limit and a driver's, where 0 is: not said.
@@ -246,8 +252,9 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
     if (state.engaged) {
       force = clamp_norm(felt, most_now);
       weight = clamp_norm((1.0 - state.hidden) * limits.weight, most_now);
-      if (gated || most_now > before)
-        state.work -= given_beyond(limits, before, most_now, length(felt - (1.0 - state.hidden) * limits.weight));
+      const double whole = length(felt - (1.0 - state.hidden) * limits.weight);
+      state.work -= given_beyond(limits.touched, before, most_now, whole);
+      forfeit(state, given_beyond(limits.touched, most_now, before, whole));
       state.hidden = std::max(0.0, state.hidden - dt / kWeightTime);
       if (length(felt) > most_now * (1 + 1e-9)) state.tally.add(SafetyLimit::kClipped, 1.0 - most_now / length(felt));
     } else {
@@ -286,11 +293,15 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
     state.position = at;
     state.sensed_at = device.sensed_at;
     state.placed = true;
+    state.touched = limits.touched;
     state.force = result.force;
     state.weight = weight;
     return result;
   }
-  // Unknown state: zero force at once, and the gate must be passed again. The work account is kept.
+  // Unknown state: zero force at once, and the gate must be passed again. The work account is kept, but for what is
+  // stored in the contact.
+  const double sent = length(state.force - state.weight);
+  forfeit(state, given_beyond(state.touched, 0.0, sent, sent));
   state.engaged = false;
   state.placed = false;
   state.eased = 1.0;

@@ -106,6 +106,7 @@ struct SafetyState {
   dvec3 wanted{0};           // [N] last tick's beside the weight, clamped to the device's limit
   double most = 0.0;         // [N] last tick's limit; 0: there was none
   double kept_back = 0.0;    // [N] of it, while the account is spent
+  double touched = 0.0;      // [N/m] last tick's SafetyLimits::touched
   double work = 0.0;         // [J] done on the hand so far beside the weight: sum of (f0 + f1)/2 . dx
   double stored = 0.0;       // [J] the largest that -work has been
   bool ticked = false;       // `ticked_at` means something
@@ -138,7 +139,7 @@ struct SafetyLimits {
   double scale = 1.0;             // [1] world metres per metre of the hand
   double own_rise = 0.0;          // [N] change of the program's own part in this tick: no answer to displacement
   double ease = kEase;            // [s] in which it comes back after a stall
-  double touched = 0.0;           // [N/m] of the hand's metres: how stiff what is felt is at most; 0: not known
+  double touched = 0.0;           // [N/m] per metre of the hand: slope and secant of the law at most; 0: unknown
   double spring = kUsualSpring;   // [N/m] of a spent account where `touched` is not known
 };
 

@@ -6,6 +6,9 @@
 #include <functional>
 
 #include "scenes/exact_hand.h"
+#include "scenes/scenes.h"
+#include "scenes/touch_laws.h"
+#include "systems/device/softening.h"
 #include "systems/safety/safety.h"
 
 namespace pliant {
@@ -168,6 +171,58 @@ TEST(SmoothSafety, ASpentAccountIsFeltAsASmallerForceNotAsASwitchedOne) {
     press.go(0.3, goal, kAir);
     EXPECT_LT(press.hand.work, 1.2 * press.sampled + 1e-4) << who;
   });
+}
+
+// A softening law is nearly flat where it is pressed deep: its slope there says little of the energy that the hand
+// gave.
+TEST(SmoothSafety, ARaisedLimitCreditsNoMoreThanTheHandGaveToASofteningLaw) {
+  for (const double softening : {-300.0, -1000.0, -2000.0})
+    for (const double depth : {0.001, 0.004}) {
+      scenes::Stage stage;
+      Deformable surface = frictionless(SpringLaw::kExponential);
+      surface.stiffening = softening;
+      stage.add(scenes::sheet(20, 0.2), surface);
+      const Entity probe = stage.add_probe({0, 0.002, 0});
+      stage.prepare();
+      stage.device(probe).max_force = 0.05;
+      stage.move(probe, {0, -depth, 0}, 0.1);
+      stage.device(probe).max_force = 10.0;
+      stage.wait(0.5);
+      const double alpha = surface.stiffening,
+                   energy = surface.stiffness / alpha * (std::expm1(alpha * depth) / alpha - depth);  // integral of F
+      const SafetyState& state = *safety_of(stage.world, probe);
+      EXPECT_NEAR(stage.read(probe).force.y, law(surface, depth), 1e-6) << softening << ' ' << depth;
+      EXPECT_LE(state.stored, energy * (1 + 1e-3)) << softening << ' ' << depth;
+      EXPECT_GT(state.stored, 0.2 * energy) << softening << ' ' << depth;
+    }
+}
+
+// The hand rests in a surface, while its device is lost and found again, or its limit goes down and up.
+TEST(SmoothSafety, AForceThatIsTakenAwayAndComesBackIsCreditedOnce) {
+  for (const bool lost : {true, false}) {
+    scenes::Stage stage;
+    const Deformable surface = frictionless();
+    stage.add(scenes::sheet(20, 0.2), surface);
+    const Entity probe = stage.add_probe({0, 0.002, 0});
+    stage.prepare();
+    const double depth = 0.15 / surface.stiffness;  // below the gate's force
+    stage.move(probe, {0, -depth, 0}, 0.1);
+    for (int i = 0; i < 50; ++i) {
+      HapticDevice& device = stage.device(probe);
+      if (lost)
+        device.status = DeviceStatus::kLost;
+      else
+        device.max_force = 0.01;
+      stage.tick();
+      stage.device(probe).status = DeviceStatus::kReady;
+      stage.device(probe).max_force = 10.0;
+      stage.wait(0.25);
+    }
+    EXPECT_NEAR(stage.read(probe).force.y, 0.15, 1e-6) << lost;
+    const SafetyState& state = *safety_of(stage.world, probe);
+    EXPECT_LE(state.stored, 0.5 * 0.15 * depth * (1 + 1e-3)) << lost;
+    EXPECT_GT(-state.work, 0.4 * 0.15 * depth) << lost << ": it can be given back";
+  }
 }
 
 }  // namespace
