@@ -12,7 +12,7 @@
 #include "bench/measure.h"
 #include "runtime/clock.h"
 #include "scenes/scenes.h"
-#include "systems/touch/field_kernels.h"
+#include "systems/touch/model/field_kernels.h"
 #include "systems/visual/field_gpu.h"
 #include "systems/visual/gpu/context.h"
 

@@ -9,12 +9,12 @@
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "scenes/scenes.h"
-#include "systems/touch/amplitude.h"
-#include "systems/touch/box_tree.h"
-#include "systems/touch/field_kernels.h"
-#include "systems/touch/prepare.h"
-#include "systems/touch/surface_query.h"
-#include "systems/touch/triangle_tree.h"
+#include "systems/touch/collide/box_tree.h"
+#include "systems/touch/collide/surface_query.h"
+#include "systems/touch/collide/triangle_tree.h"
+#include "systems/touch/model/amplitude.h"
+#include "systems/touch/model/field_kernels.h"
+#include "systems/touch/prepare/prepare.h"
 
 namespace pliant {
 namespace {

@@ -26,7 +26,7 @@
 #include "systems/soft/prepare_soft.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/prepare.h"
+#include "systems/touch/prepare/prepare.h"
 
 namespace pliant {
 namespace {

@@ -15,9 +15,9 @@
 #include "content/mesh/mesh_build.h"
 #include "runtime/clock.h"
 #include "scenes/scenes.h"
-#include "systems/touch/field_kernels.h"
-#include "systems/touch/prepare.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/model/field_kernels.h"
+#include "systems/touch/prepare/prepare.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

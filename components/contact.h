@@ -18,7 +18,7 @@ enum class ContactState : std::uint8_t {
 };
 
 struct Contact {
-  Entity probe;                   // has a Probe; kNoEntity: unused, or tissue presses here (systems/touch/press.h)
+  Entity probe;                   // has a Probe; kNoEntity: unused, or tissue presses here (systems/touch/feed/press.h)
   std::uint8_t tip = 0;           // index into ProbeState::tips
   Entity object;                  // has a Deformable
   std::uint32_t object_slot = 0;  // index into TouchState::objects

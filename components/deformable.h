@@ -50,7 +50,7 @@ struct DentSize {
 DentSize dent_size(const DeformableParameters& deformable);
 
 // Whether a released dent has a closed form in time. If so, the GPU evaluates a list of sources
-// (systems/touch/field.h); else it takes every step (components/field_feed.h).
+// (systems/touch/model/field.h); else it takes every step (components/field_feed.h).
 bool has_closed_form(const Deformable& deformable, const Mesh& mesh);
 
 // Whether the GPU implements its law and its shape. Registered laws and shapes are functions of the program

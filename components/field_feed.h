@@ -36,7 +36,7 @@ struct FieldEvent {
   FieldSource source;
 };
 
-// Distance::kSurface: offsets of a zone's vertices from a source (systems/touch/surface_distance.h). [m]
+// Distance::kSurface: offsets of a zone's vertices from a source (systems/touch/collide/surface_distance.h). [m]
 struct FieldOffsets {
   std::array<vec3, kZoneSize> offset;
 };

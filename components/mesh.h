@@ -41,8 +41,8 @@ struct alignas(64) TreeNode {
 // leaf i holds triangles [i*kLeafSize, min((i+1)*kLeafSize, count)). Box i of level n > 0 holds boxes [i*kTreeWidth,
 // ...) of level n-1. levels.back() has one box.
 //
-// `nodes`: for queries at rest (systems/touch/triangle_tree.h). Its runs are cut where the boxes get small, and its
-// boxes also hold the control points of the triangles' curved patches. nodes[0] is the root; children follow their
+// `nodes`: for queries at rest (systems/touch/collide/triangle_tree.h). Its runs are cut where the boxes get small, and
+// its boxes also hold the control points of the triangles' curved patches. nodes[0] is the root; children follow their
 // parents.
 struct TriangleTree {
   std::vector<std::vector<Box>> levels;

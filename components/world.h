@@ -45,13 +45,13 @@ enum DroppedBit : std::uint32_t {  // 8 was used by an earlier bit and stays unu
 struct MouseInput;  // systems/device/mouse.h: mouse input of a window
 struct SoftState;   // systems/soft/soft_state.h: working memory of the soft step, made by prepare_soft
 struct ToolTouch;   // systems/tool/tool_touch_state.h: tools on the touch clock, made by prepare_tools
-struct TouchState;  // systems/touch/touch_state.h: working memory of the touch tick, made by prepare_touch
+struct TouchState;  // systems/touch/prepare/touch_state.h: working memory of the touch tick, made by prepare_touch
 
 inline constexpr Range kTouchRateRange{10.0, 100000.0};  // [Hz] of Simulation::touch_rate
 inline constexpr Range kSoftStepRange{1e-4, 1.0};        // [s] of Simulation::soft_step
 inline constexpr Range kGravityRange{-1e3, 1e3};         // [m/s2] of each of its components
 
-// Where height fields are stored (systems/touch/field.h).
+// Where height fields are stored (systems/touch/model/field.h).
 enum class FieldPlace : std::uint8_t { kProcessor, kGpu };
 
 struct World {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "content/gltf/gltf_document.h"
+#include "content/gltf/form/gltf_document.h"
 
 namespace pliant {
 namespace {

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "content/files/exr.h"
-#include "content/gltf/gltf_document.h"
+#include "content/gltf/form/gltf_document.h"
 #include "content/keys/extensions.h"
 #include "content/keys/unused_keys.h"
 #include "content/level/device_request.h"

@@ -2,8 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "content/gltf/gltf_document.h"
-#include "content/gltf/gltf_save.h"
+#include "content/gltf/form/gltf_document.h"
+#include "content/gltf/write/gltf_save.h"
 #include "fuzz/sound_level.h"
 
 // tinygltf must be able to read everything that passes the checks.

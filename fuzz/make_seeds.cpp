@@ -11,7 +11,7 @@
 
 #include "content/files/file_io.h"
 #include "content/files/image.h"
-#include "content/gltf/gltf_draco.h"
+#include "content/gltf/form/gltf_draco.h"
 #include "content/level_file.h"
 
 namespace {

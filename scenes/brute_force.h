@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "systems/touch/virtual_vertex.h"
+#include "systems/touch/collide/virtual_vertex.h"
 
 namespace pliant {
 

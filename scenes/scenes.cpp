@@ -6,7 +6,7 @@
 #include "content/mesh/mesh_build.h"
 #include "systems/hash_state.h"
 #include "systems/schedule.h"
-#include "systems/touch/prepare.h"
+#include "systems/touch/prepare/prepare.h"
 
 namespace pliant::scenes {
 namespace {

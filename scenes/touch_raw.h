@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scenes/scenes.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 

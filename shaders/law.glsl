@@ -1,4 +1,4 @@
-// One step of the free surface by the cubic and the exponential law, as in systems/touch/nonlinear_step.cpp. Discrete
+// One step of the free surface by the cubic and the exponential law, as in systems/touch/model/nonlinear_step.cpp. Discrete
 // gradient, or backward Euler for steps that are long for the spring (methods.md 1.2). Heights [m], forces per unit of
 // stiffness [m], mass m/k [s2], damping b/k [s].
 

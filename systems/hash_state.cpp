@@ -2,7 +2,7 @@
 
 #include "components/hash_vector.h"
 #include "systems/tool/hash_soft.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "systems/soft/prepare_soft.h"
 #include "systems/tool/prepare_tools.h"
-#include "systems/touch/prepare.h"
+#include "systems/touch/prepare/prepare.h"
 
 namespace pliant {
 

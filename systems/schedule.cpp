@@ -7,13 +7,13 @@
 #include "systems/tool/pull.h"
 #include "systems/tool/tool_feedback.h"
 #include "systems/tool/tool_step.h"
-#include "systems/touch/collision.h"
-#include "systems/touch/dynamics.h"
-#include "systems/touch/force_field.h"
-#include "systems/touch/friction_feedback.h"
-#include "systems/touch/move_objects.h"
-#include "systems/touch/press.h"
-#include "systems/touch/publish.h"
+#include "systems/touch/collide/collision.h"
+#include "systems/touch/feed/press.h"
+#include "systems/touch/feed/publish.h"
+#include "systems/touch/model/dynamics.h"
+#include "systems/touch/model/force_field.h"
+#include "systems/touch/model/friction_feedback.h"
+#include "systems/touch/prepare/move_objects.h"
 
 namespace pliant {
 

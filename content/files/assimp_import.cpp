@@ -17,9 +17,9 @@
 #include "content/files/image.h"
 #include "content/files/isolation.h"
 #include "content/files/mesh_check.h"
-#include "content/gltf/gltf_document.h"
-#include "content/gltf/gltf_draco.h"
-#include "content/gltf/gltf_save.h"
+#include "content/gltf/form/gltf_document.h"
+#include "content/gltf/form/gltf_draco.h"
+#include "content/gltf/write/gltf_save.h"
 
 namespace pliant {
 

@@ -1,7 +1,7 @@
 // --set NODE.EXT.KEY=VALUE, using the table of extensions.
 #include <algorithm>
 
-#include "content/gltf/gltf_document.h"
+#include "content/gltf/form/gltf_document.h"
 #include "content/keys/extension_table.h"
 #include "content/level_file.h"
 

@@ -136,7 +136,7 @@ class Cutter {
 };
 
 // From this depth on runs are halved: 2^32 triangles then need 11 more levels, within tree::kStack of
-// systems/touch/triangle_tree.h.
+// systems/touch/collide/triangle_tree.h.
 constexpr int kEvenFrom = 16;
 
 struct Open {

@@ -8,7 +8,7 @@
 #include "systems/soft/prepare_soft.h"
 #include "systems/soft/under_gravity.h"
 #include "systems/tool/prepare_tools.h"
-#include "systems/touch/prepare.h"
+#include "systems/touch/prepare/prepare.h"
 
 namespace pliant {
 namespace {

@@ -1,6 +1,6 @@
 #include "editor/document/document.h"
 
-#include "content/gltf/gltf_document.h"
+#include "content/gltf/form/gltf_document.h"
 #include "content/level/unit.h"
 #include "content/level_file.h"
 #include "editor/document/recovery.h"

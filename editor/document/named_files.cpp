@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "content/files/file_io.h"
-#include "content/gltf/gltf_document.h"
+#include "content/gltf/form/gltf_document.h"
 
 namespace pliant {
 

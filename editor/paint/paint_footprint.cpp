@@ -1,14 +1,14 @@
-// Geodesic queries of a PaintSurface. Fast marching as in systems/touch/surface_distance.cpp: Kimmel & Sethian 1998
-// with the source unfolded into each triangle's plane. A node reached by a shorter way later is expanded again, so that
-// obtuse triangles cause no error.
+// Geodesic queries of a PaintSurface. Fast marching as in systems/touch/collide/surface_distance.cpp: Kimmel & Sethian
+// 1998 with the source unfolded into each triangle's plane. A node reached by a shorter way later is expanded again, so
+// that obtuse triangles cause no error.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "editor/paint/paint_surface.h"
-#include "systems/touch/triangle_tree.h"
-#include "systems/touch/unfold.h"
+#include "systems/touch/collide/triangle_tree.h"
+#include "systems/touch/collide/unfold.h"
 
 namespace pliant {
 namespace {

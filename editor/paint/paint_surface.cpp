@@ -6,7 +6,7 @@
 
 #include "content/mesh/touch_mesh.h"
 #include "runtime/disjoint_sets.h"
-#include "systems/touch/triangle_tree.h"
+#include "systems/touch/collide/triangle_tree.h"
 
 namespace pliant {
 namespace {

@@ -1,6 +1,6 @@
 #include "editor/play/law_curve.h"
 
-#include "systems/touch/contact_law.h"
+#include "systems/touch/model/contact_law.h"
 
 namespace pliant {
 

@@ -12,8 +12,8 @@
 #include "runtime/clock.h"
 #include "systems/device/repeat.h"
 #include "systems/hash_state.h"
-#include "systems/touch/publish.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/feed/publish.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

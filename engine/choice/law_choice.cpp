@@ -9,7 +9,7 @@
 #include "engine/choice/choice_parts.h"
 #include "engine/choice/press_bench.h"
 #include "engine/choice/surface_cost.h"
-#include "systems/touch/contact_law.h"
+#include "systems/touch/model/contact_law.h"
 
 namespace pliant {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "runtime/clock.h"
 #include "systems/schedule.h"
-#include "systems/touch/prepare.h"
-#include "systems/touch/surface_distance.h"
+#include "systems/touch/collide/surface_distance.h"
+#include "systems/touch/prepare/prepare.h"
 
 namespace pliant {
 namespace {

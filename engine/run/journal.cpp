@@ -7,7 +7,7 @@
 #include "systems/device/hands.h"
 #include "systems/hash_state.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/contacts_of.h"
+#include "systems/touch/feed/contacts_of.h"
 
 namespace pliant {
 

@@ -9,7 +9,7 @@
 #include "runtime/assert.h"
 #include "systems/device/hands.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

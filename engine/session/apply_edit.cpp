@@ -2,8 +2,8 @@
 #include "engine/session/session_parts.h"
 #include "systems/device/devices.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/presence.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/prepare/presence.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

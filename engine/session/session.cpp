@@ -13,7 +13,7 @@
 #include "runtime/long_work.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/soft_state.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

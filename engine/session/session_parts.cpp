@@ -16,8 +16,8 @@
 #include "systems/prepare_world.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/under_gravity.h"
-#include "systems/touch/local_model.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/model/local_model.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

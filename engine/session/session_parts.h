@@ -28,8 +28,8 @@
 #include "runtime/exchange.h"
 #include "runtime/recorder.h"
 #include "systems/soft/body/tool_body.h"
-#include "systems/touch/contact_energy.h"
-#include "systems/touch/local_model.h"
+#include "systems/touch/model/contact_energy.h"
+#include "systems/touch/model/local_model.h"
 
 namespace pliant {
 

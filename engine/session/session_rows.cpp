@@ -6,7 +6,7 @@
 #include "systems/device/reading.h"
 #include "systems/device/softening.h"
 #include "systems/safety/safety.h"
-#include "systems/touch/contacts_of.h"
+#include "systems/touch/feed/contacts_of.h"
 
 namespace pliant {
 namespace {

@@ -12,8 +12,8 @@
 #include "systems/soft/body/probe_tool.h"
 #include "systems/soft/prepare_soft.h"
 #include "systems/soft/soft_state.h"
-#include "systems/touch/force_field.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/model/force_field.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "components/soft_body.h"
-#include "systems/touch/publish.h"
+#include "systems/touch/feed/publish.h"
 
 namespace pliant {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "content/keys/extensions.h"
-#include "systems/touch/contact_law.h"
+#include "systems/touch/model/contact_law.h"
 
 namespace pliant {
 namespace {

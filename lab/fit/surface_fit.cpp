@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "lab/fit/least_squares.h"
-#include "systems/touch/local_model.h"
-#include "systems/touch/shape.h"
-#include "systems/touch/triangle_tree.h"
+#include "systems/touch/collide/triangle_tree.h"
+#include "systems/touch/model/local_model.h"
+#include "systems/touch/model/shape.h"
 
 namespace pliant {
 namespace {

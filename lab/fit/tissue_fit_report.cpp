@@ -7,7 +7,7 @@
 #include "lab/files/csv.h"
 #include "lab/fit/tissue_fit.h"
 #include "lab/study/pareto.h"
-#include "lab/study/study_shapes.h"
+#include "lab/study/shapes/study_shapes.h"
 #include "plot/panel.h"
 
 namespace pliant {

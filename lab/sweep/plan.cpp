@@ -7,7 +7,7 @@
 #include <set>
 
 #include "content/files/file_io.h"
-#include "content/gltf/gltf_document.h"
+#include "content/gltf/form/gltf_document.h"
 #include "content/keys/extension_table.h"
 #include "engine/run/sources.h"
 #include "lab/files/content_folder.h"

@@ -24,7 +24,7 @@
 #include "systems/device/repeat.h"
 #include "systems/prepare_world.h"
 #include "systems/soft/under_gravity.h"
-#include "systems/touch/local_model.h"
+#include "systems/touch/model/local_model.h"
 #include "systems/visual/field_cost.h"
 
 namespace pliant {

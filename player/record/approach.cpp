@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "systems/touch/surface_query.h"
+#include "systems/touch/collide/surface_query.h"
 
 namespace pliant {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "content/files/file_io.h"
 #include "content/files/image.h"
-#include "systems/touch/publish.h"
+#include "systems/touch/feed/publish.h"
 #include "systems/visual/gpu/context.h"
 
 namespace pliant {

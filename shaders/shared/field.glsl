@@ -1,4 +1,4 @@
-// The force field's target at one vertex. The arithmetic is valid GLSL and C++ (systems/touch/shape.h), so that the
+// The force field's target at one vertex. The arithmetic is valid GLSL and C++ (systems/touch/model/shape.h), so that the
 // field on the GPU and the field on the CPU agree to rounding. Needs shape.glsl before it. methods.md 1.3, 1.4.
 //
 // A source is three vec4: place = (center [m], 1/R^2), push = (unit normal, amplitude [m]), kind = (parameter, shape,

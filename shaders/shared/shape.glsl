@@ -1,4 +1,4 @@
-// Shape functions of the force field: arithmetic that is valid GLSL and C++ (systems/touch/shape.h), so that the CPU
+// Shape functions of the force field: arithmetic that is valid GLSL and C++ (systems/touch/model/shape.h), so that the CPU
 // and the GPU agree to rounding. methods.md 1.3; P1 section 3.
 //
 // f(rho) is the displacement of a vertex at distance r = rho R from the contact, as a share of the amplitude; f(0) = 1.

@@ -7,8 +7,8 @@
 #include "systems/device/devices.h"
 #include "systems/soft/body/coupling.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/contacts_of.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/feed/contacts_of.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

@@ -8,7 +8,7 @@
 #include "systems/device/path.h"
 #include "systems/device/softening.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/contacts_of.h"
+#include "systems/touch/feed/contacts_of.h"
 
 namespace pliant {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "components/soft_body.h"
-#include "systems/touch/surface_query.h"
+#include "systems/touch/collide/surface_query.h"
 
 namespace pliant {
 namespace {

@@ -1,8 +1,8 @@
 #include "systems/device/reading.h"
 
 #include "systems/tool/tool_reading.h"
-#include "systems/touch/contacts_of.h"
-#include "systems/touch/field.h"
+#include "systems/touch/feed/contacts_of.h"
+#include "systems/touch/model/field.h"
 
 namespace pliant {
 namespace {

@@ -1,7 +1,7 @@
-// Reads the state of one probe or tool after a tick (systems/touch/probe_reading.h).
+// Reads the state of one probe or tool after a tick (systems/touch/feed/probe_reading.h).
 #pragma once
 
-#include "systems/touch/probe_reading.h"
+#include "systems/touch/feed/probe_reading.h"
 
 namespace pliant {
 

@@ -4,7 +4,7 @@
 
 #include "components/soft_body.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/contacts_of.h"
+#include "systems/touch/feed/contacts_of.h"
 
 namespace pliant {
 namespace {

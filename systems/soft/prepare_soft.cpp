@@ -14,8 +14,8 @@
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/soft_state.h"
 #include "systems/soft/under_gravity.h"
-#include "systems/touch/surface_query.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/collide/surface_query.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

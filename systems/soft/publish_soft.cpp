@@ -5,7 +5,7 @@
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/body/tool_body.h"
 #include "systems/soft/soft_state.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

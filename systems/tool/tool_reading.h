@@ -1,7 +1,7 @@
-// State of a tool after a tick, in the format of a probe (systems/touch/probe_reading.h).
+// State of a tool after a tick, in the format of a probe (systems/touch/feed/probe_reading.h).
 #pragma once
 
-#include "systems/touch/probe_reading.h"
+#include "systems/touch/feed/probe_reading.h"
 
 namespace pliant {
 

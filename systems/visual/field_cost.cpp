@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "systems/touch/field_kernels.h"
+#include "systems/touch/model/field_kernels.h"
 #include "systems/visual/field_gpu.h"
 
 namespace pliant {

@@ -1,5 +1,6 @@
 // The field on the GPU: shaders/field.comp writes an object's stream from the list of sources that the touch clock
-// publishes (systems/touch/field.h). Rest positions and normals are uploaded once; per frame, 48 bytes per source.
+// publishes (systems/touch/model/field.h). Rest positions and normals are uploaded once; per frame, 48 bytes per
+// source.
 #pragma once
 
 #include <cstdint>

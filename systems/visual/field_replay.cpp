@@ -6,7 +6,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "systems/touch/surface_distance.h"
+#include "systems/touch/collide/surface_distance.h"
 
 namespace pliant {
 namespace {

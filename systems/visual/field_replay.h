@@ -10,7 +10,7 @@
 
 #include "components/field_feed.h"
 #include "components/world.h"
-#include "systems/touch/painted_motion.h"
+#include "systems/touch/model/painted_motion.h"
 #include "systems/visual/field_gpu.h"
 
 namespace pliant {

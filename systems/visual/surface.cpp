@@ -7,7 +7,7 @@
 
 #include "components/soft_body.h"
 #include "runtime/assert.h"
-#include "systems/touch/field.h"
+#include "systems/touch/model/field.h"
 #include "systems/visual/frame.h"
 #include "systems/visual/viewpoint.h"
 

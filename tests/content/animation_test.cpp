@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "content/gltf/gltf_save.h"
+#include "content/gltf/write/gltf_save.h"
 #include "content/level_file.h"
 #include "tests/content/document_compare.h"
 #include "tests/content/gltf_builder.h"

@@ -1,13 +1,13 @@
 // Limits on the cost of reading a small document. Shared accessors, primitives, weights, skins and Draco data are added
-// up before they are read (content/gltf/gltf_cost.cpp), and shared data is decoded once.
+// up before they are read (content/gltf/check/gltf_cost.cpp), and shared data is decoded once.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "content/files/isolation.h"
-#include "content/gltf/gltf_check.h"
-#include "content/gltf/gltf_draco_reader.h"
+#include "content/gltf/check/gltf_check.h"
+#include "content/gltf/read/gltf_draco_reader.h"
 #include "tests/content/gltf_builder.h"
 #include "tests/content/lowered.h"
 

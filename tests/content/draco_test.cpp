@@ -4,7 +4,7 @@
 #include <random>
 
 #include "content/files/assimp_import.h"
-#include "content/gltf/gltf_draco.h"
+#include "content/gltf/form/gltf_draco.h"
 
 namespace pliant::test {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "content/gltf/gltf_accessor.h"
-#include "content/gltf/gltf_document.h"
+#include "content/gltf/form/gltf_accessor.h"
+#include "content/gltf/form/gltf_document.h"
 
 namespace pliant::test {
 

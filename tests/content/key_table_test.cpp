@@ -13,7 +13,7 @@
 #include "content/keys/extension_table.h"
 #include "content/keys/extensions.h"
 #include "content/level_file.h"
-#include "systems/touch/local_model.h"
+#include "systems/touch/model/local_model.h"
 
 namespace pliant::test {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "content/author/edit_nodes.h"
 #include "content/files/file_io.h"
-#include "content/gltf/gltf_model.h"
-#include "content/gltf/gltf_save.h"
+#include "content/gltf/form/gltf_model.h"
+#include "content/gltf/write/gltf_save.h"
 #include "content/level_file.h"
 #include "tests/content/document_compare.h"
 #include "tests/content/gltf_builder.h"

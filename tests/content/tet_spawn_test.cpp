@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "components/mass_properties.h"
-#include "content/gltf/gltf_save.h"
+#include "content/gltf/write/gltf_save.h"
 #include "content/level_file.h"
 #include "content/tets/tet_quality.h"
 #include "content/validate.h"

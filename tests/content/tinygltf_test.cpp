@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "content/files/isolation.h"
-#include "content/gltf/gltf_model.h"
+#include "content/gltf/form/gltf_model.h"
 #include "content/level_file.h"
 #include "tests/content/document_compare.h"
 #include "tests/content/gltf_builder.h"

@@ -98,11 +98,13 @@ struct Board {
     tcgetattr(held, &line);
     cfmakeraw(&line);
     tcsetattr(held, TCSANOW, &line);
+  }
+  void start() {
     thread = std::thread([this] { run(); });
   }
   ~Board() {
     stop = true;
-    thread.join();
+    if (thread.joinable()) thread.join();
     ::close(held);
     ::close(master);
   }
@@ -140,6 +142,7 @@ struct Board {
 
 TEST(SerialDevice, LinesThatAreNotUsedAreCountedByWhy) {
   Board board;
+  board.start();
   SerialDevice driver;
   ASSERT_TRUE(driver.open(board.path));
   EXPECT_EQ(describe(driver.dropped()), "");
@@ -162,12 +165,13 @@ TEST(SerialDevice, LinesThatAreNotUsedAreCountedByWhy) {
 
 TEST(SerialDevice, AfterKillNineAGuardProcessWritesALineOfZero) {
   Board board;
-  const pid_t engine = fork();
+  const pid_t engine = fork();  // before there is a thread, which could hold the allocator's lock
   if (engine == 0) {
     Servo servo(std::make_unique<SerialDevice>());
     if (!servo.open(board.path) || !servo.start()) _exit(3);
     for (;;) usleep(1000);
   }
+  board.start();
   ASSERT_TRUE(soon([&] { return board.forces > 100; }));
   ASSERT_NE(board.newest, 0u);
   kill(engine, SIGKILL);
@@ -177,6 +181,7 @@ TEST(SerialDevice, AfterKillNineAGuardProcessWritesALineOfZero) {
 
 TEST(SerialDevice, ABoardOfOneAxisIsReadAndPushedAlongThatAxisAlone) {
   Board board;
+  board.start();
   board.x = 12500;
   SerialDevice driver;
   const auto opened = driver.open(board.path + "@1000000");
@@ -196,6 +201,7 @@ TEST(SerialDevice, ABoardOfOneAxisIsReadAndPushedAlongThatAxisAlone) {
 
 TEST(SerialDevice, ABoardThatSpeaksNonsenseGetsNoForce) {
   Board board;
+  board.start();
   SerialDevice driver;
   ASSERT_TRUE(driver.open(board.path));
   DeviceSample sample;
@@ -220,6 +226,7 @@ TEST(SerialDevice, WhatIsMissingIsOneSentence) {
   EXPECT_NE(driver.open("/dev/ttyACM0@17").error().message().find("17 is no speed"), std::string::npos);
   EXPECT_FALSE(driver.open("/dev/ttyACM0@fast"));
   Board board;
+  board.start();
   board.silent = true;
   EXPECT_NE(driver.open(board.path).error().message().find("does not answer as a device of Pliant"), std::string::npos);
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "content/files/image.h"
-#include "content/gltf/gltf_save.h"
+#include "content/gltf/write/gltf_save.h"
 #include "content/level_file.h"
 #include "tests/content/mesh_shapes.h"
 #include "tests/player/command.h"

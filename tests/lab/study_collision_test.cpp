@@ -1,5 +1,5 @@
 // The study `collision`: its path and its count of misses.
-#include "lab/study/study_collision.h"
+#include "lab/study/collision/study_collision.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The study `fidelity` against known results: P1's own law and shape, and small strains.
-#include "lab/study/study_fidelity.h"
+#include "lab/study/fidelity/study_fidelity.h"
 
 #include <gtest/gtest.h>
 

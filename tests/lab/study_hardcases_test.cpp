@@ -1,6 +1,6 @@
 // Every hard case of the table (lab/study/hard) holds, or is a known defect with exactly its condition. Runs all of the
 // study except costs; under a sanitizer the part of --quick.
-#include "lab/study/study_hardcases.h"
+#include "lab/study/hard/study_hardcases.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

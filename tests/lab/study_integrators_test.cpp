@@ -1,5 +1,5 @@
 // The study `integrators` against closed forms: its reference, the order of its schemes and their stability limits.
-#include "lab/study/study_integrators.h"
+#include "lab/study/integrators/study_integrators.h"
 
 #include <gtest/gtest.h>
 

@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "lab/study/drawn_frame.h"
-#include "lab/study/power_law.h"
-#include "lab/study/step_cost.h"
-#include "lab/study/tick_cost.h"
+#include "lab/study/scale/drawn_frame.h"
+#include "lab/study/scale/power_law.h"
+#include "lab/study/scale/step_cost.h"
+#include "lab/study/scale/tick_cost.h"
 #include "scenes/scenes.h"
-#include "systems/touch/publish.h"
+#include "systems/touch/feed/publish.h"
 #include "systems/visual/gpu/context.h"
 
 namespace pliant {

@@ -1,5 +1,5 @@
 // The study `shapes` against known results: integrals of the closed forms, and the block against the half-space.
-#include "lab/study/study_shapes.h"
+#include "lab/study/shapes/study_shapes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The study `surfaces` against closed forms: of the surfaces themselves, and of facets on a sphere.
-#include "lab/study/study_surfaces.h"
+#include "lab/study/surfaces/study_surfaces.h"
 
 #include <gtest/gtest.h>
 

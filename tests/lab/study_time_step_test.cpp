@@ -1,12 +1,12 @@
 // The study `time_step` against known results: free fall, the order of each scheme, and the deepest dent of a spring.
-#include "lab/study/study_time_step.h"
+#include "lab/study/time_step/study_time_step.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "lab/study/engine_step.h"
+#include "lab/study/time_step/engine_step.h"
 
 namespace pliant {
 namespace {

@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "engine/run/simulated_hands.h"
-#include "lab/study/study_hand.h"
-#include "lab/study/study_walls.h"
+#include "lab/study/hand/study_hand.h"
+#include "lab/study/walls/study_walls.h"
 #include "tests/player/command.h"
 
 namespace pliant {

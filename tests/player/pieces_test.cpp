@@ -28,7 +28,7 @@
 #include "systems/soft/soft_state.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/prepare.h"
+#include "systems/touch/prepare/prepare.h"
 
 namespace pliant {
 namespace {

@@ -10,7 +10,7 @@
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/prepare_soft.h"
 #include "systems/tool/prepare_tools.h"
-#include "systems/touch/prepare.h"
+#include "systems/touch/prepare/prepare.h"
 
 namespace pliant {
 namespace {

@@ -6,8 +6,8 @@
 #include "scenes/tet_shapes.h"
 #include "scenes/tool_stage.h"
 #include "systems/soft/body/yielding_body.h"
-#include "systems/touch/contact_law.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/model/contact_law.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

@@ -22,7 +22,7 @@
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/tool_step.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/prepare.h"
+#include "systems/touch/prepare/prepare.h"
 
 namespace pliant {
 namespace {

@@ -16,7 +16,7 @@
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/tool/prepare_tools.h"
 #include "systems/tool/tool_touch_state.h"
-#include "systems/touch/prepare.h"
+#include "systems/touch/prepare/prepare.h"
 #include "tests/tool/press_scene.h"
 
 #ifndef PLIANT_SANITIZED

@@ -1,5 +1,5 @@
 // The tree of boxes against every box looked at one by one.
-#include "systems/touch/box_tree.h"
+#include "systems/touch/collide/box_tree.h"
 
 #include <gtest/gtest.h>
 

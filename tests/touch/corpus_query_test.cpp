@@ -7,8 +7,8 @@
 
 #include "content/level_file.h"
 #include "scenes/brute_force.h"
-#include "systems/touch/surface_query.h"
-#include "systems/touch/triangle_tree.h"
+#include "systems/touch/collide/surface_query.h"
+#include "systems/touch/collide/triangle_tree.h"
 
 namespace pliant {
 namespace {

@@ -1,5 +1,5 @@
 // The vectorised zone kernels, against the same computation one vertex at a time.
-#include "systems/touch/field_kernels.h"
+#include "systems/touch/model/field_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <random>
 
 #include "scenes/scenes.h"
-#include "systems/touch/nonlinear_step.h"
-#include "systems/touch/shape.h"
+#include "systems/touch/model/nonlinear_step.h"
+#include "systems/touch/model/shape.h"
 
 namespace pliant {
 namespace {

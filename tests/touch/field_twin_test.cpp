@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "scenes/scenes.h"
-#include "systems/touch/field.h"
-#include "systems/touch/publish.h"
+#include "systems/touch/feed/publish.h"
+#include "systems/touch/model/field.h"
 
 namespace pliant {
 namespace {
@@ -89,7 +89,7 @@ TEST(FieldTwins, TheCardsListEmptiesWhenEverythingHasComeToRest) {
 }
 
 // Without a closed form the CPU keeps the field and feeds the inputs to the GPU. Once the feed is full (no reader),
-// zones are published again until the surface has been at rest (systems/touch/feed_field.h).
+// zones are published again until the surface has been at rest (systems/touch/feed/feed_field.h).
 TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
   Deformable d;
   d.reach = 0.03;

@@ -1,4 +1,4 @@
-#include "systems/touch/local_model.h"
+#include "systems/touch/model/local_model.h"
 
 #include <gtest/gtest.h>
 

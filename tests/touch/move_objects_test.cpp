@@ -1,6 +1,6 @@
 // Kinematic objects: motions against closed forms, poses and velocities against finite differences, hierarchies against
 // matrices.
-#include "systems/touch/move_objects.h"
+#include "systems/touch/prepare/move_objects.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "scenes/count_allocations.h"
 #include "scenes/scenes.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

@@ -1,4 +1,4 @@
-#include "systems/touch/surface_query.h"
+#include "systems/touch/collide/surface_query.h"
 
 #include <gtest/gtest.h>
 

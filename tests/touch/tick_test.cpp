@@ -10,10 +10,10 @@
 #include "scenes/scenes.h"
 #include "scenes/touch_laws.h"
 #include "systems/schedule.h"
-#include "systems/touch/amplitude.h"
-#include "systems/touch/prepare.h"
-#include "systems/touch/publish.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/feed/publish.h"
+#include "systems/touch/model/amplitude.h"
+#include "systems/touch/prepare/prepare.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "content/level_file.h"
 #include "scenes/touch_raw.h"
-#include "systems/touch/surface_query.h"
+#include "systems/touch/collide/surface_query.h"
 
 namespace pliant {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "scenes/scenes.h"
 #include "scenes/touch_laws.h"
-#include "systems/touch/local_model.h"
+#include "systems/touch/model/local_model.h"
 
 namespace pliant {
 namespace {

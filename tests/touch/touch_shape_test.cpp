@@ -8,9 +8,9 @@
 
 #include "scenes/scenes.h"
 #include "scenes/touch_laws.h"
-#include "systems/touch/contact_energy.h"
-#include "systems/touch/force_field.h"
-#include "systems/touch/local_model.h"
+#include "systems/touch/model/contact_energy.h"
+#include "systems/touch/model/force_field.h"
+#include "systems/touch/model/local_model.h"
 
 namespace pliant {
 namespace {

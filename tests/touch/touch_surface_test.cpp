@@ -7,9 +7,9 @@
 
 #include "scenes/touch_laws.h"
 #include "scenes/touch_raw.h"
-#include "systems/touch/foot.h"
-#include "systems/touch/publish.h"
-#include "systems/touch/surface_query.h"
+#include "systems/touch/collide/foot.h"
+#include "systems/touch/collide/surface_query.h"
+#include "systems/touch/feed/publish.h"
 
 namespace pliant {
 namespace {

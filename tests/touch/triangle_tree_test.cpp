@@ -1,5 +1,5 @@
 // The tree of a mesh at rest against every triangle looked at one by one.
-#include "systems/touch/triangle_tree.h"
+#include "systems/touch/collide/triangle_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "components/curved_patch.h"
 #include "scenes/scenes.h"
-#include "systems/touch/surface_query.h"
+#include "systems/touch/collide/surface_query.h"
 
 namespace pliant {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "scenes/scenes.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/prepare/touch_state.h"
 #include "systems/visual/gpu/context.h"
 #include "tests/visual/read_back.h"
 

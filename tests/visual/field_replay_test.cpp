@@ -7,8 +7,8 @@
 #include <random>
 
 #include "scenes/scenes.h"
-#include "systems/touch/publish.h"
-#include "systems/touch/touch_state.h"
+#include "systems/touch/feed/publish.h"
+#include "systems/touch/prepare/touch_state.h"
 #include "systems/visual/gpu/context.h"
 #include "systems/visual/upload.h"
 #include "tests/visual/read_back.h"

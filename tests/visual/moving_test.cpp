@@ -8,8 +8,8 @@
 #include "content/level_file.h"
 #include "scenes/scenes.h"
 #include "systems/schedule.h"
-#include "systems/touch/prepare.h"
-#include "systems/touch/publish.h"
+#include "systems/touch/feed/publish.h"
+#include "systems/touch/prepare/prepare.h"
 #include "systems/visual/renderer.h"
 #include "tests/visual/scene.h"
 

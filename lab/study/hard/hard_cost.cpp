@@ -8,13 +8,13 @@
 #include <random>
 
 #include "content/mesh/mesh_build.h"
+#include "lab/study/collision/study_collision.h"
 #include "lab/study/hard/hard_case.h"
 #include "lab/study/processor_time.h"
-#include "lab/study/study_collision.h"
-#include "lab/study/tick_cost.h"
+#include "lab/study/scale/tick_cost.h"
 #include "scenes/scenes.h"
-#include "systems/touch/surface_query.h"
-#include "systems/touch/triangle_tree.h"
+#include "systems/touch/collide/surface_query.h"
+#include "systems/touch/collide/triangle_tree.h"
 
 namespace pliant {
 namespace {

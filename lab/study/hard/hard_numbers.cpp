@@ -12,7 +12,7 @@
 #include "lab/study/hard/hard_case.h"
 #include "scenes/touch_laws.h"
 #include "scenes/touch_raw.h"
-#include "systems/touch/local_model.h"
+#include "systems/touch/model/local_model.h"
 
 namespace pliant {
 namespace {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/touch/contact_law.h"
-#include "systems/touch/field_kernels.h"
-#include "systems/touch/force_field.h"
-#include "systems/touch/surface_query.h"
+#include "systems/touch/collide/surface_query.h"
+#include "systems/touch/model/contact_law.h"
+#include "systems/touch/model/field_kernels.h"
+#include "systems/touch/model/force_field.h"
 
 namespace pliant {
 namespace {

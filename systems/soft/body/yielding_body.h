@@ -1,7 +1,7 @@
 // A P1 surface (Deformable) among the bodies of the soft step: the interface of the two models. It has no degrees of
 // freedom, since its surface has no inertia that a hand could feel, but it yields by P1's law. Contacts j dent it by
 // amplitudes alpha_j, which add up at contact i to the depth
-//   d = A alpha,   A_ij = f(|c_i - c_j|) of the object's shape function (as in systems/touch/force_field.cpp),
+//   d = A alpha,   A_ij = f(|c_i - c_j|) of the object's shape function (as in systems/touch/model/force_field.cpp),
 // and each pushes back with F_i = k_i alpha_i + c d_i' (k: the law's secant at the current depth, painted factor
 // included; c: contact_damping). A single contact is then P1's probe, F = law(d) + c d'. Many adjacent contacts share
 // one dent instead of adding up their forces, so that the force does not depend on the tissue's mesh. The step's law,
@@ -19,7 +19,7 @@
 #include "components/world.h"
 #include "systems/soft/body/immovable_body.h"
 #include "systems/soft/contact/contact_point.h"
-#include "systems/touch/press.h"
+#include "systems/touch/feed/press.h"
 
 namespace pliant {
 

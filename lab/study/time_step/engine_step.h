@@ -1,0 +1,16 @@
+// The motions of study_time_step.h with the soft step of the engine: contacts are constraints (here without friction),
+// and a ball is a rigid tool with a prescribed device pose.
+#pragma once
+
+#include "lab/study/time_step/study_time_step.h"
+
+namespace pliant {
+
+inline constexpr const char* kEngineStep = "a level's step";
+
+// Same contract as trace_of().
+StepTrace engine_trace(
+    const TissueScene& scene, double step, double every, double* ms = nullptr,
+    const std::function<bool(double)>& goes_on = [](double) { return true; });
+
+}  // namespace pliant

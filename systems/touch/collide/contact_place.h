@@ -1,0 +1,11 @@
+// Place and depth of a contact, from its foot and the creases around it (foot_blend.h).
+#pragma once
+
+#include "systems/touch/prepare/touch_state.h"
+
+namespace pliant {
+
+// Behind the surface: blended with the feet on the sides of convex creases, as far as they matter. x [m], object frame.
+FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot& own, dvec3 x);
+
+}  // namespace pliant

@@ -1,0 +1,20 @@
+// Seams: places where surfaces are so close that a probe feels one surface. Examples are nodes that are flush with each
+// other, an organ in parts, and cracks in one mesh. A foot that reaches such an edge continues on the other surface.
+#pragma once
+
+#include "systems/touch/prepare/touch_state.h"
+
+namespace pliant {
+
+// A crack narrower than this share of the mesh's mean edge is ignored (as is one a third wider). [1]
+inline constexpr double kCrack = 0.02;
+
+// The seam under a foot, or null.
+const Seam* seam_at(const ObjectState& object, const Foot& foot);
+// Whether a foot is on either side of a seam.
+bool at_seam(const ObjectState& object, const Foot& foot);
+
+// Fills ObjectState::seams and closed. Moving objects have no seams with others. Allocates.
+void find_seams(const World& world, TouchState& touch);
+
+}  // namespace pliant

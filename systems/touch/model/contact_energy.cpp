@@ -1,0 +1,243 @@
+#include "systems/touch/model/contact_energy.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "components/registered.h"
+#include "runtime/assert.h"
+#include "systems/touch/model/shape.h"
+
+namespace pliant {
+namespace {
+
+double wendland(double q) {
+  if (q >= 1) return 0.0;
+  const double w = 1 - q, w2 = w * w;
+  return w2 * w2 * (4 * q + 1);
+}
+
+// (dc/dr) / r for c(r / a), without dividing by r: dc/dq = -20 q (1-q)^3.
+double wendland_slope(double r, double a) {
+  const double w = std::max(0.0, 1 - r / a);
+  return -20 * w * w * w / (a * a);
+}
+
+// Regularisation of the diagonal for overlapping contacts: equal ones share the load evenly, at a millionth of the
+// force.
+constexpr double kEven = 1e-6;
+constexpr int kMostPivots = 60;
+
+// The linear complementarity problem A l >= e, l >= 0 by block principal pivoting (Judice & Pires 1994). Exact; needs
+// one factorisation if the active set is the last tick's. Falls back to single pivots, which always terminate.
+class Loads {
+ public:
+  Loads(std::span<LoadedContact> contacts, const ShareKernel& kernel) : contacts_(contacts), n_(contacts.size()) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      e_[i] = std::sqrt(2 * contacts[i].energy);
+      if (contacts[i].load > 0) pressing_ |= bit(i);
+      for (std::size_t j = 0; j < i; ++j) {
+        const dvec3 d = contacts[i].p - contacts[j].p;
+        const double facing = dot(contacts[i].normal, contacts[j].normal);
+        const double a = facing > 0 ? kernel.at(dot(d, d)) * facing : 0.0;
+        A_[i][j] = A_[j][i] = a;
+        even_[i] = std::max(even_[i], kEven * a * a);
+        even_[j] = std::max(even_[j], kEven * a * a);
+      }
+      A_[i][i] = 1.0;
+    }
+    if (pressing_ == 0) pressing_ = n_ == 64 ? ~std::uint64_t{0} : bit(n_) - 1;
+  }
+
+  void solve() {
+    std::size_t fewest = n_ + 1;
+    int patience = 8;
+    for (int pivot = 0; pivot < kMostPivots; ++pivot) {
+      factor_and_solve();
+      std::uint64_t wrong = 0;
+      for (std::size_t i = 0; i < n_; ++i) {
+        const bool presses = pressing_ & bit(i);
+        if (presses ? l_[i] < 0 : shortfall(i) > 1e-12 * e_[i]) wrong |= bit(i);
+      }
+      if (wrong == 0) break;
+      const auto count = static_cast<std::size_t>(std::popcount(wrong));
+      if (count < fewest) {
+        fewest = count;
+        patience = 8;
+      } else if (--patience < 0) {
+        wrong = std::bit_floor(wrong);  // Murty: flip only the last wrong one
+      }
+      pressing_ ^= wrong;
+      if (pressing_ == 0) pressing_ = std::bit_floor(wrong);
+    }
+    for (std::size_t i = 0; i < n_; ++i) contacts_[i].load = l_[i] < 0.0 ? 0.0 : l_[i];  // NaN stays NaN
+  }
+
+  double overlap(std::size_t i, std::size_t j) const { return A_[i][j]; }
+  double strength(std::size_t i) const { return e_[i]; }
+
+ private:
+  static std::uint64_t bit(std::size_t i) { return std::uint64_t{1} << i; }
+
+  double shortfall(std::size_t i) const {
+    double r = e_[i];
+    for (std::size_t j = 0; j < n_; ++j) r -= A_[i][j] * l_[j];
+    return r;
+  }
+
+  // A l = e over the pressing contacts, by Cholesky within the envelope: distant contacts are not coupled.
+  void factor_and_solve() {
+    std::array<std::size_t, kMaxLoaded> at;
+    std::size_t m = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      l_[i] = 0.0;
+      if (pressing_ & bit(i)) at[m++] = i;
+    }
+    std::array<std::size_t, kMaxLoaded> first;  // column of each row's first entry
+    for (std::size_t i = 0; i < m; ++i) {
+      first[i] = 0;
+      while (first[i] < i && A_[at[i]][at[first[i]]] == 0.0) ++first[i];
+      for (std::size_t j = first[i]; j <= i; ++j) {
+        double sum = A_[at[i]][at[j]] + (i == j ? even_[at[i]] : 0.0);
+        for (std::size_t k = std::max(first[i], first[j]); k < j; ++k) sum -= L_[i][k] * L_[j][k];
+        // Normals that differ much can make A slightly indefinite: the pivot of such a contact is clamped.
+        L_[i][j] = i == j ? std::sqrt(std::max(sum, kEven)) : sum / L_[j][j];
+      }
+    }
+    std::array<double, kMaxLoaded> y;
+    for (std::size_t i = 0; i < m; ++i) {
+      double sum = e_[at[i]];
+      for (std::size_t k = first[i]; k < i; ++k) sum -= L_[i][k] * y[k];
+      y[i] = sum / L_[i][i];
+    }
+    for (std::size_t i = m; i-- > 0;) {
+      y[i] /= L_[i][i];
+      for (std::size_t k = first[i]; k < i; ++k) y[k] -= L_[i][k] * y[i];
+      l_[at[i]] = y[i];
+    }
+  }
+
+  std::span<LoadedContact> contacts_;
+  std::size_t n_;
+  std::uint64_t pressing_ = 0;
+  std::array<std::array<double, kMaxLoaded>, kMaxLoaded> A_, L_;
+  std::array<double, kMaxLoaded> e_, l_{}, even_{};
+};
+
+}  // namespace
+
+double ShareKernel::at(double r2) const {
+  if (r2 >= outer * outer) return 0.0;
+  const double r = std::sqrt(r2);
+  return weight * wendland(r / inner) + (1 - weight) * wendland(r / outer);
+}
+
+double ShareKernel::slope(double r2) const {
+  if (r2 >= outer * outer) return 0.0;
+  const double r = std::sqrt(r2);
+  return weight * wendland_slope(r, inner) + (1 - weight) * wendland_slope(r, outer);
+}
+
+namespace {
+
+// The mixture with the smallest maximum error against the positive part of a shape, given as value over u = (r / R)^2 <
+// 1.
+template <class Value>
+ShareKernel fitted_kernel(const Value& value) {
+  constexpr int kPlaces = 64;
+  std::array<double, kPlaces> wanted;
+  const auto rho = [](int i) { return 1.5 * i / kPlaces; };
+  for (int i = 0; i < kPlaces; ++i) wanted[i] = rho(i) < 1.0 ? std::max(0.0, value(rho(i) * rho(i))) : 0.0;
+  ShareKernel best;
+  double least = std::numeric_limits<double>::max();
+  for (int a = 6; a <= 20; ++a)
+    for (int b = a; b <= 30; ++b)
+      for (int w = 0; w <= 20; ++w) {
+        const ShareKernel kernel{0.05 * w, 0.05 * a, 0.05 * b};
+        double most = 0.0;
+        for (int i = 0; i < kPlaces && most < least; ++i)
+          most = std::max(most, std::abs(kernel.at(rho(i) * rho(i)) - wanted[i]));
+        if (most < least) least = most, best = kernel;
+      }
+  return best;
+}
+
+}  // namespace
+
+// Minimax fits; the comments give the remaining error as a share of the dent's depth. A punch has a flat bottom, which
+// no positive definite function has.
+ShareKernel share_kernel(Shape shape, double reach, double volume, double contact) {
+  const auto kernel = [reach](double weight, double inner, double outer) {
+    return ShareKernel{weight, inner * reach, outer * reach};
+  };
+  const auto fitted = [&kernel](const auto& value) {
+    const ShareKernel found = fitted_kernel(value);
+    return kernel(found.weight, found.inner, found.outer);
+  };
+  if (const ShapeFunction* own = registered_shape(shape)) return fitted([own](double u) { return own->value(u); });
+  if (std::abs(contact - 0.2) > 1e-6 && depends_on_contact(shape)) {
+    FieldSource source;
+    source.amplitude = 1.0f;
+    source.shape = shape;
+    source.parameter = static_cast<float>(shape == Shape::kKelvinlet ? contact : contact * contact);
+    return fitted([&source](double u) {
+      return static_cast<double>(share_at(source, {static_cast<float>(std::sqrt(u)), 0, 0}, source.normal));
+    });
+  }
+  switch (shape) {
+    case Shape::kPunch:
+      return kernel(0.2, 1.0, 1.3);  // 0.18
+    case Shape::kHertz:
+      return kernel(0.7, 0.55, 1.45);  // 0.053
+    case Shape::kGaussian:
+      return kernel(0.15, 0.8, 0.9);  // 0.019
+    case Shape::kWendland:
+      return kernel(1.0, 1.0, 1.0);  // none
+    case Shape::kVolume:
+      // (1-u)^3 (1 - 5 chi u): from 0.059 (no rim) to 0.10.
+      return kernel(0.05 + 0.75 * volume, 0.9 - 0.15 * volume, 1.4 - 0.55 * volume);
+    case Shape::kKelvinlet:
+      return kernel(0.5, 0.4, 1.4);  // 0.029
+  }
+  UNREACHABLE();
+}
+
+double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel) {
+  if (contacts.size() == 1) {
+    LoadedContact& only = contacts[0];
+    only.load = std::sqrt(2 * only.energy);
+    only.share = 1.0;
+    only.force = only.pull;
+    return only.energy;
+  }
+  Loads loads(contacts, kernel);
+  loads.solve();
+  double energy = 0.0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    LoadedContact& a = contacts[i];
+    if (!std::isfinite(a.load)) {
+      a.load = 0.0;
+      energy = std::numeric_limits<double>::quiet_NaN();
+    }
+    a.share = a.load > 0 ? a.load / loads.strength(i) : 0.0;
+    a.force = a.share * a.pull;
+    energy += loads.strength(i) * a.load - 0.5 * a.load * a.load;
+    if (!(a.load > 0)) continue;
+    for (std::size_t j = 0; j < contacts.size(); ++j) {
+      const LoadedContact& b = contacts[j];
+      if (j == i || !(b.load > 0) || loads.overlap(i, j) == 0.0) continue;
+      const double facing = dot(a.normal, b.normal);
+      const dvec3 d = a.p - b.p;
+      const double r2 = dot(d, d), phi = kernel.at(r2);
+      if (j < i) energy -= a.load * b.load * phi * facing;
+      a.force +=
+          a.load * b.load *
+          (facing * kernel.slope(r2) * (glm::transpose(a.moves) * d) + phi * (glm::transpose(a.turns) * b.normal));
+    }
+  }
+  return energy;
+}
+
+}  // namespace pliant

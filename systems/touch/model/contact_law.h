@@ -1,0 +1,48 @@
+// Stored energy and force of one contact, as if it were alone (methods.md 1.8, 1.10). The law of the depth d behind the
+// rest surface is
+//   F(d) = law(d) - law(y) + k1 (d - q),   never negative,   W = its integral from where it is zero,
+// y: depth of the free surface. It is 0 at rest. For a recovering surface it is the depth without the contact; it also
+// covers unpushed depth (Contact::unpushed). q: the tissue's viscous extension at the foot (standard linear solid).
+//
+// With Young's modulus and a sphere, law(d) is Hertz's, 4/3 E* sqrt(r) z(d)^1.5, z the law's stiffening of the depth. A
+// point presses as a flat punch of the smallest radius, whose stiffness is `stiffness`.
+#pragma once
+
+#include "components/deformable.h"
+#include "systems/touch/model/local_model.h"
+
+namespace pliant {
+
+// law(depth) [N]; odd if the restoring law is. `stiffness` [N/m] is the local one (painted factor included).
+double law_force(const RestoringLaw& law, double stiffness, double depth);
+
+// A painted factor (Mesh::stiffness_factor, friction_factor) at a place on the surface. [1]
+double painted(const std::vector<float>& factor, const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric);
+
+struct StoredEnergy {
+  double energy = 0.0;      // [J]  W
+  double force = 0.0;       // [N]  dW/dd >= 0
+  double by_relaxed = 0.0;  // [N]  dW/dq <= 0
+};
+
+struct ContactLaw {
+  RestoringLaw law;
+  double stiffness = 0.0;    // [N/m] at the foot, painted factor included
+  double hertz = 0.0;        // [N/m^1.5] 4/3 E* sqrt(r), painted factor included; 0: not a sphere of known modulus
+  double arm = 0.0;          // [N/m] k1 at the foot, painted factors included
+  double relaxed_depth = 0;  // [m]   q >= 0
+  double free_depth = 0.0;   // [m]   y >= 0
+
+  double force(double depth) const;      // [N] law(d)
+  double slope(double depth) const;      // [N/m] of force(), arm included
+  double potential(double depth) const;  // [J] its integral from 0
+  StoredEnergy stored(double depth) const;
+};
+
+// E* = E / (1 - nu^2). [Pa]
+double plane_modulus(const Deformable& deformable);
+
+// The law at a place whose painted stiffness factor is `factor` [1], for a tip of this radius [m].
+ContactLaw contact_law(const Deformable& deformable, const Motion& motion, double factor, double radius);
+
+}  // namespace pliant

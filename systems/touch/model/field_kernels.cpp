@@ -1,0 +1,367 @@
+#include "systems/touch/model/field_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "components/registered.h"
+#include "runtime/assert.h"
+#include "runtime/kernel.h"
+#include "systems/touch/model/nonlinear_step.h"
+
+namespace pliant {
+namespace {
+
+// A radial shape depends on u alone; target and gradient follow in the same way for all of them. kFresh: overwrites
+// `out`.
+template <bool kFresh, class Profile>
+inline __attribute__((always_inline)) void add_radial(const Mesh& mesh, std::uint32_t begin, const FieldSource& s,
+                                                      ZoneTargets& out, Profile profile) {
+  const float* __restrict px = mesh.px.data() + begin;
+  const float* __restrict py = mesh.py.data() + begin;
+  const float* __restrict pz = mesh.pz.data() + begin;
+  const float* __restrict nx = mesh.nx.data() + begin;
+  const float* __restrict ny = mesh.ny.data() + begin;
+  const float* __restrict nz = mesh.nz.data() + begin;
+  const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
+  const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z;
+  const float inv = s.inv_reach2, alpha = s.amplitude;
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    const float dx = px[i] - cx, dy = py[i] - cy, dz = pz[i] - cz;
+    float u = (dx * dx + dy * dy + dz * dz) * inv;
+    u = u < 1.0f ? u : 1.0f;
+    float facing = 4.0f * (nx[i] * mx + ny[i] * my + nz[i] * mz);  // shared::shape_facing
+    facing = facing < 0.0f ? 0.0f : facing;
+    facing = facing > 1.0f ? 1.0f : facing;
+    const vec2 f = profile(u);
+    const float a = alpha * facing;
+    const float g = 2.0f * inv * a * f.y;
+    const float along = dx * nx[i] + dy * ny[i] + dz * nz[i];
+    out.h[i] = (kFresh ? 0.0f : out.h[i]) - a * f.x;
+    out.nx[i] = (kFresh ? 0.0f : out.nx[i]) + g * (dx - along * nx[i]);
+    out.ny[i] = (kFresh ? 0.0f : out.ny[i]) + g * (dy - along * ny[i]);
+    out.nz[i] = (kFresh ? 0.0f : out.nz[i]) + g * (dz - along * nz[i]);
+  }
+}
+template <class Profile>
+inline __attribute__((always_inline)) void radial(const Mesh& mesh, std::uint32_t begin, const FieldSource& s,
+                                                  bool fresh, ZoneTargets& out, Profile profile) {
+  fresh ? add_radial<true>(mesh, begin, s, out, profile) : add_radial<false>(mesh, begin, s, out, profile);
+}
+
+PLIANT_KERNEL void add_volume(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                              ZoneTargets& out) {
+  const float c = s.parameter;
+  radial(mesh, begin, s, fresh, out, [c](float u) { return shared::shape_volume(u, c); });
+}
+PLIANT_KERNEL void add_wendland(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                                ZoneTargets& out) {
+  radial(mesh, begin, s, fresh, out, [](float u) { return shared::shape_wendland(u); });
+}
+
+PLIANT_KERNEL void add_punch(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                             ZoneTargets& out) {
+  const float inner = s.parameter;
+  radial(mesh, begin, s, fresh, out, [inner](float u) { return shared::shape_punch(u, inner); });
+}
+PLIANT_KERNEL void add_hertz(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                             ZoneTargets& out) {
+  const float inner = s.parameter;
+  radial(mesh, begin, s, fresh, out, [inner](float u) { return shared::shape_hertz(u, inner); });
+}
+PLIANT_KERNEL void add_gaussian(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                                ZoneTargets& out) {
+  radial(mesh, begin, s, fresh, out, [](float u) { return shared::shape_gaussian(u); });
+}
+
+PLIANT_KERNEL void add_kelvinlet(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                                 ZoneTargets& out) {
+  const float* __restrict px = mesh.px.data() + begin;
+  const float* __restrict py = mesh.py.data() + begin;
+  const float* __restrict pz = mesh.pz.data() + begin;
+  const float* __restrict nx = mesh.nx.data() + begin;
+  const float* __restrict ny = mesh.ny.data() + begin;
+  const float* __restrict nz = mesh.nz.data() + begin;
+  const vec3 center = s.center, normal = s.normal;
+  const float inv = s.inv_reach2, alpha = s.amplitude, e = s.parameter;
+  if (fresh) out = {};
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    const vec3 d(px[i] - center.x, py[i] - center.y, pz[i] - center.z), n(nx[i], ny[i], nz[i]);
+    const vec4 t = shared::field_kelvinlet(d, n, normal, inv, alpha, e);
+    out.nx[i] += t.x;
+    out.ny[i] += t.y;
+    out.nz[i] += t.z;
+    out.h[i] += t.w;
+  }
+}
+
+vec2 profile_of(const ShapeFunction& shape, float u) {
+  return {static_cast<float>(shape.value(u)), static_cast<float>(shape.slope(u))};
+}
+
+void add_registered(const ShapeFunction& shape, const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
+                    ZoneTargets& out) {
+  radial(mesh, begin, s, fresh, out, [&](float u) { return profile_of(shape, u); });
+}
+
+constexpr std::uint32_t kLanes = 8;
+
+// Sums of a whole zone are accumulated in lanes, so that the order of additions is the same on every machine.
+inline __attribute__((always_inline)) double sum_lanes(const float (&lanes)[kLanes]) {
+  double total = 0;
+  for (const float lane : lanes) total += static_cast<double>(lane);
+  return total;
+}
+
+PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, VolumeSums& sums) {
+  const float* __restrict px = mesh.px.data() + begin;
+  const float* __restrict py = mesh.py.data() + begin;
+  const float* __restrict pz = mesh.pz.data() + begin;
+  const float* __restrict nx = mesh.nx.data() + begin;
+  const float* __restrict ny = mesh.ny.data() + begin;
+  const float* __restrict nz = mesh.nz.data() + begin;
+  const float* __restrict area = mesh.area.data() + begin;
+  const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
+  const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z, inv = s.inv_reach2;
+  float S0[kLanes] = {}, S1[kLanes] = {}, Q0[kLanes] = {}, Q1[kLanes] = {}, Q2[kLanes] = {}, bend[kLanes] = {},
+        spread[kLanes] = {};
+  for (std::uint32_t v = 0; v < kZoneSize; v += kLanes) {
+    for (std::uint32_t l = 0; l < kLanes; ++l) {
+      const std::uint32_t i = v + l;
+      const float dx = px[i] - cx, dy = py[i] - cy, dz = pz[i] - cz;
+      const float r2 = dx * dx + dy * dy + dz * dz;
+      float u = r2 * inv;
+      u = u < 1.0f ? u : 1.0f;
+      float facing = 4.0f * (nx[i] * mx + ny[i] * my + nz[i] * mz);
+      facing = facing < 0.0f ? 0.0f : facing;
+      facing = facing > 1.0f ? 1.0f : facing;
+      const float q = 1.0f - u;
+      const float w = q * q * q * facing;
+      const float aw = area[i] * w, aww = aw * w;
+      S0[l] += aw;
+      S1[l] += aw * u;
+      Q0[l] += aww;
+      Q1[l] += aww * u;
+      Q2[l] += aww * u * u;
+      bend[l] += aw * ((nx[i] - mx) * dx + (ny[i] - my) * dy + (nz[i] - mz) * dz);
+      spread[l] += aw * r2;
+    }
+  }
+  sums.S0 += sum_lanes(S0);
+  sums.S1 += sum_lanes(S1);
+  sums.Q0 += sum_lanes(Q0);
+  sums.Q1 += sum_lanes(Q1);
+  sums.Q2 += sum_lanes(Q2);
+  sums.bend += sum_lanes(bend);
+  sums.spread += sum_lanes(spread);
+}
+
+PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, float hh, float hv, float vh,
+                               float vv) {
+  for (std::uint32_t i = 0; i < 4 * kZoneSize; ++i) {
+    const float x = state[i], v = rate[i];
+    state[i] = hh * x + hv * v;
+    rate[i] = vh * x + vv * v;
+  }
+}
+
+PLIANT_KERNEL void step_solid(float* __restrict state, float* __restrict rate, float* __restrict arm,
+                              const float (&m)[9]) {
+  const float m0 = m[0], m1 = m[1], m2 = m[2], m3 = m[3], m4 = m[4], m5 = m[5], m6 = m[6], m7 = m[7], m8 = m[8];
+  for (std::uint32_t i = 0; i < 4 * kZoneSize; ++i) {
+    const float x = state[i], v = rate[i], q = arm[i];
+    state[i] = m0 * x + m1 * v + m2 * q;
+    rate[i] = m3 * x + m4 * v + m5 * q;
+    arm[i] = m6 * x + m7 * v + m8 * q;
+  }
+}
+
+// The same for coefficients per vertex.
+PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, const vec4* __restrict step) {
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    const float hh = step[i].x, hv = step[i].y, vh = step[i].z, vv = step[i].w;
+    for (std::uint32_t c = 4 * i; c < 4 * i + 4; ++c) {
+      const float x = state[c], v = rate[c];
+      state[c] = hh * x + hv * v;
+      rate[c] = vh * x + vv * v;
+    }
+  }
+}
+
+PLIANT_KERNEL void step_solid(float* __restrict state, float* __restrict rate, float* __restrict arm,
+                              const std::array<float, 9>* __restrict step) {
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    const std::array<float, 9>& m = step[i];
+    for (std::uint32_t c = 4 * i; c < 4 * i + 4; ++c) {
+      const float x = state[c], v = rate[c], q = arm[c];
+      state[c] = m[0] * x + m[1] * v + m[2] * q;
+      rate[c] = m[3] * x + m[4] * v + m[5] * q;
+      arm[c] = m[6] * x + m[7] * v + m[8] * q;
+    }
+  }
+}
+
+PLIANT_KERNEL void largest(const float* __restrict state, const float* __restrict rate, float scale,
+                           float (&best)[kLanes]) {
+  for (std::uint32_t i = 0; i < 4 * kZoneSize; i += kLanes) {
+    for (std::uint32_t l = 0; l < kLanes; ++l) {
+      const float x = std::abs(state[i + l]), v = std::abs(rate[i + l]) * scale;
+      const float m = x > v ? x : v;
+      best[l] = best[l] > m ? best[l] : m;
+    }
+  }
+}
+
+ZoneRest rest_of(double mass, const vec4* state, const vec4* rate) {
+  float best[kLanes] = {};
+  largest(&state->x, &rate->x, static_cast<float>(std::sqrt(mass)), best);
+  // Lanes 3 and 7 are heights, the others normal corrections.
+  return {std::max(best[3], best[7]), std::max({best[0], best[1], best[2], best[4], best[5], best[6]})};
+}
+
+void solid_matrix(const Motion& motion, float (&m)[9]) {
+  for (int i = 0; i < 9; ++i) m[i] = static_cast<float>(motion.solid[i / 3][i % 3]);
+}
+
+PLIANT_KERNEL void interleave(const ZoneTargets& t, const float* __restrict residual, float* __restrict stream) {
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    stream[4 * i + 0] = residual[4 * i + 0] + t.nx[i];
+    stream[4 * i + 1] = residual[4 * i + 1] + t.ny[i];
+    stream[4 * i + 2] = residual[4 * i + 2] + t.nz[i];
+    stream[4 * i + 3] = residual[4 * i + 3] + t.h[i];
+  }
+}
+PLIANT_KERNEL void interleave(const ZoneTargets& t, float* __restrict stream) {
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    stream[4 * i + 0] = t.nx[i];
+    stream[4 * i + 1] = t.ny[i];
+    stream[4 * i + 2] = t.nz[i];
+    stream[4 * i + 3] = t.h[i];
+  }
+}
+
+}  // namespace
+
+vec4 target_at(const FieldSource& source, vec3 position, vec3 normal) {
+  if (const ShapeFunction* own = registered_shape(source.shape)) {
+    const vec3 d = position - source.center;
+    const float u = std::min(glm::dot(d, d) * source.inv_reach2, 1.0f);
+    return shared::field_radial(d, normal, source.normal, source.inv_reach2, source.amplitude, profile_of(*own, u));
+  }
+  const vec4 place(source.center, source.inv_reach2), push(source.normal, source.amplitude);
+  return shared::field_target(place, push, vec4(source.parameter, float(source.shape), 0, 0), position, normal);
+}
+
+float share_at(const FieldSource& source, vec3 position, vec3 normal) {
+  FieldSource unit = source;
+  unit.amplitude = 1.0f;
+  return -target_at(unit, position, normal).w;
+}
+
+void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets) {
+  const std::uint32_t begin = mesh.zone_begin(zone);
+  if (const ShapeFunction* own = registered_shape(source.shape))
+    return add_registered(*own, mesh, begin, source, fresh, targets);
+  switch (source.shape) {
+    case Shape::kPunch:
+      return add_punch(mesh, begin, source, fresh, targets);
+    case Shape::kHertz:
+      return add_hertz(mesh, begin, source, fresh, targets);
+    case Shape::kGaussian:
+      return add_gaussian(mesh, begin, source, fresh, targets);
+    case Shape::kWendland:
+      return add_wendland(mesh, begin, source, fresh, targets);
+    case Shape::kVolume:
+      return add_volume(mesh, begin, source, fresh, targets);
+    case Shape::kKelvinlet:
+      return add_kelvinlet(mesh, begin, source, fresh, targets);
+  }
+  UNREACHABLE();
+}
+
+void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums) {
+  sum_volume(mesh, mesh.zone_begin(zone), source, sums);
+}
+
+ZoneRest step_residual(const Motion& motion, const PaintedMotion& painted, HeightField& field, std::uint32_t zone) {
+  const std::size_t first = std::size_t{zone} * kZoneSize;
+  vec4* state = field.residual.data() + first;
+  vec4* rate = field.rate.data() + first;
+  if (motion.nonlinear()) {
+    step_nonlinear(motion, painted, zone, state, rate, nullptr);
+  } else if (!painted.solid.empty()) {
+    step_solid(&state->x, &rate->x, &field.arm[first].x, painted.solid.data() + first);
+  } else if (!painted.linear.empty()) {
+    step_linear(&state->x, &rate->x, painted.linear.data() + first);
+  } else if (motion.law.kind == SpringLaw::kStandardLinearSolid) {
+    float m[9];
+    solid_matrix(motion, m);
+    step_solid(&state->x, &rate->x, &field.arm[first].x, m);
+  } else {
+    const StepCoefficients& c = motion.linear;
+    step_linear(&state->x, &rate->x, static_cast<float>(c.hh), static_cast<float>(c.hv), static_cast<float>(c.vh),
+                static_cast<float>(c.vv));
+  }
+  return rest_of(painted.empty() ? motion.mass : painted.most_mass, state, rate);
+}
+
+bool step_relaxed(const Motion& motion, const Mesh& mesh, HeightField& field, std::uint32_t zone,
+                  const ZoneTargets& targets, bool reached) {
+  const float E = static_cast<float>(motion.arm_decay),
+              ramp = static_cast<float>(motion.arm_time / motion.dt * (1 - motion.arm_decay));
+  bool took = false;
+  for (std::uint32_t v = mesh.zone_begin(zone), i = 0; v < mesh.zone_end(zone); ++v, ++i) {
+    vec4& z = field.relaxed[v];
+    const vec4 now = reached ? vec4(targets.nx[i], targets.ny[i], targets.nz[i], targets.h[i]) : vec4(0);
+    if (now == vec4(0) && z == vec4(0)) continue;
+    const vec4 before = field.stream[v] - field.residual[v];
+    z = now - (E * (before - z) + ramp * (now - before));
+    // Equilibrium of the free surface: k h + k1 (h - z) = 0. If it is deeper than the target, the excess is released
+    // there.
+    const float r1 = arm_stiffness(motion, mesh, v);
+    const float held = r1 > 0 && now.w < 0 ? now.w * (1 + 1 / r1) : 0.0f;
+    if (!(z.w < held) || !(z.w < 0)) {
+      if (now == vec4(0)) z = vec4(0);
+      continue;
+    }
+    const vec4 left = (1 - held / z.w) * z;
+    field.arm[v] -= r1 * left;
+    z -= left;
+    took = true;
+  }
+  return took;
+}
+
+ZoneRest step_lagging(const Motion& motion, const PaintedMotion& painted, HeightField& field, std::uint32_t zone,
+                      const ZoneTargets& targets) {
+  const double mass = painted.empty() ? motion.mass : painted.most_mass;
+  vec4* state = field.residual.data() + zone * kZoneSize;
+  if (motion.nonlinear()) {
+    vec4* rate = field.rate.data() + zone * kZoneSize;
+    step_nonlinear(motion, painted, zone, state, rate, &targets);
+    return rest_of(mass, state, rate);
+  }
+  // The law is linear, so the state relative to the target moves freely.
+  const float* const t[4] = {targets.nx.data(), targets.ny.data(), targets.nz.data(), targets.h.data()};
+  for (std::uint32_t i = 0; i < kZoneSize; ++i)
+    for (int c = 0; c < 4; ++c) state[i][c] -= t[c][i];
+  step_residual(motion, painted, field, zone);
+  for (std::uint32_t i = 0; i < kZoneSize; ++i)
+    for (int c = 0; c < 4; ++c) state[i][c] += t[c][i];
+  return rest_of(mass, state, field.rate.data() + zone * kZoneSize);
+}
+
+void compose_stream(HeightField& field, std::uint32_t zone, const ZoneTargets* targets, bool with_residual) {
+  vec4* stream = field.stream.data() + zone * kZoneSize;
+  const vec4* residual = field.residual.data() + zone * kZoneSize;
+  if (targets && with_residual) {
+    interleave(*targets, &residual->x, &stream->x);
+  } else if (targets) {
+    interleave(*targets, &stream->x);
+  } else if (with_residual) {
+    std::copy(residual, residual + kZoneSize, stream);
+  } else {
+    std::fill(stream, stream + kZoneSize, vec4(0));
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,194 @@
+// The force on every probe: minus the gradient of one stored energy per object (contact_energy.h), a rate term, and
+// bristle friction across the normal. Both dissipative terms only remove energy: neither exceeds the pressing force.
+// write_devices computes the force sent to the hand.
+#include "systems/touch/model/friction_feedback.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "systems/touch/collide/collision.h"
+#include "systems/touch/model/contact_law.h"
+#include "systems/touch/model/field_kernels.h"
+#include "systems/touch/model/friction.h"
+#include "systems/touch/prepare/touch_state.h"
+
+namespace pliant {
+namespace {
+
+// A shallower contact stores no energy: its share would divide by it. [1] of the reach
+constexpr double kLeastDepth = 1e-9;
+
+// One contact of this tick, from collision to force.
+struct Pressing {
+  SourceState* source;
+  Contact* contact;
+  StoredEnergy stored;
+  Painted stiffness;
+  double slope = 0.0;  // [N/m] of the stored energy's force
+};
+
+// y: free recovery of the surface towards rest.
+void advance_free_surface(Contact& contact, const FootBlend& place, const Mesh& mesh, const Motion& motion) {
+  if (contact.free_height == 0.0 && contact.free_velocity == 0.0) return;
+  const HeightState y =
+      step_free(motion, painted(place, mesh, mesh.stiffness_factor).value,
+                painted(place, mesh, mesh.damping_factor).value, {contact.free_height, contact.free_velocity});
+  contact.free_height = y.height < -1e-12 ? y.height : 0.0;
+  contact.free_velocity = contact.free_height < 0 ? y.velocity : 0.0;
+}
+
+// q, the creep depth of the tissue at a place, and its slope. The slope is that of the dent, which the field stores
+// with every height (its normal correction is -dh/dx). The slope of the interpolated heights would be as jagged as the
+// mesh.
+Painted relaxed_depth(const FootBlend& place, const Mesh& mesh, const Motion& motion, const HeightField& field) {
+  Painted sum{0.0, dvec3(0)};
+  for (std::uint32_t f = 0; f < place.count; ++f) {
+    const Foot& foot = place.foot[f];
+    double depth = 0.0;
+    dvec3 slope(0);
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t v = mesh.triangles[foot.triangle][i];
+      const float r1 = arm_stiffness(motion, mesh, v);
+      // Under the targets, plus the part taken over by the residual: q = k1 / k (h - z).
+      const vec4 z = field.relaxed[v] + (r1 > 0 ? field.residual[v] - field.arm[v] / r1 : vec4(0));
+      depth -= foot.barycentric[i] * static_cast<double>(z.w);
+      slope += foot.barycentric[i] * dvec3(z);
+    }
+    sum.value += place.weight[f] * depth;
+    sum.gradient += place.weight[f] * (glm::transpose(foot.moves) * slope) + depth * place.weight_slope[f];
+  }
+  return sum;
+}
+
+// Stored energy of one contact as if it were alone, and its gradient.
+bool store(const ObjectState& object, const Deformable& deformable, const Mesh& mesh, const HeightField& field,
+           Pressing& pressing, LoadedContact& out) {
+  const FootBlend& place = pressing.source->place;
+  const Contact& contact = *pressing.contact;
+  const double depth = -contact.height;
+  pressing.stiffness = painted(place, mesh, mesh.stiffness_factor);
+  ContactLaw law = contact_law(deformable, object.motion, pressing.stiffness.value, pressing.source->tip.radius);
+  law.free_depth = std::max(-contact.free_height, contact.unpushed);
+  Painted relaxed{0.0, dvec3(0)}, relaxation;
+  if (!field.arm.empty() && law.arm > 0) {
+    relaxation = painted(place, mesh, mesh.relaxation_factor);
+    law.arm *= relaxation.value;
+    relaxed = relaxed_depth(place, mesh, object.motion, field);
+    if (relaxed.value < 0) relaxed = {0.0, dvec3(0)};  // no tensile force
+    law.relaxed_depth = relaxed.value;
+  }
+  pressing.stored = law.stored(depth);
+  pressing.slope = law.slope(depth);
+  const double least = kLeastDepth * deformable.reach;
+  if (!(pressing.stored.energy > 0.5 * law.stiffness * least * least)) return false;
+  out.energy = pressing.stored.energy;
+  // W is proportional to the painted stiffness; its dependence on q adds q's slope.
+  out.pull = pressing.stored.force * place.gradient -
+             (pressing.stored.energy / std::max(pressing.stiffness.value, 1e-12)) * pressing.stiffness.gradient -
+             pressing.stored.by_relaxed * relaxed.gradient;
+  out.p = place.p;
+  out.normal = place.normal;
+  out.moves = place.moves;
+  out.turns = place.turns;
+  out.load = contact.load;
+  return true;
+}
+
+// Rate term and friction on top of the elastic force; world frame.
+void feel(World& world, const Deformable& deformable, const Mesh& mesh, const ObjectState& object, const Pose& pose,
+          const LoadedContact& loaded, Pressing& pressing, Tick tick) {
+  Registry& registry = world.registry;
+  Contact& contact = *pressing.contact;
+  const FootBlend& place = pressing.source->place;
+  const double along = length(place.gradient);
+  double normal = loaded.share * pressing.stored.force * along;
+  const double damping = painted(place, mesh, mesh.damping_factor).value;
+  const double c = damping * (deformable.contact_damping_material ? object.motion.damping * deformable.stiffness
+                                                                  : deformable.contact_damping);
+  const double rate = (contact.previous_height - contact.height) / tick.elapsed();
+  const double damped = std::max(-normal, loaded.share * c * rate);
+  normal += damped;
+  dvec3 force = loaded.force + (along > 0 ? damped / along : 0.0) * place.gradient;
+  contact.load = loaded.load;
+  contact.share = loaded.share;
+  contact.normal_force = normal;
+  contact.state = normal > 0 ? ContactState::kTouching : ContactState::kInside;
+
+  Probe& probe = registry.get<Probe>(contact.probe);
+  const Tip& tip = pressing.source->tip;
+  const dvec3 at = tip_position(probe, tip);
+  // Friction in the tangent plane of this tick; the last tick's deflection is projected onto it.
+  const dvec3 moving =
+      (at - tip_position_before(probe, tip)) / tick.elapsed() - surface_velocity(registry, contact.object, at);
+  const dvec3 velocity = glm::conjugate(pose.rotation) * moving;
+  const double factor = painted(place, mesh, mesh.friction_factor).value;
+  const double K = kBristleStiffness * deformable.stiffness * pressing.stiffness.value, B = K * kBristleDampingTime;
+  Bristle bristle{contact.bristle - dot(contact.bristle, contact.normal) * contact.normal, contact.sliding};
+  force -= step_bristle(bristle, velocity - dot(velocity, contact.normal) * contact.normal, K, B,
+                        factor * deformable.friction_static * normal, factor * deformable.friction_sliding * normal,
+                        tick.elapsed());
+  contact.bristle = bristle.deflection;
+  contact.sliding = bristle.sliding;
+  contact.force = pose.rotation * force;
+  contact.gradient = pose.rotation * place.gradient;
+  contact.stiffness = loaded.share * pressing.slope;
+  contact.damping = damped > -(normal - damped) ? loaded.share * c : 0.0;
+  contact.bristle_stiffness = bristle.sliding ? 0.0 : K;
+  contact.bristle_damping = bristle.sliding ? 0.0 : B;
+  probe.force += contact.force;
+  probe.torque += cross(at - probe.position, contact.force);
+}
+
+void release(Contact& contact) {
+  contact.state = contact.height < 0 ? ContactState::kInside : ContactState::kFree;
+  contact.load = contact.share = contact.normal_force = 0.0;
+  contact.force = contact.bristle = contact.gradient = dvec3(0);
+  contact.stiffness = contact.damping = contact.bristle_stiffness = contact.bristle_damping = 0.0;
+  contact.sliding = false;
+}
+
+}  // namespace
+
+void friction_feedback(World& world, Tick tick) {
+  Registry& registry = world.registry;
+  for (auto [entity, probe] : registry.view<Probe>()) probe.force = probe.torque = dvec3(0);
+  for (const std::uint32_t slot : world.touch->awake) {
+    ObjectState& object = world.touch->objects[slot];
+    const Deformable& deformable = registry.get<Deformable>(object.entity);
+    const Mesh& mesh = world.meshes[deformable.mesh];
+    const HeightField& field = world.fields[deformable.field];
+    std::array<Pressing, kMaxContactsPerObject> pressing;
+    std::vector<LoadedContact>& loaded = world.touch->loaded;
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
+      SourceState& source = object.sources[i];
+      if (!source.tracked) continue;
+      Contact& contact = registry.get<Contact>(source.contact);
+      advance_free_surface(contact, source.place, mesh, object.motion);
+      pressing[count] = {&source, &contact, {}, {}, 0.0};
+      if (contact.height < 0 && store(object, deformable, mesh, field, pressing[count], loaded[count])) {
+        ++count;
+      } else {
+        if (contact.height < 0 && !std::isfinite(pressing[count].stored.energy)) world.dropped |= kDroppedNonFinite;
+        release(contact);
+      }
+    }
+    object.stored = count > 0 ? share_load({loaded.data(), count}, object.kernel) : 0.0;
+    if (count == 0) continue;
+    if (!std::isfinite(object.stored)) {  // from a registered law or shape
+      world.dropped |= kDroppedNonFinite;
+      object.stored = 0.0;
+    }
+    const Pose& pose = registry.get<Pose>(object.entity);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (loaded[i].share > 0) {
+        feel(world, deformable, mesh, object, pose, loaded[i], pressing[i], tick);
+      } else {
+        release(*pressing[i].contact);
+      }
+    }
+  }
+}
+
+}  // namespace pliant

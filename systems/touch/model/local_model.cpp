@@ -1,0 +1,302 @@
+#include "systems/touch/model/local_model.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "components/registered.h"
+
+namespace pliant {
+
+StepCoefficients exact_step(double m, double b, double k, double T) {
+  if (m == 0.0) {
+    if (b == 0.0) return {0, 0, 0, 0};  // only a spring: at equilibrium at once
+    const double E = std::exp(-k * T / b);
+    return {E, 0, -k / b * E, 0};
+  }
+  const double a = b / (2 * m), w2 = k / m, D = a * a - w2;
+  const double y = D * T * T;
+  double C, S;  // e^(-aT) cosh(sqrt(D) T) and e^(-aT) sinh(sqrt(D) T) / sqrt(D)
+  if (std::abs(y) < 1e-6) {
+    const double E = std::exp(-a * T);
+    C = E * (1 + y / 2 + y * y / 24);
+    S = E * T * (1 + y / 6 + y * y / 120);
+  } else if (D < 0) {
+    const double w = std::sqrt(-D), E = std::exp(-a * T);
+    C = E * std::cos(w * T);
+    S = E * std::sin(w * T) / w;
+  } else {
+    const double s = std::sqrt(D);
+    const double r1 = -w2 / (s + a), r2 = -(s + a);  // r1 written so that a - s does not cancel
+    const double e1 = std::exp(r1 * T), e2 = std::exp(r2 * T);
+    // C + aS = (r1 e2 - r2 e1) / 2s and C - aS = (r1 e1 - r2 e2) / 2s, again without cancellation.
+    S = (e1 - e2) / (2 * s);
+    return {(r1 * e2 - r2 * e1) / (2 * s), S, -w2 * S, (r1 * e1 - r2 * e2) / (2 * s)};
+  }
+  return {C + a * S, S, -w2 * S, C - a * S};
+}
+
+HeightState step_oscillator(HeightState state, double m, double b, double k, double f, double T) {
+  const auto [h, v] = state;
+  if (k == 0.0) {
+    if (m == 0.0) return b == 0.0 ? state : HeightState{h + f / b * T, f / b};
+    if (b == 0.0) return {h + v * T + 0.5 * f / m * T * T, v + f / m * T};
+    const double lost = -std::expm1(-b * T / m);  // 1 - E
+    return {h + lost * (m / b) * v + (T - lost * m / b) * f / b, v - lost * v + lost * f / b};
+  }
+  const StepCoefficients c = exact_step(m, b, k, T);
+  const double x = h - f / k;
+  return {f / k + c.hh * x + c.hv * v, c.vh * x + c.vv * v};
+}
+
+std::array<std::array<double, 3>, 3> solid_step(double m, double b, double k, double k1, double tau, double T) {
+  using Matrix = std::array<std::array<double, 3>, 3>;
+  const auto multiply = [](const Matrix& x, const Matrix& y) {
+    Matrix z{};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        for (int l = 0; l < 3; ++l) z[i][j] += x[i][l] * y[l][j];
+    return z;
+  };
+  const Matrix A{{{0, T, 0}, {-k / m * T, -b / m * T, -T / m}, {0, k1 * T, -T / tau}}};
+  double norm = 0.0;
+  for (const auto& row : A) norm = std::max(norm, std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]));
+  // Scaling and squaring of the Taylor series: enough terms for double precision at norm 1/2.
+  int squarings = 0;
+  double scale = 1.0;
+  for (; norm * scale > 0.5; ++squarings) scale *= 0.5;
+  Matrix term{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, sum = term, scaled = A;
+  for (auto& row : scaled)
+    for (double& value : row) value *= scale;
+  for (int n = 1; n <= 18; ++n) {
+    term = multiply(term, scaled);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) sum[i][j] += (term[i][j] /= n);
+  }
+  for (; squarings > 0; --squarings) sum = multiply(sum, sum);
+  return sum;
+}
+
+double natural_frequency(double zeta, double settling_time) {
+  if (zeta == 0.0) return 5.83 / settling_time;
+  // The slowest part of the response from rest, |x| = 0.02. Light damping: closed-form envelope. Else the last crossing
+  // of the exact response, in units of 1/w0.
+  if (zeta < 0.1) return -std::log(0.02) / zeta / settling_time;
+  const double slowest = zeta > 1.0 ? 1.0 / (zeta + std::sqrt(zeta * zeta - 1.0)) : zeta;
+  const auto above = [&](double t) { return std::abs(exact_step(1.0, 2 * zeta, 1.0, t).hh) > 0.02; };
+  const double step = 8.0 / slowest / 1000;
+  double low = 1000 * step;
+  while (low > step && !above(low)) low -= step;
+  double high = low + step;
+  for (int i = 0; i < 50; ++i) {
+    const double t = 0.5 * (low + high);
+    (above(t) ? low : high) = t;
+  }
+  return low / settling_time;
+}
+
+double creep_ratio(double w0, double settling_time) {
+  // From rest, x(t) = (r2 e^(-r1 t) - r1 e^(-r2 t)) / (r2 - r1) with r1 r2 = w0^2; the slower r1, by bisection.
+  double low = 0.0, high = w0;
+  for (int i = 0; i < 100; ++i) {
+    const double r1 = 0.5 * (low + high), r2 = w0 * w0 / r1;
+    const double left = (r2 * std::exp(-r1 * settling_time) - r1 * std::exp(-r2 * settling_time)) / (r2 - r1);
+    (left > 0.02 ? low : high) = r1;
+  }
+  const double r1 = 0.5 * (low + high);
+  return 0.5 * (r1 + w0 * w0 / r1) / w0;
+}
+
+double damping_of(const Deformable& d) {
+  const bool slow = natural_frequency(d.damping_ratio, d.settling_time) < kSlowest;
+  return slow ? creep_ratio(kSlowest, d.settling_time) : d.damping_ratio;
+}
+
+namespace {
+
+// The discrete gradient of a law given by its values: the difference of its potential. Where that would cancel, the
+// mean of its force over the interval (Gauss-Legendre, four points).
+double mean_force(const RestoringLaw& law, double h0, double h1) {
+  const double d = h1 - h0;
+  if (std::abs(d) > 1e-3 * (std::abs(h0) + std::abs(h1))) return (law.potential(h1) - law.potential(h0)) / d;
+  constexpr double kAt[2] = {0.3399810435848563, 0.8611363115940526};
+  constexpr double kWeight[2] = {0.6521451548625461, 0.3478548451374538};
+  const double middle = 0.5 * (h0 + h1);
+  double sum = 0.0;
+  for (int i = 0; i < 2; ++i)
+    sum += kWeight[i] * (law.force(middle - 0.5 * d * kAt[i]) + law.force(middle + 0.5 * d * kAt[i]));
+  return 0.5 * sum;
+}
+
+}  // namespace
+
+double RestoringLaw::force(double h) const {
+  if (own) return own->force(h, {cubic, stiffening});
+  switch (kind) {
+    case SpringLaw::kLinear:
+    case SpringLaw::kStandardLinearSolid:
+      return h;
+    case SpringLaw::kCubic:
+      return h + cubic * h * h * h;
+    case SpringLaw::kExponential:
+      return h < 0 ? -std::expm1(-stiffening * h) / stiffening : h;
+  }
+  UNREACHABLE();
+}
+
+double RestoringLaw::potential(double h) const {
+  if (own) return own->potential(h, {cubic, stiffening});
+  switch (kind) {
+    case SpringLaw::kLinear:
+    case SpringLaw::kStandardLinearSolid:
+      break;
+    case SpringLaw::kCubic:
+      return h * h * (0.5 + 0.25 * cubic * h * h);
+    case SpringLaw::kExponential:
+      if (h < 0) {
+        const double x = -stiffening * h;
+        // (e^x - 1 - x) / alpha^2; its series where the difference would cancel.
+        const double d = std::abs(x) < 1e-3 ? x * x * (0.5 + x / 6 + x * x / 24) : std::expm1(x) - x;
+        return d / (stiffening * stiffening);
+      }
+      break;
+  }
+  return 0.5 * h * h;
+}
+
+double RestoringLaw::slope(double h) const {
+  if (own) return own->slope(h, {cubic, stiffening});
+  switch (kind) {
+    case SpringLaw::kLinear:
+    case SpringLaw::kStandardLinearSolid:
+      return 1.0;
+    case SpringLaw::kCubic:
+      return 1 + 3 * cubic * h * h;
+    case SpringLaw::kExponential:
+      return h < 0 ? std::exp(-stiffening * h) : 1.0;
+  }
+  UNREACHABLE();
+}
+
+double RestoringLaw::discrete_gradient(double h0, double h1) const {
+  if (own) return mean_force(*this, h0, h1);
+  switch (kind) {
+    case SpringLaw::kLinear:
+    case SpringLaw::kStandardLinearSolid:
+      break;
+    case SpringLaw::kCubic:
+      return 0.5 * (h0 + h1) + 0.25 * cubic * (h0 + h1) * (h0 * h0 + h1 * h1);
+    case SpringLaw::kExponential:
+      if (h0 < 0 || h1 < 0) {
+        const double d = h1 - h0;
+        if (h0 < 0 && h1 < 0) {
+          // -(1/alpha) (e^(-alpha h0) (1 + rise) - 1), 1 + rise = expm1(-alpha d) / (-alpha d), without cancellation.
+          const double x = -stiffening * d, em0 = std::expm1(-stiffening * h0);
+          const double rise =
+              std::abs(x) < 1e-3 ? x * (0.5 + x * (1.0 / 6 + x * (1.0 / 24 + x / 120))) : (std::expm1(x) - x) / x;
+          return -(em0 * (1 + rise) + rise) / stiffening;
+        }
+        if (std::abs(d) < 1e-12 * (std::abs(h0) + std::abs(h1))) return force(0.5 * (h0 + h1));
+        return (potential(h1) - potential(h0)) / d;  // across the kink: opposite signs, no cancellation
+      }
+      break;
+  }
+  return 0.5 * (h0 + h1);
+}
+
+double exponential_alpha(double stiffening) {
+  constexpr double kLinear = 1e-6;
+  return std::abs(stiffening) < kLinear ? kLinear : stiffening;
+}
+
+RestoringLaw restoring_law(const Deformable& deformable) {
+  return {deformable.spring, deformable.cubic / deformable.stiffness, exponential_alpha(deformable.stiffening),
+          registered_spring(deformable.spring)};
+}
+
+HeightState step_restoring(const RestoringLaw& law, HeightState state, double m, double b, double k, double f,
+                           double T) {
+  const auto [h0, v0] = state;
+  const double slope = law.slope(h0);
+  const bool stiff = k * slope * T * T > 2.25 * m;
+  // Residual of the step as a function of d = h1 - h0, and its derivative. Newton with bisection as a fallback: an
+  // exponential spring can throw a plain Newton step far away.
+  const auto residual = [&, h0 = h0, v0 = v0](double d, double& derivative) {
+    const double h1 = h0 + d;
+    if (stiff) {
+      derivative = m / (T * T) + b / T + k * law.slope(h1);
+      return m * (d / T - v0) / T + b * d / T + k * law.force(h1) - f;
+    }
+    // dG/dh1 is (F(h1) - G) / d, close to half the slope when d is small.
+    const double G = law.discrete_gradient(h0, h1);
+    const double dG =
+        std::abs(d) > 1e-9 * (std::abs(h0) + std::abs(h1)) ? (law.force(h1) - G) / d : 0.5 * law.slope(h1);
+    derivative = 2 * m / (T * T) + b / T + k * dG;
+    return m * (2 * d / T - 2 * v0) / T + b * d / T + k * G - f;
+  };
+  // The spring can only shorten the step that mass and damping alone would make: d is between 0 and that step.
+  double derivative = 0.0, d = 0.0;
+  double r = residual(d, derivative);
+  const double farthest = -r / ((stiff ? 1 : 2) * m / (T * T) + b / T);
+  double low = std::min(0.0, farthest), high = std::max(0.0, farthest);
+  for (int i = 0; i < 100 && r != 0.0; ++i) {
+    double next = d - r / derivative;
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    if (std::abs(next - d) <= 1e-15 * (std::abs(h0) + std::abs(next))) break;
+    d = next;
+    r = residual(d, derivative);
+    (r > 0 ? high : low) = d;  // the residual increases with d
+  }
+  return stiff ? HeightState{h0 + d, d / T} : HeightState{h0 + d, 2 * d / T - v0};
+}
+
+Motion motion(const Deformable& deformable, double dt) {
+  Motion result;
+  result.dt = dt;
+  const double w0 = std::max(kSlowest, natural_frequency(deformable.damping_ratio, deformable.settling_time));
+  result.mass = 1.0 / (w0 * w0);
+  result.damping = 2 * damping_of(deformable) / w0;
+  result.law = restoring_law(deformable);
+  result.linear = exact_step(result.mass, result.damping, 1.0, dt);
+  if (deformable.spring == SpringLaw::kStandardLinearSolid) {
+    result.arm_stiffness = deformable.relaxation_stiffness / deformable.stiffness;
+    result.arm_time = deformable.relaxation_time;
+    result.arm_decay = std::exp(-dt / deformable.relaxation_time);
+    result.solid = solid_step(result.mass, result.damping, 1.0, result.arm_stiffness, result.arm_time, dt);
+  }
+  return result;
+}
+
+Status check(const Deformable& d, const std::string& name) {
+  using R = DeformableRange;
+  struct Bound {
+    const char* key;
+    double value;
+    Range range;
+    const char* why = "";
+  };
+  const Bound bounds[] = {
+      {"stiffness", d.stiffness, R::kStiffness},
+      {"cubic", d.cubic, R::kCubic},
+      {"stiffening", d.stiffening, R::kStiffening},
+      {"relaxation.stiffness", d.relaxation_stiffness, R::kRelaxationStiffness},
+      {"relaxation.time", d.relaxation_time, R::kRelaxationTime},
+      {"damping_ratio", d.damping_ratio, R::kDampingRatio},
+      {"settling_time", d.settling_time, R::kSettlingTime},
+      {"contact_damping", d.contact_damping, R::kContactDamping},
+      {"reach", d.reach, {R::kReach.min, R::kReach.max, /*above_min*/ true}},  // spawn has replaced 0
+      {"volume", d.volume, R::kVolume},
+      {"contact_radius", d.contact_radius, {R::kContactRadius.min, kMostContactShare * d.reach}, ", 0.95 of its reach"},
+      {"friction_static", d.friction_static, kFrictionRange},
+      {"friction_sliding", d.friction_sliding, {kFrictionRange.min, d.friction_static}},
+  };
+  for (const Bound& bound : bounds) {
+    if (bound.range.holds(bound.value)) continue;
+    return Error{name,
+                 fmt::format("deformable.{} is {}; give a number {} {} to {}{}", bound.key, bound.value,
+                             bound.range.above_min ? "above" : "from", bound.range.min, bound.range.max, bound.why)};
+  }
+  return Done{};
+}
+
+}  // namespace pliant

@@ -1,0 +1,137 @@
+#include "systems/touch/prepare/move_objects.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/touch/prepare/prepare.h"
+#include "systems/touch/prepare/touch_state.h"
+
+namespace pliant {
+namespace {
+
+// [rad/s] of the shortest rotation from one orientation to another within dt.
+dvec3 angular_velocity(const dquat& from, const dquat& to, double dt) {
+  dquat turn = to * glm::conjugate(from);
+  if (turn.w < 0.0) turn = -turn;
+  const dvec3 axis(turn.x, turn.y, turn.z);  // length: sin(angle/2)
+  const double sine = length(axis);
+  if (sine == 0.0) return dvec3(0);
+  return axis * (2.0 * std::atan2(sine, turn.w) / (sine * dt));
+}
+
+// A touchable node's scale is in its mesh and does not change.
+void place_object(World& world, const MovingNode& node, double dt) {
+  Pose& pose = world.registry.get<Pose>(node.entity);
+  MovingPose& moving = world.registry.get<MovingPose>(node.entity);
+  const Pose now = rigid_part(node.world);
+  if (node.jumped) {
+    moving = {now, dvec3(0), dvec3(0), dt};
+  } else {
+    moving.dt = dt;
+    moving.previous = pose;
+    moving.velocity = (now.position - pose.position) / dt;
+    moving.angular_velocity = angular_velocity(pose.rotation, now.rotation, dt);
+  }
+  pose = now;
+  if (node.object < 0) return;
+  ObjectState& object = world.touch->objects[static_cast<std::size_t>(node.object)];
+  if (object.world_box.empty()) return;  // the object is removed
+  object.world_box = touch_box(world.meshes[world.registry.get<Deformable>(node.entity).mesh], pose);
+  world.touch->object_boxes.move(static_cast<std::uint32_t>(node.object), object.world_box);
+}
+
+bool carries_something(const Registry& registry, Entity entity) {
+  return registry.has<Deformable>(entity) || registry.has<Drawable>(entity);
+}
+
+}  // namespace
+
+std::vector<MovingNode> find_moving(World& world, const TouchState& touch) {
+  Registry& registry = world.registry;
+  const std::vector<Hierarchy::Link>& order = world.hierarchy.order();
+  std::vector<dmat4> to_world(order.size());
+  std::vector<bool> moves(order.size(), false), carries(order.size(), false);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::size_t parent = static_cast<std::size_t>(order[i].parent);
+    const LocalTransform* local = registry.find<LocalTransform>(order[i].entity);
+    to_world[i] =
+        (order[i].parent < 0 ? dmat4(1) : to_world[parent]) * local_frame(local ? *local : LocalTransform{}).matrix();
+    moves[i] = registry.has<Kinematic>(order[i].entity) || (order[i].parent >= 0 && moves[parent]);
+  }
+  for (std::size_t i = order.size(); i-- > 0;) {
+    if (carries_something(registry, order[i].entity)) carries[i] = true;
+    if (carries[i] && order[i].parent >= 0) carries[static_cast<std::size_t>(order[i].parent)] = true;
+  }
+
+  std::vector<MovingNode> found;
+  std::vector<std::int32_t> row(order.size(), -1);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (!moves[i] || !carries[i]) continue;
+    MovingNode node;
+    node.entity = order[i].entity;
+    if (order[i].parent >= 0) {
+      const std::size_t parent = static_cast<std::size_t>(order[i].parent);
+      node.parent = row[parent];
+      if (node.parent < 0) node.above = to_world[parent];
+    }
+    if (const LocalTransform* local = registry.find<LocalTransform>(node.entity)) node.rest = *local;
+    if (const Kinematic* kinematic = registry.find<Kinematic>(node.entity)) node.motion = kinematic->motion;
+    node.drawn = registry.has<Drawable>(node.entity);
+    for (std::size_t o = 0; o < touch.objects.size(); ++o)
+      if (touch.objects[o].entity == node.entity) node.object = static_cast<std::int32_t>(o);
+    node.world = to_world[i];
+    row[i] = static_cast<std::int32_t>(found.size());
+    found.push_back(node);
+  }
+  for (const MovingNode& node : found) {
+    const Pose* pose = registry.find<Pose>(node.entity);
+    if (pose && !registry.has<MovingPose>(node.entity)) registry.add<MovingPose>(node.entity, {*pose});
+  }
+  return found;
+}
+
+void move_objects(World& world, Tick tick) {
+  std::vector<MovingNode>& nodes = world.touch->moving;
+  for (MovingNode& node : nodes) {
+    const MovingNode* parent = node.parent < 0 ? nullptr : &nodes[static_cast<std::size_t>(node.parent)];
+    LocalFrame local = local_frame(node.rest);
+    node.jumped = !node.placed || (parent && parent->jumped);
+    if (node.motion.valid()) {
+      const PrescribedMotion& motion = world.motions[node.motion];
+      local = sample_motion(motion, node.rest, tick.time);
+      node.jumped = node.jumped || jumps_between(motion, node.time, tick.time);
+    }
+    node.world = (parent ? parent->world : node.above) * local.matrix();
+    node.placed = true;
+    node.time = tick.time;
+    if (world.registry.has<Pose>(node.entity))
+      place_object(world, node, tick.elapsed());
+    else if (WorldTransform* transform = world.registry.find<WorldTransform>(node.entity))
+      transform->matrix = mat4(node.world);
+  }
+}
+
+std::vector<MovedSnapshot> moved_snapshots(const World& world, const TouchState& touch) {
+  std::vector<MovedSnapshot> moved;
+  for (const MovingNode& node : touch.moving)
+    if (node.drawn) moved.push_back({node.entity, mat4(node.world)});
+  for (const ObjectState& object : touch.objects) {  // a program may place it elsewhere
+    const auto listed = std::any_of(moved.begin(), moved.end(),
+                                    [&](const MovedSnapshot& other) { return other.object == object.entity; });
+    if (!listed && world.registry.has<Drawable>(object.entity)) moved.push_back({object.entity, mat4(1)});
+  }
+  for (MovedSnapshot& object : moved)
+    if (const Pose* pose = world.registry.find<Pose>(object.object)) object.to_world = pose->matrix();
+  return moved;
+}
+
+void publish_moved(const World& world, Snapshot& snapshot) {
+  for (MovedSnapshot& object : snapshot.moved) {
+    if (const Pose* pose = world.registry.find<Pose>(object.object))
+      object.to_world = pose->matrix();
+    else
+      object.to_world = world.registry.get<WorldTransform>(object.object).matrix;
+  }
+}
+
+}  // namespace pliant

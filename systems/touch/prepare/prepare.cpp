@@ -1,0 +1,273 @@
+#include "systems/touch/prepare/prepare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "components/soft_body.h"
+#include "runtime/long_work.h"
+#include "systems/touch/collide/seams.h"
+#include "systems/touch/model/field.h"
+#include "systems/touch/model/force_field.h"
+
+namespace pliant {
+namespace {
+
+std::string name_of(const World& world, Entity entity) {
+  const Name* name = world.registry.find<Name>(entity);
+  return name ? name->value : fmt::format("entity {}", entity.index);
+}
+
+void size_field(HeightField& field, const Mesh& mesh, const Deformable& deformable) {
+  const std::size_t size = std::size_t{mesh.zone_count()} * kZoneSize;
+  const bool arm = deformable.spring == SpringLaw::kStandardLinearSolid;
+  if (field.stream.size() != size || field.arm.empty() == arm) {
+    field.stream.assign(size, vec4(0));
+    field.residual.assign(size, vec4(0));
+    field.rate.assign(size, vec4(0));
+    field.arm.assign(arm ? size : 0, vec4(0));
+    field.relaxed.assign(arm ? size : 0, vec4(0));
+    field.zone_state.assign(mesh.zone_count(), 0);
+    field.awake.clear();
+  }
+  field.awake.reserve(mesh.zone_count());
+}
+
+// Every probe gets a device, at least one that never moves it: every force passes the safety layer before it is read.
+void give_devices(Registry& registry) {
+  std::vector<Entity> without;
+  for (auto [entity, probe] : registry.view<Probe>())
+    if (!registry.alive(probe.device) || !registry.has<HapticDevice>(probe.device)) without.push_back(entity);
+  for (const Entity entity : without) {
+    if (!registry.has<HapticDevice>(entity)) {
+      HapticDevice device;
+      device.position = registry.get<Probe>(entity).position;
+      registry.add(entity, device);
+    }
+    registry.get<Probe>(entity).device = entity;
+  }
+}
+
+bool is_convex(const Mesh& mesh, std::uint32_t triangle, int edge) {
+  const uvec3 t = mesh.triangles[triangle], o = mesh.triangles[mesh.across[triangle][edge]];
+  const dvec3 a(mesh.position(t[edge])), b(mesh.position(t[(edge + 1) % 3])), c(mesh.position(t[(edge + 2) % 3]));
+  for (int i = 0; i < 3; ++i)
+    if (o[i] != t[edge] && o[i] != t[(edge + 1) % 3])
+      return dot(dvec3(mesh.position(o[i])) - a, cross(b - a, c - a)) < 0;
+  return false;
+}
+
+void list_creases(const Mesh& mesh, ObjectState& object) {
+  std::vector<Box> boxes;
+  for (std::uint32_t t = 0; t < mesh.crease.size(); ++t) {
+    for (int edge = 0; edge < 3; ++edge) {
+      const std::uint32_t key = 3 * t + static_cast<std::uint32_t>(edge);
+      if (!mesh.is_crease(t, edge) || mesh.across[t][edge] == kBorder || !is_convex(mesh, t, edge)) continue;
+      if (std::binary_search(object.closed.begin(), object.closed.end(), key))
+        continue;  // another surface continues
+                   // here
+      Box box;
+      box.add(mesh.position(mesh.triangles[t][edge]));
+      box.add(mesh.position(mesh.triangles[t][(edge + 1) % 3]));
+      boxes.push_back(box);
+      object.creases.push_back(key);
+    }
+  }
+  object.crease_boxes.build(boxes);
+}
+
+constexpr std::size_t kMostTips = 16;     // of a capsule
+constexpr std::size_t kLeastEchoes = 16;  // sources that an object beside seams reserves for dents of its neighbours
+
+std::size_t most_contacts(const ObjectState& object) {
+  return kMaxContactsPerObject - (object.seam_zones.empty() ? 0 : kLeastEchoes);
+}
+// Largest number of simultaneous contacts of a tip with one object: the walls of a corner, and one more.
+constexpr std::size_t kContactsOfASphere = 4, kContactsOfAPoint = 2;
+
+// A capsule is a row of spheres half a radius apart, up to kMostTips.
+std::vector<Tip> tips_of(const Probe& probe) {
+  std::vector<Tip> tips;
+  for (const vec3& place : probe.points) tips.push_back({dvec3(place), probe.radius});
+  if (probe.length > 0) {
+    const double apart = std::max(0.5 * probe.radius, probe.length / (kMostTips - 1));
+    const int count = std::max(1, static_cast<int>(std::ceil(probe.length / apart)));
+    for (int i = 0; i <= count; ++i) tips.push_back({dvec3(0, probe.length * i / count, 0), probe.radius});
+  }
+  if (tips.empty()) tips.push_back({dvec3(0), probe.radius});
+  return tips;
+}
+
+SourceState make_source(Entity contact, const Mesh& mesh, const Deformable& deformable) {
+  SourceState source;
+  source.contact = contact;
+  source.zones.reserve(mesh.zone_count());
+  if (deformable.distance == Distance::kSurface) {
+    source.offset.assign(mesh.px.size(), vec3(kFar));
+    source.heap.reserve(std::size_t{8} * mesh.vertex_count);
+  }
+  return source;
+}
+
+Entity make_contact(Registry& registry, Entity object, std::size_t slot) {
+  const Entity entity = registry.create();
+  Contact contact;
+  contact.object = object;
+  contact.object_slot = static_cast<std::uint32_t>(slot);
+  registry.add(entity, contact);
+  return entity;
+}
+
+// Enough for its neighbours' contacts; at least the number reserved by most_contacts().
+void make_echoes(const World& world, ObjectState& object) {
+  object.first_echo = static_cast<std::uint32_t>(object.sources.size());
+  const Deformable& deformable = world.registry.get<Deformable>(object.entity);
+  if (object.seam_zones.empty() || deformable.distance == Distance::kSurface) return;
+  const std::size_t wanted = 2 * object.sources.size();
+  while (object.sources.size() < std::min<std::size_t>(wanted, kMaxContactsPerObject))
+    object.sources.push_back(make_source(kNoEntity, world.meshes[deformable.mesh], deformable));
+}
+
+bool something_presses(Registry& registry) {
+  for (auto [entity, body] : registry.view<const RigidBody>())
+    if (!body.fixed) return true;
+  const auto soft = registry.view<const SoftBody>();
+  return soft.begin() != soft.end();
+}
+
+// Contacts that tissue may drive, as many as the probes leave room for.
+void make_presses(World& world, TouchState& touch) {
+  for (ObjectState& object : touch.objects) {
+    const Deformable& deformable = world.registry.get<Deformable>(object.entity);
+    while (object.presses.size() < kMaxPresses && object.sources.size() < most_contacts(object)) {
+      const Entity contact = make_contact(world.registry, object.entity, std::size_t(&object - touch.objects.data()));
+      object.sources.push_back(make_source(contact, world.meshes[deformable.mesh], deformable));
+      object.presses.push_back({contact, false, {}});
+    }
+  }
+  touch.presses =
+      std::make_unique<TripleBuffer<Presses>>(Presses{0.0, std::vector<ObjectPresses>(touch.objects.size())});
+}
+
+}  // namespace
+
+Box touch_box(const Mesh& mesh, const Pose& pose) {
+  const vec3 low = mesh.box.min - mesh.tree.bulge, high = mesh.box.max + mesh.tree.bulge;
+  Box box;
+  for (int i = 0; i < 8; ++i) {
+    const vec3 corner(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
+    box.add(vec3(pose.to_world(dvec3(corner))));
+  }
+  return box;
+}
+
+Status prepare_touch(World& world) {
+  Registry& registry = world.registry;
+  give_devices(registry);
+  std::vector<Entity> old;
+  for (auto [entity, contact] : registry.view<Contact>()) old.push_back(entity);
+  for (const Entity entity : old) registry.destroy(entity);
+
+  auto touch = std::make_shared<TouchState>();
+  touch->dt = 1.0 / world.simulation.touch_rate;
+  std::uint32_t tip_count = 0;
+  std::size_t contacts_wanted = 0;
+  for (auto [entity, probe] : registry.view<Probe>()) {
+    const bool meets_surfaces = probe.meets != ProbeMeets::kBodies;
+    touch->probes.push_back({entity, {}, meets_surfaces ? tips_of(probe) : std::vector<Tip>(), tip_count});
+    for (const Tip& tip : touch->probes.back().tips)
+      contacts_wanted += tip.radius > 0 ? kContactsOfASphere : kContactsOfAPoint;
+    tip_count += static_cast<std::uint32_t>(touch->probes.back().tips.size());
+  }
+  contacts_wanted = std::min<std::size_t>(contacts_wanted, kMaxContactsPerObject);
+
+  Box extent;
+  Snapshot snapshot;
+  for (auto [entity, deformable, pose] : registry.view<Deformable, const Pose>()) {
+    const Mesh& mesh = world.meshes[deformable.mesh];
+    check_in("preparing what is touched, now `" + name_of(world, entity) + "`");
+    if (deformable.reach == 0.0) deformable.reach = default_reach(mesh);
+    if (Status status = check(deformable, name_of(world, entity)); !status) return status.error();
+    HeightField& field = world.fields[deformable.field];
+    ObjectState object;
+    object.entity = entity;
+    object.on_gpu = world.field_place == FieldPlace::kGpu && has_closed_form(deformable, mesh);
+    if (object.on_gpu) {
+      field = {};
+      object.releases.reserve(kMaxReleases);
+      object.terms.reserve(2 * kMaxReleases + kMaxContactsPerObject);
+    } else {
+      size_field(field, mesh, deformable);
+    }
+    object.motion = motion(deformable, touch->dt);
+    object.painted = paint_motion(object.motion, mesh);
+    const double reach = std::max(deformable.reach, kLeastReach * static_cast<double>(mesh.mean_edge));
+    object.kernel = share_kernel(deformable.shape, reach, deformable.volume, contact_radius(deformable, reach) / reach);
+    object.searched.assign(tip_count, dvec3(std::numeric_limits<double>::max()));
+    object.world_box = touch_box(mesh, pose);
+    object.zone_sources.assign(mesh.zone_count(), 0);
+    object.visited.assign(mesh.zone_count(), 0);
+    object.dirty.reserve(mesh.zone_count());
+    if (world.field_place == FieldPlace::kGpu && !object.on_gpu && gpu_knows(deformable))
+      object.teller = FieldTeller(mesh.zone_count(), kMaxContactsPerObject, deformable.distance == Distance::kSurface);
+    for (std::uint32_t zone = 0; zone < field.zone_state.size(); ++zone) {  // zones not at rest must be published again
+      field.zone_state[zone] &= kZoneListed | kZoneResidual;
+      if (field.zone_state[zone]) {
+        field.zone_state[zone] |= kZoneDirty;
+        object.dirty.push_back(zone);
+      }
+    }
+    object.teller.begin_if_at_rest(object, field);
+    const std::size_t published = object.on_gpu ? 0 : std::min(mesh.zone_count(), kMaxPublishedZones);
+    object.waiting.reserve(published);
+    snapshot.objects.push_back({entity, 0, std::vector<std::uint32_t>(published),
+                                std::vector<vec4>(published * kZoneSize), 0, object.on_gpu, 0,
+                                std::vector<FieldSource>(object.terms.capacity()), object.teller.feed(), false});
+    extent.add(object.world_box);
+    touch->objects.push_back(std::move(object));
+  }
+  touch->extent = extent.empty() ? 1.0 : extent.diagonal();
+
+  touch->awake.reserve(touch->objects.size());
+  touch->loaded.resize(kMaxContactsPerObject);
+  std::vector<Box> boxes;
+  for (const ObjectState& object : touch->objects) boxes.push_back(object.world_box);
+  touch->object_boxes.build(boxes);
+  find_seams(world, *touch);
+  for (ObjectState& object : touch->objects)
+    list_creases(world.meshes[registry.get<Deformable>(object.entity).mesh], object);
+  for (ObjectState& object : touch->objects) {
+    const Deformable& deformable = registry.get<Deformable>(object.entity);
+    const std::size_t slot = std::size_t(&object - touch->objects.data());
+    while (object.sources.size() < std::min(contacts_wanted, most_contacts(object)))
+      object.sources.push_back(
+          make_source(make_contact(registry, object.entity, slot), world.meshes[deformable.mesh], deformable));
+    object.probe_sources = static_cast<std::uint32_t>(object.sources.size());
+    if (!world.fields[deformable.field].awake.empty()) {  // an earlier recovery continues
+      object.listed = true;
+      touch->awake.push_back(static_cast<std::uint32_t>(slot));
+    }
+  }
+  if (something_presses(registry)) make_presses(world, *touch);
+  for (ObjectState& object : touch->objects) make_echoes(world, object);
+  snapshot.probes.resize(touch->probes.size());
+  touch->moving = find_moving(world, *touch);
+  snapshot.moved = moved_snapshots(world, *touch);
+  world.snapshots = std::make_unique<TripleBuffer<Snapshot>>(snapshot);
+  world.touch = std::move(touch);
+  return Done{};
+}
+
+std::size_t touch_bytes(const Mesh& mesh, const HeightField& field) {
+  const auto bytes = [](const auto&... vectors) { return ((vectors.capacity() * sizeof(vectors[0])) + ...); };
+  std::size_t total = bytes(mesh.px, mesh.py, mesh.pz, mesh.nx, mesh.ny, mesh.nz, mesh.area, mesh.triangles,
+                            mesh.across, mesh.zone_box, mesh.tree.nodes, mesh.zone_neighbour_first,
+                            mesh.zone_neighbours, mesh.stiffness_factor, mesh.friction_factor, field.stream,
+                            field.residual, field.rate, field.arm, field.relaxed, field.zone_state, field.awake);
+  for (const auto& level : mesh.tree.levels) total += bytes(level);
+  return total;
+}
+
+}  // namespace pliant

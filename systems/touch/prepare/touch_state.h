@@ -1,0 +1,154 @@
+// The touch tick's working memory. All of it is sized by prepare_touch, so that a tick never allocates. Writer: the
+// touch clock.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "components/world.h"
+#include "systems/safety/safety.h"
+#include "systems/touch/collide/box_tree.h"
+#include "systems/touch/collide/foot_blend.h"
+#include "systems/touch/collide/surface_distance.h"
+#include "systems/touch/feed/feed_field.h"
+#include "systems/touch/feed/press.h"
+#include "systems/touch/model/contact_energy.h"
+#include "systems/touch/model/local_model.h"
+#include "systems/touch/model/painted_motion.h"
+#include "systems/touch/model/shape.h"
+#include "systems/touch/prepare/move_objects.h"
+
+namespace pliant {
+
+inline constexpr std::uint32_t kMaxContactsPerObject = 64;  // one bit each in ObjectState::zone_sources
+
+// A sphere of a probe.
+struct Tip {
+  dvec3 place{0};     // [m] its centre, probe frame
+  double radius = 0;  // [m] 0: a point
+};
+
+// Identifies a source by its object and index.
+struct SourceLink {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::uint32_t object = kNone, source = kNone;
+  bool valid() const { return object != kNone; }
+  bool operator==(const SourceLink&) const = default;
+};
+
+// Foot of a contact whose tip was behind the surface: the tip may return through a wall that it was pressed through.
+struct HeldFoot {
+  std::uint64_t tick = 0;  // number of the tick that wrote it, plus 1
+  Entity probe;
+  std::uint8_t tip = 0;
+  dvec3 p{0};  // [m] object frame
+};
+
+// One entry of an object's pool: a contact, its place, and its part in the object's field.
+struct SourceState {
+  Entity contact;                    // has a Contact
+  std::uint64_t born = 0;            // number of the tick of its first contact, plus 1
+  bool tracked = false;              // tracked by collision: a probe's contact, near the surface or behind it
+  dvec3 x{0};                        // [m] the tip's centre last tick, object frame
+  Tip tip;                           // the tip in contact
+  FootBlend place;                   // of the tip's centre
+  HeldFoot held;                     // written where its contact is tracked
+  bool active = false;               // the contact dented the surface in the last tick
+  FieldSource now, before;           // of this tick and of the last: their difference is the target's rate
+  std::vector<std::uint32_t> zones;  // within reach; capacity: all zones
+  std::vector<vec3> offset;          // [m] Distance::kSurface only, per vertex: see surface_distance.h
+  std::uint32_t told = 0;            // index of the dent in the feed (feed_field.h)
+  SourceLink of;                     // of an echo: its source in a neighbour (seam_dents.h)
+  std::uint64_t echoed = 0;          // number of the last tick in which it was one, plus 1
+  std::vector<MarchItem> heap;       // working memory of the march; sized at preparation
+};
+
+// GPU only: the dent that a contact left. See field.h.
+struct Release {
+  FieldSource now, before;  // the target at that moment and one tick earlier
+  double time = 0.0;        // [s] of that moment
+};
+inline constexpr std::size_t kMaxReleases = 64;
+
+// A contact without a probe: tissue of a tool presses here.
+struct PressState {
+  Entity contact;  // has a Contact
+  bool used = false;
+  PressPoint point;
+};
+
+// At rest: heights below this share of the reach, normals rotated by less than this angle [rad]. Imperceptible.
+inline constexpr float kRest = 1e-6f;
+
+// An edge at which another surface continues: a node flush with this one, or the far side of a crack (seams.h).
+struct Seam {
+  std::uint32_t edge = 0;      // 3 * triangle + edge
+  std::uint32_t object = 0;    // index into TouchState::objects
+  std::uint32_t triangle = 0;  // of that object, at the other side
+};
+
+// A zone beside a seam, and the zone on the other side.
+struct SeamZones {
+  std::uint32_t zone = 0;
+  std::uint32_t object = 0;  // index into TouchState::objects
+  std::uint32_t other = 0;   // of that object
+  auto operator<=>(const SeamZones&) const = default;
+};
+
+// Touch state of one Deformable.
+struct ObjectState {
+  Entity entity;
+  Motion motion;  // of unpainted vertices
+  PaintedMotion painted;
+  std::vector<Seam> seams;                  // by edge, ascending
+  std::vector<SeamZones> seam_zones;        // to other objects, each pair once
+  std::vector<std::uint32_t> joined;        // objects in which a dent may continue, over any number of seams, each once
+  std::vector<SeamZones> cracks;            // to zones of the same object
+  std::vector<std::uint32_t> neighbours;    // objects beyond its seams, each once
+  std::vector<std::uint32_t> closed;        // edges of seams, from both sides, ascending: no foot crosses them
+  BoxTree crease_boxes;                     // of `creases`, object frame
+  std::vector<std::uint32_t> creases;       // convex ones, from both sides: 3 * triangle + edge
+  ShareKernel kernel;                       // sharing of the load between contacts
+  Box world_box;                            // of the rest surface, for the broad phase
+  std::uint32_t probe_sources = 0;          // number of `sources` for probes; presses follow
+  double stored = 0.0;                      // [J] U: elastic energy of all its contacts (contact_energy.h)
+  bool listed = false;                      // it is in TouchState::awake
+  std::vector<dvec3> searched;              // [m] per tip of every probe: place of the last search for walls
+  bool on_gpu = false;                      // the field is `terms`, drawn by the GPU; there is no HeightField
+  std::vector<Release> releases;            // GPU only; capacity kMaxReleases
+  std::vector<FieldSource> terms;           // GPU only: the whole field at `time`
+  FieldTeller teller;                       // feeds a GPU that steps a copy of the field
+  double time = 0.0;                        // [s] end of the last tick
+  std::vector<SourceState> sources;         // a pool for probes, one per press, echoes; at most kMaxContactsPerObject
+  std::uint32_t first_echo = 0;             // index into `sources`
+  std::vector<PressState> presses;          // empty unless the level has a moving soft or rigid body
+  std::vector<std::uint64_t> zone_sources;  // per zone: bits of the sources that reach it this tick
+  std::vector<std::uint32_t> visited;       // per zone: stamp of the last flood fill that visited it
+  std::uint32_t stamp = 0;
+  std::vector<std::uint32_t> dirty;    // zones whose stream has not been published since it changed
+  std::vector<std::uint32_t> waiting;  // zones of the last snapshot, in case it is replaced unseen
+};
+
+struct ProbeState {
+  Entity entity;
+  SafetyState safety;
+  std::vector<Tip> tips;
+  std::uint32_t first_tip = 0;  // index of its first tip in ObjectState::searched
+};
+
+struct TouchState {
+  std::vector<ObjectState> objects;
+  BoxTree object_boxes;  // world boxes of the objects, with room for curved patches
+  std::vector<ProbeState> probes;
+  std::vector<std::uint32_t> awake;                // objects with a tracked contact or a moving field; capacity: all
+  std::uint32_t unseen = 0;                        // number of successive snapshots that were not taken
+  double extent = 1.0;                             // [m] diagonal of all touchable objects
+  double dt = 1e-3;                                // [s] the step that `motion` was computed for
+  std::vector<MovingNode> moving;                  // every node under a prescribed motion that carries something
+  std::unique_ptr<TripleBuffer<Presses>> presses;  // soft clock -> touch clock; null if nothing can press
+  std::vector<LoadedContact> loaded;               // of the current object; size kMaxContactsPerObject
+  double pressed_at = 0.0;                         // [s] arrival of the newest presses
+};
+
+}  // namespace pliant
