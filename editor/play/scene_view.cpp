@@ -6,14 +6,11 @@ SceneView::SceneView(std::shared_ptr<World> world) : kept_(std::move(world)), wo
   make();
 }
 
-SceneView::SceneView(std::shared_ptr<PlayRun> run) : run_(std::move(run)), world_(run_->claim_picture()) {
-  make();
-  if (world_) run_->picture_made();
-}
-
-SceneView::~SceneView() {
-  renderer_.reset();
-  if (run_ && world_) run_->picture_gone();
+SceneView::SceneView(std::shared_ptr<PlayRun> run) : run_(std::move(run)) {
+  run_->make_picture([this](World& world) {
+    world_ = &world;
+    make();
+  });
 }
 
 bool SceneView::wants_picture() const {
