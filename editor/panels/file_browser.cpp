@@ -8,9 +8,9 @@
 #include "editor/app/files.h"
 #include "editor/panels/dialog.h"
 #include "editor/panels/panels.h"
-#include "editor/ui/fonts.h"
-#include "editor/ui/seen.h"
 #include "runtime/printable.h"
+#include "viewer/ui/fonts.h"
+#include "viewer/ui/seen.h"
 
 namespace pliant {
 namespace {

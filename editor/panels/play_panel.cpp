@@ -7,10 +7,10 @@
 #include "editor/app/app.h"
 #include "editor/panels/panels.h"
 #include "editor/play/record_path.h"
-#include "editor/ui/widgets.h"
 #include "engine/run/limits.h"
 #include "pliant/driver.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

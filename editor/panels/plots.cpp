@@ -9,8 +9,8 @@
 #include "editor/panels/panels.h"
 #include "editor/play/law_curve.h"
 #include "editor/ui/plot.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

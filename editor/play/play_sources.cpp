@@ -197,7 +197,7 @@ void PlayRun::Inside::watch() {
   for (const SessionEffector& effector : parts->effectors)
     if (!parts->world.registry.has<Probe>(effector.entity)) {
       watched = effector.name;
-      run.hand.watch_tool(parts->world, effector.entity);
+      run.hand.watch_tool(effector.entity);
       return;
     }
 }

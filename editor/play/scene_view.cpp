@@ -40,10 +40,7 @@ Status SceneView::reload() {
 
 Status SceneView::draw(const SolidOrder& order, GLuint framebuffer, int width, int height) {
   if (!renderer_) return Error{"Rendered", trouble_.empty() ? "there is nothing to draw" : trouble_};
-  if (run_) {
-    while (world_->snapshots->acquire()) renderer_->update(world_->snapshots->read());
-    if (world_->soft_snapshots && world_->soft_snapshots->acquire()) renderer_->update(world_->soft_snapshots->read());
-  }
+  if (run_) renderer_->take(*world_);
   RenderOptions& options = renderer_->options();
   options.wireframe = order.settings.wireframe;
   options.zones = order.settings.zones;

@@ -9,8 +9,8 @@
 #include "components/kinematic.h"
 #include "editor/app/path_editing.h"
 #include "editor/tools/tools.h"
-#include "editor/ui/widgets.h"
 #include "editor/viewport/solid_view.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

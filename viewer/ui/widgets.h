@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "editor/ui/theme.h"
+#include "viewer/ui/theme.h"
 
 namespace pliant::ui {
 
@@ -58,7 +58,7 @@ bool icon_button(const char* label, Icon icon, bool down, const char* hint_text 
 bool checkbox(const char* label, bool& value, const char* hint_text = nullptr);
 bool text_field(const char* label, std::string& value, const char* placeholder = "", float width = 0,
                 ImGuiInputTextFlags flags = 0);
-// Dragged sideways, or typed after a double click, with units and arithmetic (editor/ui/quantity.h). Invalid or
+// Dragged sideways, or typed after a double click, with units and arithmetic (viewer/ui/quantity.h). Invalid or
 // out-of-range text changes nothing. `unit` is shown; after # it is only understood ("#m"). Steps are proportional to
 // the value; `logarithmic` for stiffnesses and similar. True while it changes; `finished` at the end of a gesture.
 bool number(const char* label, double& value, double least, double most, const char* unit, bool logarithmic = false,

@@ -1,4 +1,4 @@
-// A number field: dragged sideways, or typed with units and arithmetic (editor/ui/quantity.h). Dear ImGui's own field
+// A number field: dragged sideways, or typed with units and arithmetic (viewer/ui/quantity.h). Dear ImGui's own field
 // ignores unreadable text: "5 mm" would be five metres.
 #include <fmt/format.h>
 #include <imgui_internal.h>
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "editor/ui/quantity.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/quantity.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant::ui {
 namespace {

@@ -1,16 +1,13 @@
-#include "window/window_input.h"
-
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
+#include "viewer/window/window_input.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
 #include <sstream>
 
 #include "content/files/file_io.h"
+#include "viewer/window/keys.h"
 
 namespace pliant {
 namespace {
@@ -22,19 +19,6 @@ std::optional<double> number(const std::string& text) {
   const double value = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !std::isfinite(value)) return {};
   return value;
-}
-
-std::optional<int> key_of(const std::string& name) {
-  if (name.size() == 1 && std::isalnum(static_cast<unsigned char>(name[0])))
-    return std::toupper(static_cast<unsigned char>(name[0]));
-  if (name == "Tab") return GLFW_KEY_TAB;
-  if (name == "Esc") return GLFW_KEY_ESCAPE;
-  if (name == "Space") return GLFW_KEY_SPACE;
-  if (name == "Home") return GLFW_KEY_HOME;
-  if (name.size() < 2 || name[0] != 'F') return {};
-  const std::optional<double> n = number(name.substr(1));
-  if (!n || *n < 1 || *n > 12 || *n != std::floor(*n)) return {};
-  return GLFW_KEY_F1 + static_cast<int>(*n) - 1;
 }
 
 // The remaining words are a button and modifiers.
@@ -79,9 +63,7 @@ std::optional<InputEvent> parse_event(const std::string& name, const std::string
   } else if (name == "key") {
     event.kind = InputKind::kKey;
     words >> first;
-    const std::optional<int> key = key_of(first);
-    if (!key) return {};
-    event.key = *key;
+    if (!parse_keys(first, event.key, event.modifiers)) return {};
   } else if (name == "drop") {
     event.kind = InputKind::kDrop;
     event.file = arguments;

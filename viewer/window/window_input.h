@@ -23,7 +23,7 @@ enum class InputKind : std::uint8_t {
   kClose,
   kWidget
 };
-enum class MouseButton : std::uint8_t { kLeft, kMiddle, kRight };
+enum class MouseButton : std::uint8_t { kLeft, kRight, kMiddle };  // in the order of GLFW and Dear ImGui
 enum ModifierBit : std::uint8_t { kShift = 1, kControl = 2, kAlt = 4, kSuper = 8 };
 
 struct InputEvent {
@@ -40,9 +40,9 @@ struct InputEvent {
 // Events from a file, for automated tests of the window. Columns: time_s,event,args, where event and args are
 //   move X Y | press [BUTTON] [MODIFIER...] | release [BUTTON] | wheel CLICKS [MODIFIER...] | key NAME | drop FILE |
 //   click ADDRESS | close
-// BUTTON is left (default), middle or right; MODIFIER shift, control or alt; NAME a letter or digit, F1 to F12, Tab,
-// Esc, Space or Home; ADDRESS of a button in the panel of devices: Devices/PROBE/Arm, Devices/Stop all. Times [s]
-// ascend and count from the first frame.
+// BUTTON is left (default), middle or right; MODIFIER shift, control or alt; NAME as parse_keys() reads it; ADDRESS of
+// a button in the panel of devices: Devices/PROBE/Arm, Devices/Stop all. Times [s] ascend and count from the first
+// frame.
 class InputScript {
  public:
   static constexpr double kLongestPause = 0.5;  // [s]

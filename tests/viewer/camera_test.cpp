@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "systems/visual/viewpoint.h"
-#include "window/camera_control.h"
+#include "viewer/hand/camera_control.h"
 
 namespace pliant {
 namespace {

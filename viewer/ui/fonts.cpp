@@ -1,4 +1,4 @@
-#include "editor/ui/fonts.h"
+#include "viewer/ui/fonts.h"
 
 #include <fmt/format.h>
 #include <fontconfig/fontconfig.h>
@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "editor/ui/theme.h"
+#include "viewer/ui/theme.h"
 
 namespace pliant::ui {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runtime/result.h"
-#include "window/window_input.h"
+#include "viewer/window/window_input.h"
 
 struct GLFWwindow;
 

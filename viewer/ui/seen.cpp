@@ -1,4 +1,4 @@
-#include "editor/ui/seen.h"
+#include "viewer/ui/seen.h"
 
 #include <fmt/format.h>
 #include <imgui_internal.h>

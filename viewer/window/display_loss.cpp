@@ -1,4 +1,4 @@
-#include "window/display_loss.h"
+#include "viewer/window/display_loss.h"
 
 #include <dlfcn.h>
 

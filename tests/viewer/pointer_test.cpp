@@ -1,5 +1,5 @@
 // The mouse as a probe, and as a hand that holds a tool: their positions for what the picture shows.
-#include "window/pointer.h"
+#include "viewer/hand/pointer.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "components/soft_body.h"
 #include "systems/device/mouse.h"
-#include "window/carrier.h"
+#include "viewer/hand/mouse_hand.h"
 
 namespace pliant {
 namespace {
@@ -285,6 +285,70 @@ TEST(Carrier, AJumpOfThePointerBecomesAGlideThatStopsWhereItIsLetGo) {
   carrier->release();
   carrier->update(1.0);
   EXPECT_NEAR(carrier->position().x, 0.35 - kFastestCarry * kMouseSlowestFrame, 1e-9);
+}
+
+// What a press becomes is one decision for every program.
+TEST(MouseHand, PressesPullsAndCarriesWhatIsUnderItAndGripsNothingElse) {
+  using Grip = MouseHand::Grip;
+  using Over = MouseHand::Over;
+  const BodyScene scene;
+  MouseHand hand;
+  EXPECT_FALSE(hand.update(0.01)) << "it moves nothing";
+  hand.see(on(scene.plate, {0, 0, 0}, {0, 0, 0}), kDown);
+  EXPECT_EQ(hand.press(false, dvec3(0)), Grip::kNone);
+  hand.take(Pointer(scene.world, 0.005, kAbove));
+  const struct {
+    Entity object;
+    Over over;
+    Grip press, pull;
+  } cases[] = {{scene.plate, Over::kTouchable, Grip::kPress, Grip::kPress},
+               {scene.block, Over::kBody, Grip::kPress, Grip::kPull},
+               {scene.wall, Over::kTouchable, Grip::kPress, Grip::kPress},
+               {scene.table, Over::kNothing, Grip::kNone, Grip::kNone}};
+  for (const auto& each : cases)
+    for (const bool pulls : {false, true}) {
+      hand.see(on(each.object, {0, 0.05, 0}, {0, 0.05, 0}), kDown);
+      EXPECT_EQ(hand.over(), each.over);
+      EXPECT_EQ(hand.press(pulls, dvec3(0)), pulls ? each.pull : each.press);
+      EXPECT_EQ(hand.pressing(), hand.grip() == Grip::kPress);
+      EXPECT_EQ(hand.probe_hold().body == scene.block, hand.grip() == Grip::kPull);
+      hand.release();
+      EXPECT_EQ(hand.grip(), Grip::kNone);
+      EXPECT_FALSE(hand.pressing());
+    }
+  hand.see({}, kDown);
+  EXPECT_EQ(hand.press(false, dvec3(0)), Grip::kNone);
+}
+
+TEST(MouseHand, TheWheelChangesTheDepthOfAPressAndMovesATool) {
+  const PointerScene scene;
+  MouseHand hand;
+  hand.take(Pointer(scene.world, 0.005, kAbove));
+  hand.see(on(scene.plate, {0, 0, 0}, {0, 0, 0}), kDown);
+  hand.wheel(1, kAbove);
+  hand.press(false, dvec3(0));
+  const double depth = hand.depth_goal();
+  for (const auto& [clicks, steps] : {std::pair(1.0, 1), {2.0, 2}, {0.1, 1}, {-3.0, -3}}) {
+    const double before = hand.depth_goal();
+    hand.wheel(clicks, kAbove);
+    EXPECT_NEAR(hand.depth_goal() - before, steps * 0.05 * kReach, 1e-12) << clicks;
+  }
+  EXPECT_GT(depth, 0.0);
+
+  ToolScene with_tool;
+  hand.take(*Carrier::of(with_tool.world));
+  EXPECT_EQ(hand.tool(), with_tool.tool);
+  EXPECT_EQ(*hand.update(0.0), dvec3(0.1, 0, 0));
+  hand.see(on(with_tool.plate, {0, 0, 0}, {0, 0, 0}), kDown);
+  EXPECT_EQ(hand.press(false, dvec3(0)), MouseHand::Grip::kNone);
+  hand.see(on(with_tool.tool, {0.1, 0, 0}, {0.1, 0, 0}), kDown);
+  EXPECT_EQ(hand.over(), MouseHand::Over::kTool);
+  EXPECT_EQ(hand.press(true, dvec3(0)), MouseHand::Grip::kCarry);
+  EXPECT_EQ(hand.taken_device(), with_tool.device);
+  hand.wheel(1, kAbove);
+  EXPECT_LT(hand.update(10.0)->y, 0.0) << "away from the eye";
+  hand.let_go();
+  EXPECT_EQ(hand.tool(), kNoEntity);
 }
 
 }  // namespace

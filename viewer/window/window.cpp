@@ -1,4 +1,4 @@
-#include "window/window.h"
+#include "viewer/window/window.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "runtime/printable.h"
-#include "window/display_loss.h"
+#include "viewer/window/display_loss.h"
 
 namespace pliant {
 namespace {
@@ -99,11 +99,8 @@ void Window::connect(GLFWwindow* handle) {
   });
   glfwSetMouseButtonCallback(handle, [](GLFWwindow* w, int button, int action, int mods) {
     if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
-    const MouseButton which = button == GLFW_MOUSE_BUTTON_LEFT    ? MouseButton::kLeft
-                              : button == GLFW_MOUSE_BUTTON_RIGHT ? MouseButton::kRight
-                                                                  : MouseButton::kMiddle;
     window_of(w).add({.kind = action == GLFW_PRESS ? InputKind::kPress : InputKind::kRelease,
-                      .button = which,
+                      .button = static_cast<MouseButton>(button),
                       .modifiers = modifiers_of(mods)});
   });
   glfwSetScrollCallback(handle, [](GLFWwindow* w, double, double clicks) {

@@ -1,4 +1,4 @@
-#include "window/pointer.h"
+#include "viewer/hand/pointer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "components/world.h"
-#include "window/camera_control.h"
+#include "viewer/hand/camera_control.h"
 
 namespace pliant {
 

@@ -1,4 +1,4 @@
-#include "window/camera_control.h"
+#include "viewer/hand/camera_control.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +33,15 @@ CameraControl::CameraControl(const Viewpoint& home, const Box& scene) : scene_(s
   goal_ = shown_ = home_;
 }
 
+CameraControl CameraControl::before(const Box& scene) {
+  Box box = scene;
+  if (box.empty() || !(box.diagonal() > 0.0f)) box.add(Box{vec3(-0.1f), vec3(0.1f)});
+  const dvec3 center(box.center());
+  constexpr float kYfov = 0.7f;  // [rad]
+  const double away = 0.62 * static_cast<double>(box.diagonal()) / std::sin(0.5 * static_cast<double>(kYfov));
+  return {Viewpoint{center + away * glm::normalize(dvec3(0.45, 0.38, 1.0)), center, {0, 1, 0}, kYfov}, box};
+}
+
 void CameraControl::orbit(double dx, double dy, int height) {
   goal_.azimuth -= kOrbitTurn * dx / height;
   goal_.elevation = std::clamp(goal_.elevation + kOrbitTurn * dy / height, -kSteepest, kSteepest);
@@ -62,6 +71,7 @@ void CameraControl::frame() {
 }
 
 void CameraControl::frame(const Box& box) {
+  if (box.empty()) return;
   scene_ = box;
   size_ = std::max(1e-6, static_cast<double>(box.diagonal()));
   frame();

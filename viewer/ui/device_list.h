@@ -8,9 +8,6 @@
 
 namespace pliant::ui {
 
-// The emergency stop's action in the key table (Settings::keys), and its default key.
-inline constexpr const char *kStopAction = "device.stop", *kStopKeys = "F9";
-
 // Draws into the current window at its width. `stop_keys`: of the emergency stop, "F9".
 void device_list(const DevicesView& view, const std::string& stop_keys, DeviceOrders& orders);
 

@@ -1,4 +1,4 @@
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 #include <fmt/format.h>
 #include <imgui_internal.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "editor/ui/fonts.h"
+#include "viewer/ui/fonts.h"
 
 namespace pliant::ui {
 namespace {

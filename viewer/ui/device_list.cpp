@@ -1,4 +1,4 @@
-#include "editor/ui/device_list.h"
+#include "viewer/ui/device_list.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant::ui {
 namespace {

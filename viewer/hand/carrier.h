@@ -7,7 +7,7 @@
 
 #include "components/world.h"
 #include "systems/device/mouse.h"
-#include "window/camera_control.h"
+#include "viewer/hand/camera_control.h"
 
 namespace pliant {
 

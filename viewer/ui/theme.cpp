@@ -1,6 +1,6 @@
-#include "editor/ui/theme.h"
+#include "viewer/ui/theme.h"
 
-#include "editor/ui/fonts.h"
+#include "viewer/ui/fonts.h"
 
 namespace pliant::ui {
 namespace {

@@ -1,4 +1,4 @@
-#include "editor/ui/quantity.h"
+#include "viewer/ui/quantity.h"
 
 #include <fmt/format.h>
 

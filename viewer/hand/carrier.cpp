@@ -1,4 +1,4 @@
-#include "window/carrier.h"
+#include "viewer/hand/carrier.h"
 
 #include <algorithm>
 

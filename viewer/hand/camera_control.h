@@ -19,6 +19,8 @@ class CameraControl {
   // Starts at `home`; `scene` [m] world is what frame() shows. The horizon stays level, so a rolled `home` is
   // straightened.
   CameraControl(const Viewpoint& home, const Box& scene);
+  // Starts in front of the scene, slightly above, and shows all of it.
+  static CameraControl before(const Box& scene);
 
   // `dx`, `dy` [pixel] of a picture `height` pixels high.
   void orbit(double dx, double dy, int height);
@@ -26,7 +28,7 @@ class CameraControl {
   void zoom(double steps);                           // of a wheel, > 0: nearer
   void look_from(double azimuth, double elevation);  // [rad]
   void frame();                                      // shows the whole scene, from the current direction
-  void frame(const Box& box);                        // shows this box, and uses it from now on
+  void frame(const Box& box);                        // shows this box, and uses it from now on; nothing if empty
   void home();
   bool moving() const;     // the view has not reached its goal
   void update(double dt);  // [s] since the last call

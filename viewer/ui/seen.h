@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant::ui {
 
