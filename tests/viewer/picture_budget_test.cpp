@@ -41,6 +41,12 @@ TEST(PictureBudget, AKeptPictureTakesTheTimeThatItMayTake) {
   EXPECT_NEAR(renderer.cost(budget.share_within(500.0)), 500.0, 1e-6);
   EXPECT_EQ(budget.share_within(5000.0), 1.0) << "at most the full resolution";
   EXPECT_EQ(budget.share_within(1.0), budget.share()) << "no coarser than the others";
+
+  // A slow picture makes the next ones coarser at once, not the one that is kept.
+  PictureBudget sudden;
+  sudden.drawn(600.0);
+  EXPECT_LT(sudden.share(), 1.0);
+  EXPECT_NEAR(600.0 * sudden.share_within(500.0) * sudden.share_within(500.0), 500.0, 1e-6);
 }
 
 }  // namespace

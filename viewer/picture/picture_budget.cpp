@@ -13,6 +13,7 @@ void PictureBudget::drawn(double took) {
     fixed_ms_ = std::clamp(took - pixels * (took - sample_ms_) / (pixels - sample_pixels_), 0.0, took);
   fixed_ms_ = std::min(fixed_ms_, took);
   took_ms_ = took;
+  took_share_ = share_;
   if (took <= kSlow && (took >= kFast || share_ >= finest_)) return;
   const double per_pixel = std::max(took - fixed_ms_, 0.1) / pixels,
                room = std::max(kWanted - fixed_ms_, 0.5 * fixed_ms_);
@@ -23,7 +24,7 @@ void PictureBudget::drawn(double took) {
 }
 
 double PictureBudget::share_within(double time) const {
-  const double finer = share_ * std::sqrt(time / std::max(took_ms_, 1.0));
+  const double finer = took_share_ * std::sqrt(time / std::max(took_ms_, 1.0));
   return std::max(share_, std::min(finer, 1.0));
 }
 

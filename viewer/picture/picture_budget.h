@@ -18,7 +18,7 @@ class PictureBudget {
 
  private:
   double finest_, share_ = 1.0;
-  double took_ms_ = 0.0;                          // of the last picture
+  double took_ms_ = 0.0, took_share_ = 1.0;       // of the last picture, and its share
   double fixed_ms_ = 0.0;                         // of a picture, whatever its resolution
   double sample_pixels_ = 0.0, sample_ms_ = 0.0;  // [1] of all, [ms]: an earlier picture of another resolution
 };
