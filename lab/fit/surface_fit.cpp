@@ -13,8 +13,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kLeastContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
-constexpr double kLeastFittedReach = 1.5;                                       // [1] in radii of the indenter
+constexpr double kLeastFitContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
+constexpr double kLeastFittedReach = 1.5;                                          // [1] in radii of the indenter
 constexpr int kReaches = 20;          // tried from the least reach to the usual one, and from that to the widest
 constexpr double kGoodShape = 0.10;   // [1] of the depth: below this error no wider reach is tried
 constexpr std::size_t kNearest = 10;  // painted places from which a vertex is interpolated
@@ -148,7 +148,7 @@ ShapeFit fit_shape(const std::vector<PressedPlace>& places, double radius, doubl
         attempt(shape, volume, least * std::pow(most / least, i / (kReaches * 1.0)) * radius, contact);
     };
     for (const Shape shape : {Shape::kPunch, Shape::kHertz, Shape::kKelvinlet})
-      for (double contact = kLeastContact; contact < kMostContact + 0.01; contact += kContactStep)
+      for (double contact = kLeastFitContact; contact < kMostContact + 0.01; contact += kContactStep)
         every_reach(shape, 1.0, contact);
     for (const Shape shape : {Shape::kGaussian, Shape::kWendland}) every_reach(shape, 1.0, 0.0);
     for (double volume = 0.0; volume < 1.01; volume += 0.1) every_reach(Shape::kVolume, volume, 0.0);
