@@ -54,6 +54,8 @@ std::string range_text(const Key& key);
 // unit that was perhaps meant.
 std::string doubt(const Key& key, const Json& value);
 std::string usual_text(const Key& key);
+// "a, b and c".
+std::string listed(const std::vector<std::string>& words);
 // The closest of `names`, as "; did you mean X?", or "" if none is close.
 std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 // "unknown `what` 'word' in `in`; did you mean X?", or, if none is close, "...; `all` are: A, B, C".

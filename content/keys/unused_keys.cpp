@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
+#include "components/registered.h"
 #include "content/keys/extension_table.h"
 
 namespace pliant {
@@ -15,29 +17,41 @@ namespace {
 struct UnusedRow {
   const char *extension, *key;
   bool (*unused)(const LevelNode&);
-  const char* what;
+  std::string what;
 };
 
-// A registered law may read any constant.
-bool is_law_other_than(SpringLaw law, const LevelNode& node) {
-  return node.deformable->spring != law && node.deformable->spring <= SpringLaw::kStandardLinearSolid;
+template <class Row, std::size_t size>
+std::string only_with(const char* key, const Row (&rows)[size], const std::function<bool(std::size_t)>& matters) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < size; ++i)
+    if (matters(i)) words.push_back(fmt::format("`{}`", rows[i].word));
+  return fmt::format("is read with `{}` {} only; set {}, or remove the key", key, listed(words),
+                     words.size() > 1 ? "one of these" : "that");
 }
 
-constexpr UnusedRow kRows[] = {
-    {"deformable", "cubic", [](const LevelNode& n) { return is_law_other_than(SpringLaw::kCubic, n); },
-     "is read with `spring` `cubic` only; set that, or remove the key"},
-    {"deformable", "stiffening", [](const LevelNode& n) { return is_law_other_than(SpringLaw::kExponential, n); },
-     "is read with `spring` `exponential` only; set that, or remove the key"},
-    {"deformable", "relaxation.stiffness",
-     [](const LevelNode& n) { return is_law_other_than(SpringLaw::kStandardLinearSolid, n); },
-     "is read with `spring` `sls` only; set that, or remove the key"},
-    {"deformable", "relaxation.time",
-     [](const LevelNode& n) { return is_law_other_than(SpringLaw::kStandardLinearSolid, n); },
-     "is read with `spring` `sls` only; set that, or remove the key"},
-    {"deformable", "volume", [](const LevelNode& n) { return n.deformable->shape != Shape::kVolume; },
-     "is read with `shape` `volume` only; set that, or remove the key"},
+// A registered law may read any constant.
+bool is_law_without(const char* key, const LevelNode& node) {
+  return !registered_spring(node.deformable->spring) && !reads_key(node.deformable->spring, key);
+}
+std::string laws_with(const char* key) {
+  return only_with("spring", kSpringRows, [key](std::size_t i) { return reads_key(static_cast<SpringLaw>(i), key); });
+}
+ShapeParameter parameter_of(const LevelNode& node) {
+  return row_of(node.deformable->shape).parameter;
+}
+
+const UnusedRow kRows[] = {
+    {"deformable", "cubic", [](const LevelNode& n) { return is_law_without("cubic", n); }, laws_with("cubic")},
+    {"deformable", "stiffening", [](const LevelNode& n) { return is_law_without("stiffening", n); },
+     laws_with("stiffening")},
+    {"deformable", "relaxation.stiffness", [](const LevelNode& n) { return is_law_without("relaxation.stiffness", n); },
+     laws_with("relaxation.stiffness")},
+    {"deformable", "relaxation.time", [](const LevelNode& n) { return is_law_without("relaxation.time", n); },
+     laws_with("relaxation.time")},
+    {"deformable", "volume", [](const LevelNode& n) { return parameter_of(n) != ShapeParameter::kVolume; },
+     only_with("shape", kShapeRows, [](std::size_t i) { return kShapeRows[i].parameter == ShapeParameter::kVolume; })},
     {"deformable", "contact_radius", [](const LevelNode& n) { return !depends_on_contact(n.deformable->shape); },
-     "is read with `shape` `punch`, `hertz` and `kelvinlet` only; set one of these, or remove the key"},
+     only_with("shape", kShapeRows, [](std::size_t i) { return depends_on_contact(static_cast<Shape>(i)); })},
     {"deformable", "poisson", [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
      "is read with `young` only; give that too, or remove the key"},
     {"deformable", "thickness", [](const LevelNode& n) { return !(n.deformable->young > 0.0); },

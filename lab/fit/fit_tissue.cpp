@@ -235,8 +235,8 @@ void take_keys(const TissueFit& fitted, double usual, DeformableParameters& surf
   surface.thickness = 0.0;
   surface.spring = fitted.force.spring;
   surface.stiffness = fitted.force.factor * usual;
-  if (surface.spring == SpringLaw::kCubic) surface.cubic = fitted.force.curvature * surface.stiffness;
-  if (surface.spring == SpringLaw::kExponential) surface.stiffening = fitted.force.curvature;
+  if (reads_key(surface.spring, "cubic")) surface.cubic = fitted.force.curvature * surface.stiffness;
+  if (reads_key(surface.spring, "stiffening")) surface.stiffening = fitted.force.curvature;
   surface.shape = fitted.shape.shape;
   surface.reach = fitted.shape.reach;
   surface.volume = fitted.shape.volume;

@@ -31,9 +31,7 @@ FieldSource source_of(Shape shape, double inner, double reach) {
   source.amplitude = 1.0f;
   source.inv_reach2 = static_cast<float>(1 / (reach * reach));
   source.shape = shape;
-  source.parameter = shape == Shape::kKelvinlet ? static_cast<float>(inner)
-                     : shape == Shape::kVolume  ? 5.0f
-                                                : static_cast<float>(inner * inner / (reach * reach));
+  source.parameter = shape_parameter(shape, inner, reach, 1.0);
   return source;
 }
 
@@ -212,8 +210,7 @@ std::string forces_of(const std::vector<ForceRow>& rows) {
 }  // namespace
 
 const char* name_of(Shape shape) {
-  constexpr const char* kNames[] = {"punch", "hertz", "gaussian", "wendland", "volume", "kelvinlet"};
-  return kNames[static_cast<std::size_t>(shape)];
+  return row_of(shape).word;
 }
 
 PressTruth punch_truth(double a) {

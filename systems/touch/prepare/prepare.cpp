@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "components/probe_shape.h"
 #include "components/soft_body.h"
 #include "runtime/long_work.h"
 #include "systems/touch/collide/seams.h"
@@ -22,7 +23,7 @@ std::string name_of(const World& world, Entity entity) {
 
 void size_field(HeightField& field, const Mesh& mesh, const Deformable& deformable) {
   const std::size_t size = std::size_t{mesh.zone_count()} * kZoneSize;
-  const bool arm = deformable.spring == SpringLaw::kStandardLinearSolid;
+  const bool arm = has_arm(deformable.spring);
   if (field.stream.size() != size || field.arm.empty() == arm) {
     field.stream.assign(size, vec4(0));
     field.residual.assign(size, vec4(0));
@@ -90,13 +91,13 @@ constexpr std::size_t kContactsOfASphere = 4, kContactsOfAPoint = 2;
 // A capsule is a row of spheres half a radius apart, up to kMostTips.
 std::vector<Tip> tips_of(const Probe& probe) {
   std::vector<Tip> tips;
-  for (const vec3& place : probe.points) tips.push_back({dvec3(place), probe.radius});
-  if (probe.length > 0) {
-    const double apart = std::max(0.5 * probe.radius, probe.length / (kMostTips - 1));
-    const int count = std::max(1, static_cast<int>(std::ceil(probe.length / apart)));
-    for (int i = 0; i <= count; ++i) tips.push_back({dvec3(0, probe.length * i / count, 0), probe.radius});
+  for (const ProbePart& part : probe_parts(probe)) {
+    const dvec3 axis = part.to - part.from;
+    const double apart = std::max(0.5 * probe.radius, length(axis) / (kMostTips - 1));
+    const int count = part.is_sphere() ? 0 : std::max(1, static_cast<int>(std::ceil(length(axis) / apart)));
+    for (int i = 0; i <= count; ++i)
+      tips.push_back({part.from + axis * double(i) / double(std::max(count, 1)), probe.radius});
   }
-  if (tips.empty()) tips.push_back({dvec3(0), probe.radius});
   return tips;
 }
 
