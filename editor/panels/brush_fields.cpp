@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

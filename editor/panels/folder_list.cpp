@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "editor/ui/fonts.h"
-#include "editor/ui/seen.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/fonts.h"
+#include "viewer/ui/seen.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 

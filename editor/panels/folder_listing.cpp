@@ -6,6 +6,7 @@
 #include <cctype>
 #include <iterator>
 
+#include "content/openable.h"
 #include "runtime/printable.h"
 
 namespace pliant {
@@ -17,10 +18,7 @@ namespace {
 constexpr std::size_t kMostEntries = 5000;  // per folder; beyond it, the user types a part of the name
 
 bool opens(const fs::path& name) {
-  constexpr const char* kEndings[] = {".glb", ".gltf", ".obj",  ".stl", ".ply", ".off",
-                                      ".msh", ".vtk",  ".mesh", ".fbx", ".dae"};
-  const std::string ending = lower_case(name.extension().string());
-  return std::find(std::begin(kEndings), std::end(kEndings), ending) != std::end(kEndings);
+  return has_ending(name, openable_endings());
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include "editor/panels/place_fields.h"
 #include "editor/panels/property_row.h"
 #include "editor/tools/gizmo_math.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

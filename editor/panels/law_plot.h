@@ -4,7 +4,7 @@
 #include <string>
 
 #include "editor/play/play.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 

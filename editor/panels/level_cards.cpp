@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "editor/ui/fonts.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/fonts.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 

@@ -7,8 +7,8 @@
 #include "editor/panels/brush_fields.h"
 #include "editor/panels/panels.h"
 #include "editor/tools/painting.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "editor/panels/property_row.h"
 #include "editor/tools/gizmo_math.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

@@ -8,10 +8,10 @@
 #include "editor/panels/panels.h"
 #include "editor/panels/source_fields.h"
 #include "editor/play/record_path.h"
-#include "editor/ui/widgets.h"
 #include "engine/run/limits.h"
 #include "pliant/driver.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

@@ -9,8 +9,8 @@
 #include "editor/panels/time_line.h"
 #include "editor/panels/trace_window.h"
 #include "editor/ui/plot.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

@@ -1,7 +1,7 @@
 #include "editor/panels/source_fields.h"
 
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

@@ -8,8 +8,8 @@
 #include "editor/app/files.h"
 #include "editor/panels/level_cards.h"
 #include "editor/panels/panels.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 

@@ -8,10 +8,10 @@
 #include "content/keys/extension_table.h"
 #include "editor/panels/panels.h"
 #include "editor/panels/tree_rows.h"
-#include "editor/ui/fonts.h"
-#include "editor/ui/seen.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/fonts.h"
+#include "viewer/ui/seen.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

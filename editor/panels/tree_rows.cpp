@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 

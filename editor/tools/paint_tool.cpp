@@ -11,8 +11,8 @@
 #include "editor/tools/paint_legend.h"
 #include "editor/tools/painting.h"
 #include "editor/tools/tools.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {
