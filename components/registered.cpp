@@ -23,12 +23,12 @@ class Table {
   // Returns the index of the new entry.
   Result<std::size_t> add(const std::string& name, Value value) {
     const std::string where = std::string(kind_) + " `" + name + "`";
-    if (name.empty()) return Error{where, "has no name; give it one"};
+    if (name.empty()) return Error{where, "has no name", "give it one"};
     const std::lock_guard lock(mutex_);
     const std::size_t count = count_.load();
     for (std::size_t i = 0; i < count; ++i)
-      if (entries_[i].name == name) return Error{where, "is registered twice; give each a name of its own"};
-    if (count == kMost) return Error{where, "is one too many; at most " + std::to_string(kMost) + " are taken"};
+      if (entries_[i].name == name) return Error{where, "is registered twice", "give each a name of its own"};
+    if (count == kMost) return Error{where, "is one too many", "at most " + std::to_string(kMost) + " are taken"};
     entries_[count] = {name, std::move(value)};
     count_.store(count + 1);
     return count;
@@ -64,7 +64,7 @@ Result<Enum> added(Table<Value>& table, const std::string& name, Value value, En
                    const char* (*word_of_built_in)(Enum)) {
   for (std::size_t i = 0; i <= static_cast<std::size_t>(last); ++i)
     if (name == word_of_built_in(static_cast<Enum>(i)))
-      return Error{"`" + name + "`", "is the name of a built-in one; give it another"};
+      return Error{"`" + name + "`", "is the name of a built-in one", "give it another"};
   const auto place = table.add(name, std::move(value));
   if (!place) return place.error();
   return static_cast<Enum>(static_cast<std::size_t>(last) + 1 + *place);
@@ -138,20 +138,20 @@ const char* registered_word(SolverKind kind) {
 
 Result<SpringLaw> register_spring(const std::string& name, std::shared_ptr<const SpringFunction> function) {
   const std::string where = "spring law `" + name + "`";
-  if (!function) return Error{where, "has no function; give one"};
-  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault) + "; see pliant/surface_law.h"};
+  if (!function) return Error{where, "has no function", "give one"};
+  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault), "see pliant/surface_law.h"};
   return added<SpringLaw>(springs(), name, std::move(function), kLastSpring, word_of);
 }
 
 Result<Shape> register_shape(const std::string& name, std::shared_ptr<const ShapeFunction> function) {
   const std::string where = "shape `" + name + "`";
-  if (!function) return Error{where, "has no function; give one"};
-  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault) + "; see pliant/surface_law.h"};
+  if (!function) return Error{where, "has no function", "give one"};
+  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault), "see pliant/surface_law.h"};
   return added<Shape>(shapes(), name, std::move(function), kLastShape, word_of);
 }
 
 Result<SolverKind> register_solver(const std::string& name, SolverFactory factory) {
-  if (!factory) return Error{"linear solver `" + name + "`", "has no factory; give a function that makes one"};
+  if (!factory) return Error{"linear solver `" + name + "`", "has no factory", "give a function that makes one"};
   return added<SolverKind>(solvers(), name, std::move(factory), kLastSolver, word_of);
 }
 

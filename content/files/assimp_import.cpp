@@ -112,7 +112,7 @@ Result<Primitive> read_primitive(const aiMesh& mesh) {
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
     const aiVector3D& p = mesh.mVertices[v];
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      return Error{"", fmt::format("has a position that is not a finite number, vertex {}; repair the mesh", v)};
+      return Error{"", fmt::format("has a position that is not a finite number, vertex {}", v), "repair the mesh"};
     out.position.emplace_back(p.x, p.y, p.z);
     if (has_normals) {
       const aiVector3D& n = mesh.mNormals[v];
@@ -132,7 +132,7 @@ Result<Primitive> read_primitive(const aiMesh& mesh) {
     if (face.mNumIndices != 3) continue;
     for (unsigned i = 0; i < 3; ++i) {
       if (face.mIndices[i] >= mesh.mNumVertices)
-        return Error{"", "has a triangle with a vertex that does not exist; export it again"};
+        return Error{"", "has a triangle with a vertex that does not exist", "export it again"};
       out.index.push_back(face.mIndices[i]);
     }
   }
@@ -170,25 +170,25 @@ Status read_nodes(const aiScene& scene, const std::string& name, Level& level) {
     const Visit visit = stack.back();
     stack.pop_back();
     if (level.nodes.size() >= most(limits::kElements))
-      return Error{"", "has " + beyond(limits::kElements, static_cast<double>(level.nodes.size() + 1), "simplify it")};
+      return error_at("", beyond("has", limits::kElements, static_cast<double>(level.nodes.size() + 1), "simplify it"));
     const std::int32_t here = static_cast<std::int32_t>(level.nodes.size());
     LevelNode node;
     node.parent = visit.parent;
     node.name = visit.node->mName.length > 0 ? utf8(visit.node->mName.C_Str()) : fmt::format("node_{}", here);
     if (node.name == "defaultobject" && !name.empty()) node.name = name;  // Assimp's default name
     node.local = decompose(visit.node->mTransformation);
-    if (!finite(node.local)) return Error{"", "has a transformation that is not finite; repair the file"};
+    if (!finite(node.local)) return Error{"", "has a transformation that is not finite", "repair the file"};
     if (visit.node->mNumMeshes > 0) {
       LevelMesh mesh;
       mesh.name = node.name;
       for (unsigned m = 0; m < visit.node->mNumMeshes; ++m) {
         const unsigned which = visit.node->mMeshes[m];
-        if (which >= scene.mNumMeshes) return Error{"", "refers to a mesh that it does not have; export it again"};
+        if (which >= scene.mNumMeshes) return Error{"", "refers to a mesh that it does not have", "export it again"};
         Result<Primitive> primitive = read_primitive(*scene.mMeshes[which]);
         if (!primitive) return primitive.error();
         if (primitive->index.empty()) continue;
         vertices += primitive->position.size();
-        if (vertices > (1u << 26)) return Error{"", "has more than 67 million vertices; split it"};
+        if (vertices > (1u << 26)) return Error{"", "has more than 67 million vertices", "split it"};
         mesh.primitives.push_back(std::move(*primitive));
       }
       if (!mesh.primitives.empty()) {
@@ -224,11 +224,11 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
   if (!scene || !scene->mRootNode) {
     std::string why = importer.GetErrorString();
     std::replace(why.begin(), why.end(), '\n', ' ');
-    return Error{"", "cannot be read: " + (why.empty() ? "unknown format" : utf8(why.substr(0, 200))) +
-                         "; export it again, or as glTF"};
+    return Error{"", "cannot be read: " + (why.empty() ? "unknown format" : utf8(why.substr(0, 200))),
+                 "export it again, or as glTF"};
   }
   if (const std::string said = complaints.take(); !said.empty())
-    return Error{"", "has a fault that would change its shape (" + said + "); export it again"};
+    return Error{"", "has a fault that would change its shape (" + said + ")", "export it again"};
   Level level;
   Json textures = Json::array();
   for (unsigned m = 0; m < scene->mNumMaterials; ++m) {
@@ -240,7 +240,7 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
   for (LevelMesh& mesh : level.meshes)
     for (Primitive& primitive : mesh.primitives)
       if (primitive.material >= static_cast<std::int32_t>(level.materials.size())) primitive.material = -1;
-  if (level.meshes.empty()) return Error{"", "has no triangles; a point cloud or an empty mesh cannot be touched"};
+  if (level.meshes.empty()) return Error{"", "has no triangles", "a point cloud or an empty mesh cannot be touched"};
   const Result<Bytes> glb = level_as_glb(level);
   if (!glb) return glb.error();
   const std::string header = textures.dump();
@@ -258,7 +258,7 @@ Result<Level> receive(const Bytes& answer, const fs::path& folder) {
   std::uint64_t size = 0;
   std::string header;
   if (!in.take(&size, sizeof size) || size > in.rest().size())
-    return Error{"", "was not imported to its end; try again"};
+    return Error{"", "was not imported to its end", "try again"};
   header.resize(size);
   in.take(header.data(), size);
   Result<Level> level = load_gltf(in.rest(), true, {});
@@ -271,7 +271,7 @@ Result<Level> receive(const Bytes& answer, const fs::path& folder) {
     const Result<fs::path> path = confined_path(folder, name);
     Result<Image> image = path ? load_image(*path) : Result<Image>(path.error());
     if (!image) {
-      level->notes.push_back("the texture " + name + " is left out: " + image.error().what);
+      level->notes.push_back("the texture " + name + " is left out: " + image.error().sentence());
       continue;
     }
     image->name = fs::path(name).filename().string();
@@ -294,9 +294,9 @@ Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::strin
     for (std::size_t v = 0; v < mesh->vertices; ++v)
       for (std::size_t c = 0; c < attribute.width; ++c)
         if (!std::isfinite(at(v, c)))
-          return Error{"Draco data", "has a number in " + semantic + " that is not finite; export it again"};
+          return Error{"Draco data", "has a number in " + semantic + " that is not finite", "export it again"};
     if (semantic == "POSITION" && attribute.width != 3)
-      return Error{"Draco data", "has positions that are not in space; export it again"};
+      return Error{"Draco data", "has positions that are not in space", "export it again"};
     for (std::size_t v = 0; v < mesh->vertices; ++v) {
       if (semantic == "POSITION") primitive.position.emplace_back(at(v, 0), at(v, 1), at(v, 2));
       if (semantic == "NORMAL" && attribute.width == 3) primitive.normal.emplace_back(at(v, 0), at(v, 1), at(v, 2));
@@ -304,7 +304,7 @@ Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::strin
     }
   }
   if (primitive.position.empty() || primitive.index.empty())
-    return Error{"Draco data", "has no triangles to touch; export a mesh with faces"};
+    return Error{"Draco data", "has no triangles to touch", "export a mesh with faces"};
   for (const vec3 normal : primitive.normal)
     if (std::abs(length(normal) - 1.0f) > 0.006f) {
       primitive.normal.clear();  // recomputed at spawn
@@ -337,7 +337,7 @@ Result<Level> import_mesh(const fs::path& path) {
     if (!answer) return answer.error();
     return receive(*answer, path.parent_path());
   } catch (const std::exception& e) {
-    return Error{"", std::string("cannot be read: ") + e.what() + "; export it again, or as glTF"};
+    return Error{"", std::string("cannot be read: ") + e.what(), "export it again, or as glTF"};
   }
 }
 

@@ -45,7 +45,7 @@ class ObjCheck {
   }
 
  private:
-  Error at(const std::string& what) const { return {fmt::format("line {}", line_), what + "; export it again"}; }
+  Error at(const std::string& what) const { return {fmt::format("line {}", line_), what, "export it again"}; }
 
   // Reads the words of the next line and its continuation lines.
   bool row() {

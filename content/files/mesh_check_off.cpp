@@ -33,7 +33,7 @@ bool row(TetText& text, Words& words) {
 Result<OffHeader> read_off_header(TetText& text) {
   OffHeader header;
   Words words;
-  if (!row(text, words)) return Error{"", "is empty; export it again"};
+  if (!row(text, words)) return Error{"", "is empty", "export it again"};
   std::string_view key = words[0];
   if (key.size() >= 3 && key.substr(key.size() - 3) == "OFF") {
     const auto take = [&key](std::string_view letters) {
@@ -46,24 +46,24 @@ Result<OffHeader> read_off_header(TetText& text) {
     header.normal = take("N");
     header.homogeneous = take("4");
     const bool dimension = take("n");
-    if (key != "OFF") return Error{"", "begins with an unknown kind of OFF; export it again"};
+    if (key != "OFF") return Error{"", "begins with an unknown kind of OFF", "export it again"};
     words.erase(words.begin());
-    if (!words.empty() && words[0] == "BINARY") return Error{"", "is a binary OFF; export it as text"};
-    if (words.empty() && !row(text, words)) return Error{"", "ends within its header; the file is cut off"};
+    if (!words.empty() && words[0] == "BINARY") return Error{"", "is a binary OFF", "export it as text"};
+    if (words.empty() && !row(text, words)) return Error{"", "ends within its header", "the file is cut off"};
     if (dimension) {
-      if (words[0] != "3") return Error{"", "has vertices of another dimension than 3; export it again"};
+      if (words[0] != "3") return Error{"", "has vertices of another dimension than 3", "export it again"};
       words.erase(words.begin());
-      if (words.empty() && !row(text, words)) return Error{"", "ends within its header; the file is cut off"};
+      if (words.empty() && !row(text, words)) return Error{"", "ends within its header", "the file is cut off"};
     }
   }
   if (words.size() < 2 || !to_integer(words[0], header.vertices) || !to_integer(words[1], header.faces))
-    return Error{"", "has no numbers of vertices and faces at its head; export it again"};
+    return Error{"", "has no numbers of vertices and faces at its head", "export it again"};
   if (words.size() > 3)
-    return Error{"", "has more on the line of its counts than three numbers; write each vertex on a line of its own"};
+    return Error{"", "has more on the line of its counts than three numbers", "write each vertex on a line of its own"};
   const std::int64_t most = static_cast<std::int64_t>(text.left());
   if (header.vertices < 1 || header.faces < 1 || header.vertices > most || header.faces > most)
-    return Error{"", fmt::format("claims {} vertices and {} faces in {} bytes; the file is damaged", header.vertices,
-                                 header.faces, most)};
+    return Error{"", fmt::format("claims {} vertices and {} faces in {} bytes", header.vertices, header.faces, most),
+                 "the file is damaged"};
   return header;
 }
 
@@ -74,15 +74,15 @@ void append(Bytes& out, std::string_view text) {
 Status copy_vertex(const OffHeader& header, const Words& words, std::int64_t v, Bytes& out) {
   const std::size_t normals = header.homogeneous ? 4 : 3, needed = normals + (header.normal ? 3 : 0);
   if (words.size() < needed + (header.texture ? 2 : 0))
-    return Error{"", fmt::format("has too few numbers for vertex {}; the file is cut off or damaged", v)};
+    return Error{"", fmt::format("has too few numbers for vertex {}", v), "the file is cut off or damaged"};
   Words kept(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(needed));
   if (header.texture) kept.insert(kept.end(), words.end() - 2, words.end());  // texture coordinates follow the colours
   std::array<double, 9> value{};
   for (std::size_t i = 0; i < kept.size(); ++i)
     if (!to_number(kept[i], value[i]))
-      return Error{"", fmt::format("has something else than a finite number at vertex {}; repair the mesh", v)};
+      return Error{"", fmt::format("has something else than a finite number at vertex {}", v), "repair the mesh"};
   if (header.homogeneous && value[3] == 0.0)
-    return Error{"", fmt::format("has vertex {} at infinity; repair the mesh", v)};
+    return Error{"", fmt::format("has vertex {} at infinity", v), "repair the mesh"};
   for (std::size_t i = 0; i < kept.size(); ++i) {
     if (header.homogeneous && i == 3) continue;
     append(out, header.homogeneous && i < 3 ? fmt::format("{:.9g}", value[i] / value[3]) : std::string(kept[i]));
@@ -95,13 +95,13 @@ Status copy_vertex(const OffHeader& header, const Words& words, std::int64_t v, 
 Status copy_face(const OffHeader& header, const Words& words, std::int64_t f, Bytes& out, std::int64_t& written) {
   std::int64_t corners = 0;
   if (!to_integer(words[0], corners) || corners < 1 || corners >= static_cast<std::int64_t>(words.size()))
-    return Error{"", fmt::format("has too few numbers for face {}; the file is cut off or damaged", f)};
+    return Error{"", fmt::format("has too few numbers for face {}", f), "the file is cut off or damaged"};
   for (std::int64_t c = 1; c <= corners; ++c) {
     const std::string_view word = words[static_cast<std::size_t>(c)];
     std::int64_t vertex = -1;
     if (!to_integer(word, vertex) || vertex < 0 || vertex >= header.vertices)
-      return Error{"", fmt::format("has a face {} that names vertex {} of {}; export it again", f, word.substr(0, 20),
-                                   header.vertices)};
+      return Error{"", fmt::format("has a face {} that names vertex {} of {}", f, word.substr(0, 20), header.vertices),
+                   "export it again"};
   }
   if (corners < 3) return Done{};  // skips points and lines
   ++written;
@@ -124,16 +124,16 @@ Result<Bytes> off_as_ply(const Bytes& bytes) {
   Words words;
   for (std::int64_t v = 0; v < header->vertices; ++v) {
     if (!row(text, words))
-      return Error{"", fmt::format("ends before vertex {} of {}; the file is cut off", v, header->vertices)};
+      return Error{"", fmt::format("ends before vertex {} of {}", v, header->vertices), "the file is cut off"};
     if (const Status status = copy_vertex(*header, words, v, body); !status) return status.error();
   }
   std::int64_t faces = 0;
   for (std::int64_t f = 0; f < header->faces; ++f) {
     if (!row(text, words))
-      return Error{"", fmt::format("ends before face {} of {}; the file is cut off", f, header->faces)};
+      return Error{"", fmt::format("ends before face {} of {}", f, header->faces), "the file is cut off"};
     if (const Status status = copy_face(*header, words, f, body, faces); !status) return status.error();
   }
-  if (faces == 0) return Error{"", "has no triangles; points and lines cannot be touched"};
+  if (faces == 0) return Error{"", "has no triangles", "points and lines cannot be touched"};
   std::string head = fmt::format("ply\nformat ascii 1.0\nelement vertex {}\n", header->vertices);
   std::vector<const char*> names{"x", "y", "z"};
   if (header->normal) names.insert(names.end(), {"nx", "ny", "nz"});

@@ -47,7 +47,7 @@ std::uint64_t size_of(Kind kind) {
 }
 
 Error damaged(const std::string& what) {
-  return {"", what + "; the file is cut off or damaged"};
+  return {"", what, "the file is cut off or damaged"};
 }
 
 // Reads the header, and the encoding of the body: text or binary, and its byte order.
@@ -56,27 +56,27 @@ Result<PlyHeader> read_ply_header(TetText& text) {
   std::string_view line;
   const std::uint64_t bytes = text.left();
   bool has_format = false;
-  if (!text.line(line) || line != "ply") return Error{"", "does not begin with `ply`; check the format"};
+  if (!text.line(line) || line != "ply") return Error{"", "does not begin with `ply`", "check the format"};
   while (text.line(line)) {
     TetText words({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()}, "");
     std::string_view key, word;
     if (!words.word(key) || key == "comment" || key == "obj_info") continue;
     if (key == "end_header") {
-      if (!has_format) return Error{"", "says no format in its header; export it again"};
+      if (!has_format) return Error{"", "says no format in its header", "export it again"};
       return header;
     }
     if (!words.word(word)) return damaged("has an incomplete line in its header");
     if (key == "format") {
       has_format = true;
       if (word != "ascii" && word != "binary_little_endian" && word != "binary_big_endian")
-        return Error{"", fmt::format("has the unknown format '{}'; export it again", word.substr(0, 40))};
+        return Error{"", fmt::format("has the unknown format '{}'", word.substr(0, 40)), "export it again"};
       text.set_binary(word != "ascii", word == "binary_big_endian");
     } else if (key == "element") {
       Element element{std::string(word), 0, {}};
       if (!words.integer(element.count) || element.count < 0)
         return damaged("has an element without a number in its header");
       if (static_cast<std::uint64_t>(element.count) > bytes)
-        return Error{"", fmt::format("claims {} elements in {} bytes; the file is damaged", element.count, bytes)};
+        return Error{"", fmt::format("claims {} elements in {} bytes", element.count, bytes), "the file is damaged"};
       if (element.name == "vertex") header.vertices = element.count;
       header.elements.push_back(std::move(element));
     } else if (key == "property" && !header.elements.empty()) {
@@ -86,7 +86,7 @@ Result<PlyHeader> read_ply_header(TetText& text) {
                                        kind_of(word, property.kind)
                                  : kind_of(word, property.kind);
       known = known && words.word(word);
-      if (!known) return Error{"", "has a property of an unknown type in its header; export it again"};
+      if (!known) return Error{"", "has a property of an unknown type in its header", "export it again"};
       property.name = word;
       property.axis = !property.list && (word == "x" || word == "y" || word == "z");
       property.vertices = property.list && (word == "vertex_index" || word == "vertex_indices");
@@ -155,15 +155,16 @@ Status check_row(PlyRow& row, const Element& element, std::int64_t number, const
     if (!(count >= 0.0) || count != static_cast<double>(static_cast<std::int64_t>(std::min(count, 1e15))))
       return damaged(fmt::format("has a list of {} numbers in {} {}", count, element.name, number));
     if (property.vertices && count == 0.0)
-      return Error{"", fmt::format("has {} {} without a corner; export it again", element.name, number)};
+      return Error{"", fmt::format("has {} {} without a corner", element.name, number), "export it again"};
     for (double i = 0.0; i < count; ++i) {
       if (!row.value(property.kind, value)) return cut();
       if (property.axis && !std::isfinite(value))
-        return Error{"", fmt::format("has {} {} at no finite place; repair the mesh", element.name, number)};
+        return Error{"", fmt::format("has {} {} at no finite place", element.name, number), "repair the mesh"};
       if (!property.vertices || (strip && value == -1.0)) continue;
       if (!(value >= 0.0 && value < static_cast<double>(header.vertices)))
-        return Error{"", fmt::format("has {} {} that names vertex {} of {}; export it again", element.name, number,
-                                     value, header.vertices)};
+        return Error{"",
+                     fmt::format("has {} {} that names vertex {} of {}", element.name, number, value, header.vertices),
+                     "export it again"};
     }
   }
   return Done{};
@@ -203,7 +204,7 @@ Status check_ply(const Bytes& bytes) {
     if (element.name != "vertex") continue;
     int axes = 0;
     for (const Property& p : element.properties) axes += p.axis;
-    if (axes != 3) return Error{"", "has vertices without x, y and z; export it again"};
+    if (axes != 3) return Error{"", "has vertices without x, y and z", "export it again"};
   }
   for (const Element& element : header->elements)
     if (const Status status = check_element(text, element, *header); !status) return status;

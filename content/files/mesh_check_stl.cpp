@@ -21,14 +21,14 @@ bool is_text(const Bytes& bytes) {
 }
 
 Status check_binary(Bytes& bytes) {
-  if (bytes.size() < kHead) return Error{"", "ends within its header; the file is cut off"};
+  if (bytes.size() < kHead) return Error{"", "ends within its header", "the file is cut off"};
   std::uint32_t count = 0;
   std::memcpy(&count, &bytes[80], 4);
   const std::uint64_t size = kHead + kTriangle * std::uint64_t{count};
   // A few extra bytes are padding; extra whole triangles mean that the count or the data is wrong.
   if (bytes.size() < size || bytes.size() >= size + kTriangle)
-    return Error{"", fmt::format("says {} triangles but has {}; the file is cut off or damaged", count,
-                                 (bytes.size() - kHead) / kTriangle)};
+    return Error{"", fmt::format("says {} triangles but has {}", count, (bytes.size() - kHead) / kTriangle),
+                 "the file is cut off or damaged"};
   bytes.resize(size);
   return Done{};
 }
@@ -38,7 +38,7 @@ Status check_text(const Bytes& bytes) {
   std::string_view word, line;
   std::uint64_t facet = 0;
   const auto broken = [&facet](const char* what) {
-    return Error{"", fmt::format("{} in facet {}; the file is cut off or damaged", what, facet)};
+    return Error{"", fmt::format("{} in facet {}", what, facet), "the file is cut off or damaged"};
   };
   const auto expect = [&](const char* wanted) { return text.word(word) && word == wanted; };
   const auto numbers = [&] {
@@ -66,7 +66,7 @@ Status check_text(const Bytes& bytes) {
       return broken("has an unknown word");
     }
   }
-  if (open) return Error{"", fmt::format("ends without `endsolid` after {} facets; the file is cut off", facet)};
+  if (open) return Error{"", fmt::format("ends without `endsolid` after {} facets", facet), "the file is cut off"};
   return Done{};
 }
 

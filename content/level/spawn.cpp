@@ -97,7 +97,7 @@ class Spawner {
       if (Status s = check_handle(n); !s) return s;
     if (Status s = give_shells(); !s) return s;
     const std::vector<DeviceFault> shared = find_shared_devices(level_);
-    if (!shared.empty()) return at(shared.front().node, shared.front().what);
+    if (!shared.empty()) return at(shared.front().node, error_at("", shared.front().what));
     return Done{};
   }
   // Only the count of run(). run() reports invalid motions; here they count as no motion.
@@ -110,9 +110,18 @@ class Spawner {
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  Error at(std::size_t n, std::string what) const {
-    return {level_.path.filename().string() + ": node `" + level_.nodes[n].name + "`", std::move(what),
-            static_cast<std::int32_t>(n)};
+  Error at(std::size_t n, Error error) const {
+    error.where = level_.path.filename().string() + ": node `" + level_.nodes[n].name + "`";
+    error.node = static_cast<std::int32_t>(n);
+    return error;
+  }
+  Error at(std::size_t n, std::string what, std::string cure) const {
+    return at(n, Error{"", std::move(what), std::move(cure)});
+  }
+  // With the place of the inner error in the text.
+  Error around(std::size_t n, Error error) const {
+    if (!error.where.empty()) error.what = error.where + ": " + error.what;
+    return at(n, std::move(error));
   }
 
   double share_of(std::size_t n) const { return static_cast<double>(n) / static_cast<double>(level_.nodes.size()); }
@@ -134,7 +143,7 @@ class Spawner {
     if (!by_name_.count(node.name)) by_name_[node.name] = n;
     if (node.light) registry.add<Light>(entity, *node.light);
     if (node.camera) registry.add<Camera>(entity, *node.camera);
-    if (const std::string fault = soft_fault(node); !fault.empty()) return at(n, fault);
+    if (const std::optional<Note> fault = soft_fault(node)) return at(n, error_at("", *fault));
     if (node.handle) registry.add<Handle6>(entity, *node.handle);
     if (Status s = surface(n); !s) return s;
     if (Status s = device(n); !s) return s;
@@ -153,7 +162,7 @@ class Spawner {
     if (node.soft_body) return soft_body(n);
     if (node.mesh < 0) {
       if (node.deformable)
-        return at(n, "has PLIANT_deformable but no mesh; give the node a mesh, or remove the extension");
+        return at(n, "has PLIANT_deformable but no mesh", "give the node a mesh, or remove the extension");
       return Done{};
     }
     if (!is_touched(node) && !has_area(level_.meshes[static_cast<std::size_t>(node.mesh)], dmat3(motions_.world[n]))) {
@@ -183,7 +192,7 @@ class Spawner {
     const Mesh& mesh = world_.meshes[collision_mesh];
     const double box = std::pow(static_cast<double>(mesh.box.diagonal()), 3.0);
     if (body.fixed || mass_properties(mesh).volume > kFlatScale * box) return Done{};
-    return at(n, "has PLIANT_rigid_body but its mesh encloses no volume; close the mesh, or set `fixed`");
+    return at(n, "has PLIANT_rigid_body but its mesh encloses no volume", "close the mesh, or set `fixed`");
   }
 
   // A moving node that is only drawn may change its scale, so its transform is not baked into its mesh.
@@ -207,11 +216,11 @@ class Spawner {
     const Pose pose = rigid_part(motions_.world[n]);
     progress_.say("preparing meshes, now `" + node.name + "`", share_of(n));
     Result<SoftParts> parts = find_soft_parts(node, mesh, mat4(inverse(pose) * motions_.world[n]), folder_);
-    if (!parts) return at(n, parts.error().message());
+    if (!parts) return around(n, parts.error());
     tetrahedra_ += static_cast<double>(parts->tets.tets.size());
     if (Status s = within(n, LevelBudget::ask(limits::kTets, tetrahedra_)); !s) return s;
     for (const std::string& note : parts->notes) notes_.push_back(node.soft_body->mesh + ": " + note);
-    for (const std::string& finding : parts->tets.report.findings) notes_.push_back("`" + node.name + "`: " + finding);
+    for (const Note& note : parts->tets.report.notes) notes_.push_back("`" + node.name + "`: " + note.message());
     note_winding(node.mesh, parts->surface);
     world_.registry.add<Pose>(entities_[n], pose);
     SoftBody& body = world_.registry.add<SoftBody>(entities_[n], *node.soft_body);
@@ -240,12 +249,10 @@ class Spawner {
     });
     if (parts.empty()) return Done{};
     if (!carries) {
-      std::string finding = fmt::format(
-          "leaves behind what lies inside of it and is only drawn ({}); set `carries` to "
-          "`inside`, and it goes along",
-          names_of(level_, parts));
-      notes_.push_back("`" + node.name + "`: " + finding);
-      world_.tet_meshes[soft->tets].report.findings.push_back(std::move(finding));
+      Note note{fmt::format("leaves behind what lies inside of it and is only drawn ({})", names_of(level_, parts)),
+                "set `carries` to `inside`, and it goes along", "tissue.leaves_behind", node.name};
+      notes_.push_back("`" + node.name + "`: " + note.message());
+      world_.tet_meshes[soft->tets].report.notes.push_back(std::move(note));
       return Done{};
     }
     for (const std::int32_t part : parts)
@@ -260,7 +267,7 @@ class Spawner {
     if (Status s = count_triangles(part, budget_.of(node.mesh).triangles); !s) return s;
     Result<BuiltMesh> built =
         build_mesh(node.name, mesh.primitives, mat4(to_object * motions_.world[part]), {0.0, {}, false});
-    if (!built) return at(part, built.error().message());
+    if (!built) return around(part, built.error());
     const Entity entity = entities_[part];
     Carried carried{entities_[by], {}, {}};
     if (const SoftBody* const soft = world_.registry.find<SoftBody>(entities_[by])) {
@@ -300,17 +307,17 @@ class Spawner {
         if (node.soft_body || shapes.insert({node.mesh, shape_of(n)}).second) wanted.triangles += size.triangles;
         if (node.deformable) wanted.vertices += size.vertices;
       }
-      for (const std::string& over :
+      for (const std::optional<Note>& over :
            {LevelBudget::ask(limits::kHands, hands), LevelBudget::ask(limits::kSoftBodies, soft_bodies),
             LevelBudget::ask(limits::kSurfaces, surfaces), budget_.ask_triangles(wanted.triangles),
             budget_.ask_vertices(wanted.vertices)})
-        if (!over.empty()) return at(n, over);
+        if (over) return at(n, error_at("", *over));
     }
     return Done{};
   }
-  Status within(std::size_t n, const std::string& over) const {
-    if (over.empty()) return Done{};
-    return at(n, over);
+  Status within(std::size_t n, const std::optional<Note>& over) const {
+    if (!over) return Done{};
+    return at(n, error_at("", *over));
   }
 
   Status count_triangles(std::size_t n, double triangles) {
@@ -319,8 +326,8 @@ class Spawner {
 
   // Once per mesh, for all its nodes.
   void note_winding(std::int32_t mesh, const BuiltMesh& built) {
-    const std::string turned = winding_note(built.report);
-    if (!turned.empty() && noted_.insert(mesh).second) notes_.push_back("mesh `" + built.mesh.name + "`: " + turned);
+    const std::optional<Note> turned = winding_note(built.report);
+    if (turned && noted_.insert(mesh).second) notes_.push_back("mesh `" + built.mesh.name + "`: " + turned->message());
   }
 
   void note_refinement(const LevelNode& node, const BuiltMesh& built) {
@@ -366,7 +373,7 @@ class Spawner {
     if (Status s = count_triangles(n, budget_.of(node.mesh).triangles); !s) return s.error();
     Result<BuiltMesh> built = build_mesh(mesh.name.empty() ? node.name : mesh.name, mesh.primitives, matrix_of(shape),
                                          {shape.crease_angle, wanted.dents, shape.touchable});
-    if (!built) return at(n, built.error().message());
+    if (!built) return around(n, built.error());
     note_winding(node.mesh, *built);
     note_refinement(node, *built);
     wanted.refined = built->report.refined_from != 0;
@@ -386,9 +393,9 @@ class Spawner {
     HapticDevice device = *level_.nodes[n].device;
     if (device.driver == DriverKind::kScript) {
       if (device.file.empty())
-        return at(n, "its driver is `script` but `file` is missing; name a .csv file, relative to the level");
+        return at(n, "its driver is `script` but `file` is missing", "name a .csv file, relative to the level");
       const Result<std::filesystem::path> file = confined_path(folder_, device.file);
-      if (!file) return at(n, file.error().message());
+      if (!file) return around(n, file.error());
       Result<const Path*> path = scripts_.read(*file, false);
       if (!path) return path.error();
       const auto [shared, is_new] = paths_.try_emplace(*path);
@@ -411,9 +418,10 @@ class Spawner {
     }
     const auto found = by_name_.find(node.probe_device);
     if (found == by_name_.end() || !level_.nodes[found->second].device)
-      return at(n,
-                "PLIANT_probe/device names `" + node.probe_device +
-                    "`, which is no node of this scene with PLIANT_haptic_device; correct the name, or add the device");
+      return at(n, Error{"",
+                         "PLIANT_probe/device names `" + node.probe_device +
+                             "`, which is no node of this scene with PLIANT_haptic_device",
+                         "correct the name, or add the device", "level.unknown_device"});
     probe.device = entities_[found->second];
     return Done{};
   }
@@ -439,9 +447,10 @@ class Spawner {
     if (!node.handle || !node.in_scene || node.handle->device.empty()) return Done{};
     const auto found = by_name_.find(node.handle->device);
     if (found != by_name_.end() && level_.nodes[found->second].device) return Done{};
-    return at(n,
-              "PLIANT_handle/device names `" + node.handle->device +
-                  "`, which is no node of this scene with PLIANT_haptic_device; correct the name, or add the device");
+    return at(n, Error{"",
+                       "PLIANT_handle/device names `" + node.handle->device +
+                           "`, which is no node of this scene with PLIANT_haptic_device",
+                       "correct the name, or add the device", "level.unknown_device"});
   }
 
   const Level& level_;

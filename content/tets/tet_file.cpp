@@ -86,7 +86,7 @@ Result<TetFile> load_tets(const fs::path& path, const fs::path& within) {
   if (const Format* format = format_of(path)) return format->read(path, within);
   std::string known;
   for (const Format& format : kFormats) known += (known.empty() ? "" : ", ") + std::string(format.extension);
-  return Error{path.string(), "is no tetrahedra file that is read; formats are: " + known};
+  return Error{path.string(), "is no tetrahedra file that is read", "formats are: " + known};
 }
 
 }  // namespace pliant

@@ -26,7 +26,7 @@ class NewestPort final : public PacketPort {
 
   Status send(std::span<const std::uint8_t> packet) override {
     if (packet.size() > kLongestNewest) return Error{"device", "a packet is longer than its line takes"};
-    if (failed_.load(std::memory_order_acquire)) return Error{"device", "is gone; plug it in again"};
+    if (failed_.load(std::memory_order_acquire)) return Error{"device", "is gone", "plug it in again"};
     Packet& next = newest_.write();
     std::copy(packet.begin(), packet.end(), next.bytes.begin());
     next.length = packet.size();

@@ -89,13 +89,13 @@ std::string lowered(std::string_view word) {
   return out;
 }
 
-// "; did you mean kPa?" of "KPA".
+// "did you mean kPa?" of "KPA".
 std::string spelled(std::string_view name) {
   for (const UnitRow& row : kUnits) {
-    if (lowered(row.name) == lowered(name)) return fmt::format("; did you mean {}?", row.name);
+    if (lowered(row.name) == lowered(name)) return fmt::format("did you mean {}?", row.name);
     for (const Prefix& prefix : kPrefixes)
       if (row.prefixes && lowered(std::string(prefix.name) + std::string(row.name)) == lowered(name))
-        return fmt::format("; did you mean {}{}?", prefix.name, row.name);
+        return fmt::format("did you mean {}{}?", prefix.name, row.name);
   }
   return {};
 }
@@ -123,22 +123,22 @@ class Reading {
   Result<Quantity> read() {
     const Quantity out = sum();
     blanks();
-    if (wrong_.empty() && at_ < text_.size()) fail_here();
-    if (wrong_.empty() && !std::isfinite(out.value)) fail("is no finite number; divide by something else");
-    if (!wrong_.empty()) return Error{"", wrong_};
+    if (wrong_.what.empty() && at_ < text_.size()) fail_here();
+    if (wrong_.what.empty() && !std::isfinite(out.value)) fail("is no finite number", "divide by something else");
+    if (!wrong_.what.empty()) return wrong_;
     return out;
   }
 
  private:
-  void fail(const std::string& why) {
-    if (wrong_.empty()) wrong_ = why;
+  void fail(const std::string& why, const std::string& cure) {
+    if (wrong_.what.empty()) wrong_ = {"", why, cure};
     at_ = text_.size();
   }
-  void fail_two() { fail("has two numbers side by side; write one, or +, -, * or / between them"); }
+  void fail_two() { fail("has two numbers side by side", "write one, or +, -, * or / between them"); }
   void fail_here() {
     if (is_digit(text_[at_])) return fail_two();
-    fail(fmt::format("cannot be read from '{}' on; write a number and its unit, 5 mm, or a sum, 1/10",
-                     text_.substr(at_, 20)));
+    fail(fmt::format("cannot be read from '{}' on", text_.substr(at_, 20)),
+         "write a number and its unit, 5 mm, or a sum, 1/10");
   }
   void blanks() {
     for (;;) {
@@ -163,11 +163,11 @@ class Reading {
       const bool plus = take("+"), minus = !plus && (take("-") || take("\u2212"));
       if (!plus && !minus) return left;
       const Quantity right = product();
-      if (!wrong_.empty()) return left;
+      if (!wrong_.what.empty()) return left;
       if (left.has_unit != right.has_unit)
-        fail("adds a number with a unit and one without; give both a unit");
+        fail("adds a number with a unit and one without", "give both a unit");
       else if (left.dimension != right.dimension)
-        fail("adds two things of different kinds; write units of the same kind");
+        fail("adds two things of different kinds", "write units of the same kind");
       left.value += plus ? right.value : -right.value;
     }
   }
@@ -182,7 +182,7 @@ class Reading {
         continue;
       }
       // Implicit multiplication: a unit follows, or a bracket after one.
-      if (at_ < text_.size() && wrong_.empty() && is_letter(text_[at_])) {
+      if (at_ < text_.size() && wrong_.what.empty() && is_letter(text_[at_])) {
         left = multiplied(left, unit(), false);
         continue;
       }
@@ -191,9 +191,9 @@ class Reading {
   }
 
   Quantity factor() {
-    if (++depth_ > kDeepest) fail("is nested too deeply; write fewer signs and brackets");
+    if (++depth_ > kDeepest) fail("is nested too deeply", "write fewer signs and brackets");
     Quantity out;
-    if (!wrong_.empty()) return out;
+    if (!wrong_.what.empty()) return out;
     if (take("+")) {
       out = factor();
     } else if (take("-") || take("\u2212")) {
@@ -201,12 +201,12 @@ class Reading {
       out.value = -out.value;
     } else if (take("(")) {
       out = sum();
-      if (wrong_.empty() && !take(")")) fail("lacks a closing bracket; write it");
+      if (wrong_.what.empty() && !take(")")) fail("lacks a closing bracket", "write it");
       out = with_units(raised(out));
     } else {
       blanks();
       if (at_ >= text_.size()) {
-        fail("ends too early; write a number behind the last sign");
+        fail("ends too early", "write a number behind the last sign");
       } else if (is_digit(text_[at_]) || text_[at_] == '.' || text_[at_] == ',') {
         out.value = number();
         out = with_units(raised(out));
@@ -223,7 +223,7 @@ class Reading {
   // In the tight interpretation, the units directly after a number: "5 N mm" too.
   Quantity with_units(Quantity out) {
     if (!tight_) return out;
-    for (blanks(); wrong_.empty() && at_ < text_.size() && is_letter(text_[at_]); blanks())
+    for (blanks(); wrong_.what.empty() && at_ < text_.size() && is_letter(text_[at_]); blanks())
       out = multiplied(out, unit(), false);
     return out;
   }
@@ -242,18 +242,19 @@ class Reading {
     }
     const std::string_view typed = text_.substr(begin, at_ - begin);
     if (marks > 1) {
-      fail(fmt::format("has the number {}, which can be read in two ways; write one point and no other sign in it",
-                       typed));
+      fail(fmt::format("has the number {}, which can be read in two ways", typed),
+           "write one point and no other sign in it");
       return 0;
     }
     if (before + behind == 0) {
-      fail("has a point without digits; write a number");
+      fail("has a point without digits", "write a number");
       return 0;
     }
     // Ambiguous: a thousands separator, or a decimal comma with three digits?
     if (comma && behind == 3 && before >= 1 && before <= 3 && typed[0] != '0') {
-      fail(fmt::format("can be {}{} or {}.{}; write one of them", typed.substr(0, before), typed.substr(before + 1),
-                       typed.substr(0, before), typed.substr(before + 1)));
+      fail(fmt::format("can be {}{} or {}.{}", typed.substr(0, before), typed.substr(before + 1),
+                       typed.substr(0, before), typed.substr(before + 1)),
+           "write one of them");
       return 0;
     }
     // An exponent only if digits follow: "1e-3", but not "5 eV" or "2e".
@@ -270,7 +271,7 @@ class Reading {
     double value = 0;
     const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc() || stop != digits.data() + digits.size() || !std::isfinite(value))
-      fail("is too large or too small for a number; write another");
+      fail("is too large or too small for a number", "write another");
     return value;
   }
 
@@ -288,8 +289,8 @@ class Reading {
     const std::optional<Unit> found = find_unit(name);
     if (!found) {
       const std::string meant = spelled(name);
-      fail(fmt::format("has '{}', which is no unit here{}", name.substr(0, 20),
-                       meant.empty() ? "; write m, mm, N, kPa, kg, s, Hz, deg or %, or none" : meant));
+      fail(fmt::format("has '{}', which is no unit here", name.substr(0, 20)),
+           meant.empty() ? "write m, mm, N, kPa, kg, s, Hz, deg or %, or none" : meant);
       return {};
     }
     Quantity out{found->si, found->dimension, true};
@@ -301,7 +302,7 @@ class Reading {
         return {};
       }
       if (at_ < text_.size() && is_digit(text_[at_])) {
-        fail("has an exponent of two digits; write one");
+        fail("has an exponent of two digits", "write one");
         return {};
       }
       return power(out, exponent);
@@ -311,14 +312,14 @@ class Reading {
 
   // ^2, ², ^-1
   Quantity raised(const Quantity& base) {
-    if (!wrong_.empty()) return base;
+    if (!wrong_.what.empty()) return base;
     if (take("\u00b2")) return power(base, 2);
     if (take("\u00b3")) return power(base, 3);
     if (!take("^")) return base;
     const bool negative = take("-");
     blanks();
     if (at_ >= text_.size() || !is_digit(text_[at_]) || (at_ + 1 < text_.size() && is_digit(text_[at_ + 1]))) {
-      fail("has an exponent that is no digit; write ^2");
+      fail("has an exponent that is no digit", "write ^2");
       return base;
     }
     const int exponent = text_[at_++] - '0';
@@ -333,21 +334,21 @@ class Reading {
   }
   Quantity multiplied(const Quantity& a, const Quantity& b, bool over) {
     Quantity out{over ? a.value / b.value : a.value * b.value, a.dimension, a.has_unit || b.has_unit};
-    if (over && b.value == 0.0) fail("divides by zero; divide by something else");
+    if (over && b.value == 0.0) fail("divides by zero", "divide by something else");
     for (std::size_t i = 0; i < out.dimension.size(); ++i) out.dimension[i] += over ? -b.dimension[i] : b.dimension[i];
     check(out);
     return out;
   }
   void check(const Quantity& it) {
     for (const int each : it.dimension)
-      if (std::abs(each) > kMostExponent) fail("has units to a power that nothing here has; write fewer");
+      if (std::abs(each) > kMostExponent) fail("has units to a power that nothing here has", "write fewer");
   }
 
   std::string_view text_;
   bool tight_;
   std::size_t at_ = 0;
   int depth_ = 0;
-  std::string wrong_;
+  Error wrong_;
 };
 
 std::string_view trimmed(std::string_view text) {
@@ -385,21 +386,20 @@ bool fits(const Quantity& it, const Unit& field) {
 
 Result<double> parse_quantity(std::string_view text, std::string_view unit) {
   text = trimmed(text);
-  if (text.empty()) return Error{"", "is empty; write a number"};
-  if (text.size() > 200) return Error{"", "is too long for a number; write less"};
-  if (std::none_of(text.begin(), text.end(), is_digit)) return Error{"", "has no number; write one before the unit"};
+  if (text.empty()) return Error{"", "is empty", "write a number"};
+  if (text.size() > 200) return Error{"", "is too long for a number", "write less"};
+  if (std::none_of(text.begin(), text.end(), is_digit)) return Error{"", "has no number", "write one before the unit"};
   const Unit field = unit_of_field(unit);
   const Result<Quantity> tight = Reading(text, true).read(), loose = Reading(text, false).read();
   const Result<Quantity>& read = tight && fits(*tight, field) ? tight : loose && fits(*loose, field) ? loose : tight;
-  if (!read) return Error{"", read.error().what};
+  if (!read) return read.error();
   if (!fits(*read, field)) {
-    const bool plain = field.dimension == kNumber;
-    return Error{"", plain
-                         ? std::string("is a number with a unit, where a plain number is asked for; leave the unit out")
-                         : fmt::format("is of another kind than {}; write it in {}", unit, unit)};
+    if (field.dimension == kNumber)
+      return Error{"", "is a number with a unit, where a plain number is asked for", "leave the unit out"};
+    return Error{"", fmt::format("is of another kind than {}", unit), fmt::format("write it in {}", unit)};
   }
   const double value = read->has_unit ? read->value / field.si : read->value;
-  if (!std::isfinite(value)) return Error{"", "is too large for a number; write another"};
+  if (!std::isfinite(value)) return Error{"", "is too large for a number", "write another"};
   return read->has_unit ? as_typed(value) : value;
 }
 

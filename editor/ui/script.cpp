@@ -158,8 +158,8 @@ Result<Script> Script::load(const std::filesystem::path& file) {
                                       "expect-no", "say",   "hear",    "screenshot", "drop",    "figures",
                                       "felt",      "close", "at-once", "now",        "apart",   "slow"};
     if (std::find(std::begin(kVerbs), std::end(kVerbs), step.verb) == std::end(kVerbs))
-      return Error{fmt::format("{}:{}", script.file_, row),
-                   "'" + step.verb + "' is no step; write, say, `click Inspector/stiffness`"};
+      return Error{fmt::format("{}:{}", script.file_, row), "'" + step.verb + "' is no step",
+                   "write, say, `click Inspector/stiffness`"};
     script.steps_.push_back(std::move(step));
   }
   return script;
@@ -188,7 +188,7 @@ Result<std::pair<double, double>> Script::place(const std::string& text, bool& t
     std::string like;
     for (const std::string& each : widget_addresses())
       if (like.size() < 600) like += (like.empty() ? "" : ", ") + each;
-    return Error{"", "there is no single widget '" + address + "' now; there are: " + like};
+    return Error{"", "there is no single widget '" + address + "' now", "there are: " + like};
   }
   const double x = static_cast<double>(found->low.x) + fx * static_cast<double>(found->high.x - found->low.x),
                y = static_cast<double>(found->low.y) + fy * static_cast<double>(found->high.y - found->low.y);
@@ -223,20 +223,21 @@ void Script::key_events(const std::string& keys, bool) {
 
 Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   waits = false;
-  const auto wrong = [&](const std::string& what) { return Error{fmt::format("{}:{}", file_, step.line), what}; };
+  const auto placed = [&](const Error& error) { return error.at(fmt::format("{}:{}", file_, step.line)); };
+  const auto wrong = [&](const std::string& what, const std::string& cure = {}) { return placed({"", what, cure}); };
   std::size_t i = 0;
   bool there = true;
   if (step.verb == "click" || step.verb == "press" || step.verb == "move" || step.verb == "drag") {
     const auto from = place(address_of(step.words, i), there, step.verb == "move" ? Need::kUncovered : Need::kPress);
     waits = !from && rest_ < kLateFrames;
     if (waits) return Done{};
-    if (!from) return wrong(from.error().what);
+    if (!from) return placed(from.error());
     std::pair<double, double> to = *from;
     if (step.verb == "drag") {
       if (i >= step.words.size() || step.words[i] != "to")
-        return wrong("says no place to drag to; write `drag A to B`");
+        return wrong("says no place to drag to", "write `drag A to B`");
       const auto target = place(address_of(step.words, ++i), there, Need::kThere);
-      if (!target) return wrong(target.error().what);
+      if (!target) return placed(target.error());
       to = *target;
     }
     const Manner m = manner_of({step.words.begin() + static_cast<std::ptrdiff_t>(i), step.words.end()});
@@ -268,10 +269,11 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     return Done{};
   }
   if (step.verb == "wheel") {
-    if (step.words.size() < 2) return wrong("says no clicks; write `wheel Viewport 3`");
+    if (step.words.size() < 2) return wrong("says no clicks", "write `wheel Viewport 3`");
     const auto clicks = number_of(step.words.back());
     const auto from = place(step.rest.substr(0, step.rest.rfind(' ')), there, Need::kUncovered);
-    if (!clicks || !from) return wrong(from ? "says no clicks; write `wheel Viewport 3`" : from.error().what);
+    if (!from) return placed(from.error());
+    if (!clicks) return wrong("says no clicks", "write `wheel Viewport 3`");
     frames_.push_back({at(InputKind::kMove, from->first, from->second)});
     frames_.push_back({at(InputKind::kWheel, 0, *clicks)});
     return Done{};
@@ -279,7 +281,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   if (step.verb == "key") {
     int key = 0;
     std::uint8_t modifiers = 0;
-    if (!parse_keys(step.rest, key, modifiers)) return wrong("'" + step.rest + "' is no key; write, say, Ctrl+S");
+    if (!parse_keys(step.rest, key, modifiers)) return wrong("'" + step.rest + "' is no key", "write, say, Ctrl+S");
     key_events(step.rest, false);
     return Done{};
   }
@@ -288,7 +290,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     if (step.verb == "set") {
       // The longest prefix that is a widget's address: names and values may both contain blanks.
       std::size_t last = step.rest.rfind(' ');
-      if (last == std::string::npos) return wrong("says no value; write `set Inspector/stiffness 500`");
+      if (last == std::string::npos) return wrong("says no value", "write `set Inspector/stiffness 500`");
       for (std::size_t at = last; at != std::string::npos && at > 0; at = step.rest.rfind(' ', at - 1))
         if (find_widget(step.rest.substr(0, at))) {
           last = at;
@@ -298,7 +300,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
       const auto from = place(step.rest.substr(0, last), there, Need::kPress);
       waits = !from && rest_ < kLateFrames;
       if (waits) return Done{};
-      if (!from) return wrong(from.error().what);
+      if (!from) return placed(from.error());
       frames_.push_back({at(InputKind::kMove, from->first, from->second)});
       frames_.push_back({});
       // Ctrl-click edits a number, and selects a text.
@@ -336,7 +338,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     const auto found = find_widget(address);
     const auto seen = place(address, there, Need::kUncovered);
     waits = !seen || (found && !found->enabled);
-    if (waits && now.now - began_ > patience) return wrong(seen ? "'" + address + "' stays off" : seen.error().what);
+    if (waits && now.now - began_ > patience) return seen ? wrong("'" + address + "' stays off") : placed(seen.error());
     return Done{};
   }
   if (step.verb == "expect" || step.verb == "expect-no") {
@@ -344,7 +346,7 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
     waits = (step.verb == "expect") != there && rest_ < kLateFrames;
     if (waits) return Done{};
     if ((step.verb == "expect") != there)
-      return wrong(found ? "'" + step.rest + "' is there, and should not be" : found.error().what);
+      return found ? wrong("'" + step.rest + "' is there, and should not be") : placed(found.error());
     return Done{};
   }
   if (step.verb == "say") {

@@ -42,10 +42,14 @@ class DataCheck {
   bool zero_directions() const { return zero_directions_; }
 
  private:
-  void error(const std::string& pointer, std::string message) { add(Severity::kError, pointer, std::move(message)); }
-  void warn(const std::string& pointer, std::string message) { add(Severity::kWarning, pointer, std::move(message)); }
-  void add(Severity severity, const std::string& pointer, std::string message) {
-    if (findings_.size() < 1000) findings_.push_back({severity, pointer, std::move(message)});
+  void error(const std::string& pointer, std::string what, std::string cure = {}) {
+    add({Severity::kError, pointer, std::move(what), std::move(cure), "gltf.data"});
+  }
+  void warn(const std::string& pointer, std::string what, std::string cure = {}) {
+    add({Severity::kWarning, pointer, std::move(what), std::move(cure), "gltf.data"});
+  }
+  void add(Finding finding) {
+    if (findings_.size() < 1000) findings_.push_back(std::move(finding));
   }
   static std::string pointer_of(std::size_t accessor) { return fmt::format("/accessors/{}", accessor); }
   const Json& accessor(std::size_t i) const { return json_["accessors"][i]; }
@@ -113,9 +117,9 @@ class DataCheck {
     zero_directions_ |= zeros > 0;
     if (zeros > 0)
       warn(pointer_of(i),
-           fmt::format("holds {} vector{} of length 0{}, the first in element {}; made anew", zeros,
-                       zeros == 1 ? "" : "s",
-                       longest > 0.0 ? fmt::format(" or nearly so (at most {:.3g})", longest) : "", first));
+           fmt::format("holds {} vector{} of length 0{}, the first in element {}", zeros, zeros == 1 ? "" : "s",
+                       longest > 0.0 ? fmt::format(" or nearly so (at most {:.3g})", longest) : "", first),
+           "made anew");
     for (std::size_t e = 0; e + width <= values.size(); e += width) {
       if (!has_direction(at(e))) continue;
       const float norm = length(at(e));
@@ -157,9 +161,9 @@ class DataCheck {
     if (const std::uint32_t restart = restart_index(accessor(i)["componentType"].get<int>());
         largest->second == restart)
       return error(pointer + "/indices",
-                   fmt::format("hold {}, the primitive restart of their type, which glTF forbids; export the mesh with "
-                               "{}",
-                               restart, restart < 65536 ? "wider indices" : "indices of vertices that are there"));
+                   fmt::format("hold {}, the primitive restart of their type, which glTF forbids", restart),
+                   fmt::format("export the mesh with {}",
+                               restart < 65536 ? "wider indices" : "indices of vertices that are there"));
     if (largest->second >= vertices)
       error(pointer + "/indices", fmt::format("refer to vertex {} of {}", largest->second, vertices));
   }
@@ -181,7 +185,7 @@ class DataCheck {
     for (std::size_t v = 0; v < sums.size(); ++v)
       if (std::abs(sums[v] - 1.0f) > kWeightTolerance)
         return warn(pointer + "/attributes",
-                    fmt::format("have weights that sum to {:.3g} instead of 1 in element {}; scaled", sums[v], v));
+                    fmt::format("have weights that sum to {:.3g} instead of 1 in element {}", sums[v], v), "scaled");
   }
 
   // Skins of different sizes may share the accessor: its largest index is cached.
@@ -220,8 +224,8 @@ class DataCheck {
         for (std::size_t k = 4 * v; k < 4 * v + 4 && k < std::min(joint.size(), weight.size()); ++k) {
           if (weight[k] == 0.0f) continue;
           if (std::find(here.begin(), here.end(), joint[k]) != here.end())
-            return warn(pointer + "/attributes",
-                        fmt::format("give joint {} two weights in element {}; added up", joint[k], v));
+            return warn(pointer + "/attributes", fmt::format("give joint {} two weights in element {}", joint[k], v),
+                        "added up");
           here.push_back(joint[k]);
         }
     }

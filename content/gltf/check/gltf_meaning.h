@@ -16,8 +16,9 @@ enum class BufferUse { kVertices, kIndices, kMatrices, kImage, kTimes, kValues }
 class Meaning {
  public:
   Meaning(const Json& json, Findings& findings) : json_(json), findings_(findings) {}
-  void error(std::string pointer, std::string message);
-  void warn(std::string pointer, std::string message);
+  void error(std::string pointer, std::string what, std::string cure = {});
+  void warn(std::string pointer, std::string what, std::string cure = {});
+  void add(Finding finding);
   // Records this use of an accessor and its bufferView; an error if another use was recorded before.
   void use(std::size_t accessor, BufferUse use, const std::string& pointer);
   void use_view(std::size_t view, BufferUse use, const std::string& pointer);

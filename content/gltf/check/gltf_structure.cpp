@@ -113,18 +113,21 @@ class Structure {
     if (!name.is_string()) return mismatch(pointer, name, "a string");
     const std::size_t size = name.get_ref<const std::string&>().size();
     if (size > most(limits::kName))
-      error(pointer, "has " + beyond(limits::kName, static_cast<double>(size), "shorten it"));
+      add(finding_of(beyond("has", limits::kName, static_cast<double>(size), "shorten it"), Severity::kError, pointer));
   }
 
   static const Table& table() {
     static const Table table;
     return table;
   }
-  void error(const std::string& pointer, std::string message) {
-    if (findings_.size() < 1000) findings_.push_back({Severity::kError, pointer, std::move(message)});
+  void error(const std::string& pointer, std::string what, std::string cure = {}) {
+    add({Severity::kError, pointer, std::move(what), std::move(cure), "gltf.structure"});
   }
-  void warn(const std::string& pointer, std::string message) {
-    if (findings_.size() < 1000) findings_.push_back({Severity::kWarning, pointer, std::move(message)});
+  void warn(const std::string& pointer, std::string what, std::string cure = {}) {
+    add({Severity::kWarning, pointer, std::move(what), std::move(cure), "gltf.structure"});
+  }
+  void add(Finding finding) {
+    if (findings_.size() < 1000) findings_.push_back(std::move(finding));
   }
   static std::string shown(const Json& json) {
     if (json.is_array()) return "an array";
@@ -159,8 +162,8 @@ class Structure {
     const auto look = [&](const Json& object, const std::string& where) {
       for (const auto& [name, value] : object.items())
         if (name.rfind(kPliant, 0) == 0)
-          warn(where + "/" + escaped(name),
-               "is not read, because it stands outside of `extensions`; move it into " + target + " `extensions`");
+          warn(where + "/" + escaped(name), "is not read, because it stands outside of `extensions`",
+               "move it into " + target + " `extensions`");
     };
     look(json, pointer);
     if (json.contains("extras") && json["extras"].is_object()) look(json["extras"], pointer + "/extras");
@@ -174,19 +177,19 @@ class Structure {
         mismatch(here, json, "an object");
         continue;
       }
-      if (!used_.count(name)) error(here, "is not declared; add '" + name + "' to extensionsUsed");
+      if (!used_.count(name)) error(here, "is not declared", "add '" + name + "' to extensionsUsed");
       std::string content = "any";
       if (table().known_extensions.count(name)) {
         const auto allowed = table().extensions.find(type);
         const auto found = allowed == table().extensions.end() ? std::map<std::string, std::string>::const_iterator{}
                                                                : allowed->second.find(name);
         if (allowed == table().extensions.end() || found == allowed->second.end()) {
-          error(here, fmt::format("has no meaning {}; {}", place(type), right_place(name, type)));
+          error(here, fmt::format("has no meaning {}", place(type)), right_place(name, type));
           continue;
         }
         content = found->second;
       } else if (name.rfind(kPliant, 0) == 0 && type != "node" && type != "scene") {
-        error(here, fmt::format("has no meaning {}; PLIANT extensions stand on nodes and scenes", place(type)));
+        error(here, fmt::format("has no meaning {}", place(type)), "PLIANT extensions stand on nodes and scenes");
         continue;
       }
       if (content != "any") check_object(json, content, here);
@@ -197,7 +200,7 @@ class Structure {
   template <class Check>
   void each(Json& json, const std::string& pointer, bool unique, const Check& check) {
     if (!json.is_array()) return mismatch(pointer, json, "an array");
-    if (json.empty()) return error(pointer, "is empty; leave it out instead");
+    if (json.empty()) return error(pointer, "is empty", "leave it out instead");
     std::set<Json> seen;
     for (std::size_t i = 0; i < json.size(); ++i) {
       const std::string here = fmt::format("{}/{}", pointer, i);
