@@ -2,9 +2,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <vector>
 
-#include "content/files/mesh_check.h"
+#include "content/files/mesh_reader.h"
 #include "content/tets/tet_text.h"
 
 namespace pliant {
@@ -67,11 +68,7 @@ Result<OffHeader> read_off_header(TetText& text) {
   return header;
 }
 
-void append(Bytes& out, std::string_view text) {
-  out.insert(out.end(), text.begin(), text.end());
-}
-
-Status copy_vertex(const OffHeader& header, const Words& words, std::int64_t v, Bytes& out) {
+Status read_vertex(const OffHeader& header, const Words& words, std::int64_t v, MeshContent& out) {
   const std::size_t normals = header.homogeneous ? 4 : 3, needed = normals + (header.normal ? 3 : 0);
   if (words.size() < needed + (header.texture ? 2 : 0))
     return Error{"", fmt::format("has too few numbers for vertex {}", v), "the file is cut off or damaged"};
@@ -79,69 +76,62 @@ Status copy_vertex(const OffHeader& header, const Words& words, std::int64_t v, 
   if (header.texture) kept.insert(kept.end(), words.end() - 2, words.end());  // texture coordinates follow the colours
   std::array<double, 9> value{};
   for (std::size_t i = 0; i < kept.size(); ++i)
-    if (!to_number(kept[i], value[i]))
+    if (!to_number(kept[i], value[i]) || !std::isfinite(static_cast<float>(value[i])))
       return Error{"", fmt::format("has something else than a finite number at vertex {}", v), "repair the mesh"};
   if (header.homogeneous && value[3] == 0.0)
     return Error{"", fmt::format("has vertex {} at infinity", v), "repair the mesh"};
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    if (header.homogeneous && i == 3) continue;
-    append(out, header.homogeneous && i < 3 ? fmt::format("{:.9g}", value[i] / value[3]) : std::string(kept[i]));
-    append(out, " ");
-  }
-  append(out, "\n");
+  const vec3 place(dvec3(value[0], value[1], value[2]) / (header.homogeneous ? value[3] : 1.0));
+  if (!std::isfinite(place.x + place.y + place.z))
+    return Error{"", fmt::format("has vertex {} at infinity", v), "repair the mesh"};
+  out.position.push_back(place);
+  if (header.normal) out.normal.emplace_back(dvec3(value[normals], value[normals + 1], value[normals + 2]));
+  if (header.texture) out.uv.emplace_back(glm::dvec2(value[needed], value[needed + 1]));
   return Done{};
 }
 
-Status copy_face(const OffHeader& header, const Words& words, std::int64_t f, Bytes& out, std::int64_t& written) {
+Status read_face(const OffHeader& header, const Words& words, std::int64_t f, FaceList& out) {
   std::int64_t corners = 0;
   if (!to_integer(words[0], corners) || corners < 1 || corners >= static_cast<std::int64_t>(words.size()))
     return Error{"", fmt::format("has too few numbers for face {}", f), "the file is cut off or damaged"};
+  const std::size_t begin = out.corners.size();
   for (std::int64_t c = 1; c <= corners; ++c) {
     const std::string_view word = words[static_cast<std::size_t>(c)];
     std::int64_t vertex = -1;
     if (!to_integer(word, vertex) || vertex < 0 || vertex >= header.vertices)
       return Error{"", fmt::format("has a face {} that names vertex {} of {}", f, word.substr(0, 20), header.vertices),
                    "export it again"};
+    const auto same = static_cast<std::int32_t>(vertex);
+    out.corners.push_back({static_cast<std::uint32_t>(vertex), header.texture ? same : -1, header.normal ? same : -1});
   }
-  if (corners < 3) return Done{};  // skips points and lines
-  ++written;
-  for (std::int64_t c = 0; c <= corners; ++c) {
-    append(out, words[static_cast<std::size_t>(c)]);
-    append(out, " ");
-  }
-  append(out, "\n");
+  if (corners < 3)
+    out.corners.resize(begin);  // skips points and lines
+  else
+    out.sizes.push_back(static_cast<std::uint32_t>(corners));
   return Done{};
 }
 
 }  // namespace
 
-Result<Bytes> off_as_ply(const Bytes& bytes) {
+Result<MeshContent> read_off(const Bytes& bytes) {
   TetText text(bytes, "");
   const Result<OffHeader> header = read_off_header(text);
   if (!header) return header.error();
-  Bytes body;
-  body.reserve(bytes.size() + bytes.size() / 4);
+  MeshContent out;
   Words words;
   for (std::int64_t v = 0; v < header->vertices; ++v) {
     if (!row(text, words))
       return Error{"", fmt::format("ends before vertex {} of {}", v, header->vertices), "the file is cut off"};
-    if (const Status status = copy_vertex(*header, words, v, body); !status) return status.error();
+    if (const Status status = read_vertex(*header, words, v, out); !status) return status.error();
   }
-  std::int64_t faces = 0;
+  FaceList& faces = out.objects.emplace_back().lists.emplace_back();
   for (std::int64_t f = 0; f < header->faces; ++f) {
     if (!row(text, words))
       return Error{"", fmt::format("ends before face {} of {}", f, header->faces), "the file is cut off"};
-    if (const Status status = copy_face(*header, words, f, body, faces); !status) return status.error();
+    if (const Status status = read_face(*header, words, f, faces); !status) return status.error();
   }
-  if (faces == 0) return Error{"", "has no triangles", "points and lines cannot be touched"};
-  std::string head = fmt::format("ply\nformat ascii 1.0\nelement vertex {}\n", header->vertices);
-  std::vector<const char*> names{"x", "y", "z"};
-  if (header->normal) names.insert(names.end(), {"nx", "ny", "nz"});
-  if (header->texture) names.insert(names.end(), {"s", "t"});
-  for (const char* name : names) head += fmt::format("property float {}\n", name);
-  head += fmt::format("element face {}\nproperty list int int vertex_indices\nend_header\n", faces);
-  Bytes out(head.begin(), head.end());
-  out.insert(out.end(), body.begin(), body.end());
+  if (faces.sizes.empty()) return Error{"", "has no triangles", "points and lines cannot be touched"};
+  out.materials.emplace_back().base_color = vec4(1);
+  out.textures.emplace_back();
   return out;
 }
 
