@@ -1,6 +1,7 @@
 #include "content/keys/extension_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -8,6 +9,7 @@
 #include "content/keys/enum_words.h"
 #include "content/level/spawn_soft.h"
 #include "content/mesh/mesh_crease.h"
+#include "content/tets/tet_file.h"
 
 namespace pliant {
 
@@ -153,9 +155,13 @@ std::vector<Key> deformable_keys() {
              fmt::format("radius R of the field; 0: {} of the diagonal of the object's box", kDefaultReach)));
   keys.push_back(
       number("volume", "1", R::kVolume, d(&D::volume), "share of the volume conserved by the shape `volume`"));
+  std::vector<std::string> depending;
+  for (std::size_t i = 0; i < std::size(kShapeRows); ++i)
+    if (depends_on_contact(static_cast<Shape>(i))) depending.emplace_back(kShapeRows[i].word);
   keys.push_back(number("contact_radius", "m", {R::kContactRadius, {1e-4, 1.0}}, d(&D::contact_radius),
-                        "indenter's radius of the shapes punch, hertz and kelvinlet, beside a probe's own contact "
-                        "circle; 0: a fifth of `reach`"));
+                        fmt::format("indenter's radius of the shapes {}, beside a probe's own contact circle; 0: a "
+                                    "fifth of `reach`",
+                                    listed(depending))));
   keys.push_back(number("friction_static", "1", kFrictionRange, d(&D::friction_static),
                         "coefficient of static friction, at least that of sliding"));
   keys.push_back(
@@ -285,8 +291,9 @@ std::vector<Key> soft_body_keys() {
                         "fills all that the surface encloses, the cavity of a thin wall too, or only the wall"));
   keys.push_back(number("thickness", "m", {SoftBodyRange::kThickness, {1e-4, 0.5}}, s(&S::thickness),
                         "of a wall, inwards from the surface; 0: the wall as the surface has it"));
-  keys.push_back(
-      text("mesh", KeyType::kText, s(&S::mesh), "tetrahedra file, instead of `cell`, relative to the level"));
+  keys.push_back(text(
+      "mesh", KeyType::kText, s(&S::mesh),
+      fmt::format("tetrahedra file ({}), instead of `cell`, relative to the level", fmt::join(tet_endings(), ", "))));
   keys.push_back(
       box("pinned", s(&S::pinned), "pinned part: a box in the object frame; left out: the attribute _PINNED"));
   keys.push_back(
@@ -458,6 +465,13 @@ std::vector<Extension> make_table() {
 double calibrated_stiffness(double young, double poisson, double thickness) {
   const double layer = thickness > 0.0 ? bonded_layer_factor(kYoungRadius / thickness, poisson) : 1.0;
   return 2.0 * young / (1.0 - poisson * poisson) * kYoungRadius * layer;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    out += (i == 0 ? "" : i + 1 < words.size() ? ", " : " and ") + words[i];
+  return out;
 }
 
 const std::vector<Extension>& extension_table() {

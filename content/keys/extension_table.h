@@ -54,6 +54,8 @@ std::string range_text(const Key& key);
 // perhaps meant.
 std::optional<Note> doubt(const Key& key, const Json& value);
 std::string usual_text(const Key& key);
+// "a, b and c".
+std::string listed(const std::vector<std::string>& words);
 // The closest of `names`, or "" if none is close.
 std::string nearest(const std::string& word, const std::vector<std::string>& names);
 // "did you mean X?", or "".

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "content/files/file_io.h"
+#include "content/level/node_error.h"
 #include "content/level/script.h"
 
 namespace pliant {
@@ -68,12 +69,9 @@ class MotionMaker {
   };
 
   Error at(std::size_t n, std::string what, std::string cure) const {
-    return {level_.path.filename().string() + ": node `" + level_.nodes[n].name + "`", std::move(what), std::move(cure),
-            "level.motion", static_cast<std::int32_t>(n)};
+    return node_error(level_, n, {"", std::move(what), std::move(cure), "level.motion"});
   }
-  Error around(std::size_t n, const Error& error) const {
-    return at(n, error.where.empty() ? error.what : error.where + ": " + error.what, error.cure);
-  }
+  Error around(std::size_t n, const Error& error) const { return node_error_around(level_, n, error); }
   void note(std::size_t n, const std::string& what, const std::string& cure = {}) {
     out_.notes.push_back("node `" + level_.nodes[n].name + "` " + sentence_of(what, cure));
   }

@@ -290,4 +290,8 @@ Result<TetFile> parse_msh(std::span<const std::uint8_t> bytes, const std::string
   return Msh(bytes, name).read();
 }
 
+Result<TetFile> read_msh(const std::filesystem::path& path, const std::filesystem::path&) {
+  return read_parsed(path, parse_msh);
+}
+
 }  // namespace pliant

@@ -2,7 +2,9 @@
 // comment. Numbers begin at 0 or 1, as the first node's does.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "content/files/limits.h"
 #include "content/tets/tet_clean.h"
@@ -89,6 +91,42 @@ Result<TetFile> parse_tetgen(std::span<const std::uint8_t> node, std::span<const
     raw.tets.push_back(tet);
   }
   return clean(std::move(raw), name);
+}
+
+namespace {
+
+std::string tetgen_ending(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
+
+}  // namespace
+
+// The file with the same name and the other ending, in the same letter case.
+std::filesystem::path tetgen_partner(const std::filesystem::path& path) {
+  const std::string ending = tetgen_ending(path);
+  if (ending != ".node" && ending != ".ele") return {};
+  const bool upper = std::isupper(static_cast<unsigned char>(path.extension().string()[1]));
+  const char* const other = ending == ".node" ? (upper ? ".ELE" : ".ele") : (upper ? ".NODE" : ".node");
+  return std::filesystem::path(path).replace_extension(other);
+}
+
+// TetGen writes two files; either may be given.
+Result<TetFile> read_tetgen(const std::filesystem::path& path, const std::filesystem::path& within) {
+  namespace fs = std::filesystem;
+  Result<Bytes> bytes = read_file(path, limits::kTetFile);
+  if (!bytes) return bytes.error();
+  const fs::path beside = tetgen_partner(path);
+  if (!within.empty()) {
+    std::error_code error;
+    const fs::path name = fs::relative(beside.parent_path(), within, error) / beside.filename();
+    if (const Result<fs::path> confined = confined_file(within, name); !confined) return confined.error();
+  }
+  Result<Bytes> other = read_file(beside, limits::kTetFile);
+  if (!other) return other.error();
+  const std::string stem = fs::path(path).replace_extension().string();
+  return tetgen_ending(path) == ".node" ? parse_tetgen(*bytes, *other, stem) : parse_tetgen(*other, *bytes, stem);
 }
 
 }  // namespace pliant

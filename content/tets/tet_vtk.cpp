@@ -271,4 +271,8 @@ Result<TetFile> parse_vtk(std::span<const std::uint8_t> bytes, const std::string
   return Vtk(bytes, name).read();
 }
 
+Result<TetFile> read_vtk(const std::filesystem::path& path, const std::filesystem::path&) {
+  return read_parsed(path, parse_vtk);
+}
+
 }  // namespace pliant

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "content/openable.h"
 #include "editor/app/files.h"
 #include "editor/panels/dialog.h"
 #include "editor/panels/panels.h"
@@ -36,10 +37,7 @@ std::string lower_case(std::string text) {
 }
 
 bool opens(const fs::path& name) {
-  constexpr const char* kEndings[] = {".glb", ".gltf", ".obj",  ".stl", ".ply", ".off",
-                                      ".msh", ".vtk",  ".mesh", ".fbx", ".dae"};
-  const std::string ending = lower_case(name.extension().string());
-  return std::find(std::begin(kEndings), std::end(kEndings), ending) != std::end(kEndings);
+  return has_ending(name, openable_endings());
 }
 
 struct Filter {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "components/kinematic.h"
+#include "components/probe_shape.h"
 #include "editor/app/path_editing.h"
 #include "editor/tools/tools.h"
 #include "editor/ui/widgets.h"
@@ -220,9 +221,10 @@ class PathTool : public ViewTool {
         };
         out.emplace_back(on(i), on(i + 1));
       }
-    if (it.node.probe && it.node.probe->length > 0.0)
-      for (const dvec3& beside : {frame[0], -frame[0], frame[1], -frame[1]})
-        out.emplace_back(vec3(tip.radius * beside), vec3(tip.radius * beside + it.node.probe->length * axis));
+    for (const ProbePart& part : it.node.probe ? probe_parts(*it.node.probe) : std::vector<ProbePart>())
+      if (!part.is_sphere())
+        for (const dvec3& beside : {frame[0], -frame[0], frame[1], -frame[1]})
+          out.emplace_back(vec3(part.from + tip.radius * beside), vec3(part.to + tip.radius * beside));
     return out;
   }
 

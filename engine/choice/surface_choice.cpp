@@ -36,7 +36,7 @@ OpenKeys open_keys(const LevelNode& node, const SurfaceTruth& truth) {
   const auto said = [&](const char* key) { return states(node, "deformable", key); };
   const Deformable& its = *node.deformable;
   OpenKeys open;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(kLastShape); ++i) open.shapes.push_back(static_cast<Shape>(i));
+  for (std::size_t i = 0; i < std::size(kShapeRows); ++i) open.shapes.push_back(static_cast<Shape>(i));
   if (said("shape") || said("volume"))
     open.shapes = {its.shape};
   else if (said("contact_radius"))

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "components/probe_shape.h"
 #include "components/soft_body.h"
 #include "engine/session/live_keys.h"
 #include "engine/session/scene_check.h"
@@ -89,8 +90,8 @@ bool moves_otherwise(const Motion& a, const Motion& b) {
 Result<SurfaceSetting> surface_setting(const Session::Parts& p, const std::string& where, const Deformable& before,
                                        Deformable& now) {
   const Mesh& mesh = p.world.meshes[before.mesh];
-  const bool arm = before.spring == SpringLaw::kStandardLinearSolid;
-  if (arm != (now.spring == SpringLaw::kStandardLinearSolid))
+  const bool arm = has_arm(before.spring);
+  if (arm != has_arm(now.spring))
     return Error{where, "the standard linear solid keeps a memory that is laid out when the session opens",
                  "change it in the scene and open that again"};
   if (now.reach == 0.0) now.reach = default_reach(mesh);
@@ -169,7 +170,7 @@ Result<SessionChange> change_probe(Session::Parts& p, const std::string& name, c
     return change;
   }
   constexpr const char* kAgain = "; change it in the scene and open that again";
-  if (now.length > 0.0)
+  if (has_capsule(now))
     return Error{where, std::string("a capsule's tips are laid out by it when the session opens") + kAgain};
   if ((now.radius > 0.0) != (before.radius > 0.0))
     return Error{where, std::string("a point and a sphere have different places for contacts") + kAgain};

@@ -192,9 +192,9 @@ Status write_keys(const LawFit& fit, const FitOptions& options, Level& level, st
   Deformable& it = *level.nodes[static_cast<std::size_t>(number)].deformable;
   it.spring = fitted.spring;
   it.stiffness = fitted.stiffness;
-  it.cubic = fitted.spring == SpringLaw::kCubic ? fitted.cubic : it.cubic;
-  it.stiffening = fitted.spring == SpringLaw::kExponential ? fitted.stiffening : it.stiffening;
-  if (fitted.spring == SpringLaw::kStandardLinearSolid) {
+  it.cubic = reads_key(fitted.spring, "cubic") ? fitted.cubic : it.cubic;
+  it.stiffening = reads_key(fitted.spring, "stiffening") ? fitted.stiffening : it.stiffening;
+  if (has_arm(fitted.spring)) {
     it.relaxation_stiffness = fitted.relaxation_stiffness;
     it.relaxation_time = fitted.relaxation_time;
   }

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <memory>
 #include <tuple>
 
@@ -6,6 +9,7 @@
 #include "content/author/presets.h"
 #include "content/level/unit.h"
 #include "content/level_file.h"
+#include "content/tets/tet_file.h"
 #include "editor/edit.h"
 #include "engine/choice/model_choice.h"
 #include "lab/console/exit.h"
@@ -18,7 +22,10 @@ namespace pliant {
 void add_inspect(CLI::App& app, int& status) {
   const auto options = std::make_shared<InspectOptions>();
   CLI::App* verb = app.add_subcommand("inspect", "what is in a file, whether it can be touched, what is wrong with it");
-  verb->add_option("file", options->file, "level, mesh, tetrahedra or EXR panorama")->required()->check(named());
+  verb->add_option("file", options->file,
+                   fmt::format("level, mesh, tetrahedra ({}) or EXR panorama", fmt::join(tet_endings(), ", ")))
+      ->required()
+      ->check(named());
   verb->add_flag("--json", options->json, "as JSON");
   CLI::Option* fit = verb->add_flag("--fit", options->fit, "which models error budgets choose, and the evidence");
   verb->add_option("--error", options->error,

@@ -196,7 +196,8 @@ TEST(Thin, AFinIsWarnedOfWithACellThatHoldsItAndWithThatNoLonger) {
   const BuiltMesh finned =
       built({icosphere(4), moved(test::box(vec3(0.7f, 0.7f, 0.07f), false), 1.0f, vec3(0, 1.5f, 0))});
   const TetMesh mesh = filled(finned);
-  EXPECT_THAT(mesh.report.notes, Contains(Field(&Note::what, testing::AllOf(HasSubstr("is thin over"), HasSubstr("14 cm")))));
+  EXPECT_THAT(mesh.report.notes,
+              Contains(Field(&Note::what, testing::AllOf(HasSubstr("is thin over"), HasSubstr("14 cm")))));
   EXPECT_NEAR(mesh.report.least_thickness, 0.14, 1e-3);
   EXPECT_GT(mesh.report.thinnest.y, 0.8f);
   EXPECT_EQ(filled(finned, {0.07}).report.notes.size(), 0u);

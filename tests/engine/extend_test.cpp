@@ -215,7 +215,8 @@ TEST(Extend, ALawThatIsNoNumberGivesNoForceAndIsSaid) {
       if (breaks)
         EXPECT_THAT(findings, testing::Contains(testing::Field(&Note::code, "dropped.not_finite"))) << fingers;
       else
-        EXPECT_THAT(findings, testing::Not(testing::Contains(testing::Field(&Note::code, "dropped.not_finite")))) << fingers;
+        EXPECT_THAT(findings, testing::Not(testing::Contains(testing::Field(&Note::code, "dropped.not_finite"))))
+            << fingers;
     }
   }
   broken = false;

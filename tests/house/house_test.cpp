@@ -124,7 +124,7 @@ TEST(House, NoSourceLooksIntoASentence) {
       R"(|find\(\s*"; ")");
   // Libraries whose exceptions have words and nothing else; their words are shortened, not understood.
   const std::set<std::string> third_party{"content/files/exr.cpp", "content/gltf/form/gltf_container.cpp",
-                                         "player/verbs/command_line.cpp"};
+                                          "player/verbs/command_line.cpp"};
   EXPECT_TRUE(std::regex_search(std::string("if (error.what.find(\"x\") == 0)"), search));
   EXPECT_TRUE(std::regex_search(std::string("text.find(\"; \")"), search));
   EXPECT_TRUE(std::regex_search(std::string("each.message().starts_with(a)"), search));

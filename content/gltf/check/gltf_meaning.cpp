@@ -236,16 +236,6 @@ void check_skins(const Json& json, const std::vector<std::int32_t>& parent, Mean
 
 }  // namespace
 
-void Meaning::error(std::string pointer, std::string what, std::string cure) {
-  add({Severity::kError, std::move(pointer), std::move(what), std::move(cure), "gltf.meaning"});
-}
-void Meaning::warn(std::string pointer, std::string what, std::string cure) {
-  add({Severity::kWarning, std::move(pointer), std::move(what), std::move(cure), "gltf.meaning"});
-}
-void Meaning::add(Finding finding) {
-  if (findings_.size() < 1000) findings_.push_back(std::move(finding));
-}
-
 void Meaning::use(std::size_t accessor, BufferUse use, const std::string& pointer) {
   const auto found = accessor_use_.emplace(accessor, use);
   if (!found.second && found.first->second != use) error(pointer, "is an accessor that already serves another end");
