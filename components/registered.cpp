@@ -24,12 +24,12 @@ class Table {
   // Returns the index of the new entry.
   Result<std::size_t> add(const std::string& name, Value value) {
     const std::string where = std::string(kind_) + " `" + name + "`";
-    if (name.empty()) return Error{where, "has no name; give it one"};
+    if (name.empty()) return Error{where, "has no name", "give it one"};
     const std::lock_guard lock(mutex_);
     const std::size_t count = count_.load();
     for (std::size_t i = 0; i < count; ++i)
-      if (entries_[i].name == name) return Error{where, "is registered twice; give each a name of its own"};
-    if (count == kMost) return Error{where, "is one too many; at most " + std::to_string(kMost) + " are taken"};
+      if (entries_[i].name == name) return Error{where, "is registered twice", "give each a name of its own"};
+    if (count == kMost) return Error{where, "is one too many", "at most " + std::to_string(kMost) + " are taken"};
     entries_[count] = {name, std::move(value)};
     count_.store(count + 1);
     return count;
@@ -78,7 +78,7 @@ static_assert(has(kSolverRows, SolverKind::kAuto, "auto") &&
 template <class Row, std::size_t size, class Enum, class Value>
 Result<Enum> added(const Row (&rows)[size], Table<Value>& table, const std::string& name, Value value) {
   for (const Row& row : rows)
-    if (name == row.word) return Error{"`" + name + "`", "is the name of a built-in one; give it another"};
+    if (name == row.word) return Error{"`" + name + "`", "is the name of a built-in one", "give it another"};
   const auto place = table.add(name, std::move(value));
   if (!place) return place.error();
   return static_cast<Enum>(size + *place);
@@ -171,20 +171,20 @@ double SpringFunction::mean_force(double h0, double h1, const SpringConstants& c
 
 Result<SpringLaw> register_spring(const std::string& name, std::shared_ptr<const SpringFunction> function) {
   const std::string where = "spring law `" + name + "`";
-  if (!function) return Error{where, "has no function; give one"};
-  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault) + "; see pliant/surface_law.h"};
+  if (!function) return Error{where, "has no function", "give one"};
+  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault), "see pliant/surface_law.h"};
   return added<SpringRow, std::size(kSpringRows), SpringLaw>(kSpringRows, springs(), name, std::move(function));
 }
 
 Result<Shape> register_shape(const std::string& name, std::shared_ptr<const ShapeFunction> function) {
   const std::string where = "shape `" + name + "`";
-  if (!function) return Error{where, "has no function; give one"};
-  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault) + "; see pliant/surface_law.h"};
+  if (!function) return Error{where, "has no function", "give one"};
+  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault), "see pliant/surface_law.h"};
   return added<ShapeRow, std::size(kShapeRows), Shape>(kShapeRows, shapes(), name, std::move(function));
 }
 
 Result<SolverKind> register_solver(const std::string& name, SolverFactory factory) {
-  if (!factory) return Error{"linear solver `" + name + "`", "has no factory; give a function that makes one"};
+  if (!factory) return Error{"linear solver `" + name + "`", "has no factory", "give a function that makes one"};
   return added<SolverRow, std::size(kSolverRows), SolverKind>(kSolverRows, solvers(), name, std::move(factory));
 }
 

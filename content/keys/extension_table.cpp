@@ -192,16 +192,19 @@ std::vector<Key> deformable_keys() {
   return keys;
 }
 
-std::string settle_deformable(void* owner) {
+std::optional<Note> settle_deformable(void* owner) {
   Deformable& it = *static_cast<LevelNode*>(owner)->deformable;
   if (it.friction_sliding > it.friction_static)
-    return fmt::format("friction_sliding ({}) is above friction_static ({}); lower it, or set `friction` for both",
-                       it.friction_sliding, it.friction_static);
+    return Note{
+        fmt::format("friction_sliding ({}) is above friction_static ({})", it.friction_sliding, it.friction_static),
+        "lower it, or set `friction` for both", "key.value", "friction_sliding"};
   if (it.young > 0.0) it.stiffness = calibrated_stiffness(it.young, it.poisson, it.thickness);
   if (it.young > 0.0 && !DeformableRange::kStiffness.holds(it.stiffness))
-    return fmt::format("young ({:g} Pa) makes a stiffness of {:.3g} N/m; it must be in the range [{}, {}] N/m",
-                       it.young, it.stiffness, DeformableRange::kStiffness.min, DeformableRange::kStiffness.max);
-  return "";
+    return Note{fmt::format("young ({:g} Pa) makes a stiffness of {:.3g} N/m", it.young, it.stiffness),
+                fmt::format("it must be in the range [{}, {}] N/m", DeformableRange::kStiffness.min,
+                            DeformableRange::kStiffness.max),
+                "key.value", "young"};
+  return std::nullopt;
 }
 
 std::vector<Key> probe_keys() {
@@ -404,25 +407,26 @@ Extension extension(std::string name, std::string doc, std::optional<T> Owner::*
   out.keys = std::move(keys);
   out.present = [slot](const void* owner) { return (static_cast<const Owner*>(owner)->*slot).has_value(); };
   out.add = [slot](void* owner) { (static_cast<Owner*>(owner)->*slot).emplace(); };
-  out.settle = [](void*) { return std::string(); };
+  out.settle = [](void*) { return std::optional<Note>(); };
   return out;
 }
 
-std::string settle_device(void* owner) {
+std::optional<Note> settle_device(void* owner) {
   const HapticDevice& it = *static_cast<LevelNode*>(owner)->device;
-  return it.driver == DriverKind::kScript && it.file.empty()
-             ? "has the driver script without a `file`; name the CSV file"
-             : "";
+  if (it.driver != DriverKind::kScript || !it.file.empty()) return std::nullopt;
+  return Note{"has the driver script without a `file`", "name the CSV file", "key.missing", "file"};
 }
 
 template <class T>
-std::string settle_friction(const T& it) {
-  return it.friction_sliding > it.friction_static ? "friction_sliding is above friction_static; lower it" : "";
+std::optional<Note> settle_friction(const T& it) {
+  if (!(it.friction_sliding > it.friction_static)) return std::nullopt;
+  return Note{"friction_sliding is above friction_static", "lower it", "key.value", "friction_sliding"};
 }
 
-std::string settle_motion(void* owner) {
+std::optional<Note> settle_motion(void* owner) {
   const NodeMotion& it = *static_cast<LevelNode*>(owner)->motion;
-  return it.script.empty() || it.animation.empty() ? "" : "gives both script and animation; keep one";
+  if (it.script.empty() || it.animation.empty()) return std::nullopt;
+  return Note{"gives both script and animation", "keep one", "key.both", {}};
 }
 
 std::vector<Extension> make_table() {
@@ -451,7 +455,7 @@ std::vector<Extension> make_table() {
   simulation.keys = simulation_keys();
   simulation.present = [](const void*) { return true; };
   simulation.add = [](void*) {};
-  simulation.settle = [](void*) { return std::string(); };
+  simulation.settle = [](void*) { return std::optional<Note>(); };
   table.push_back(simulation);
   return table;
 }

@@ -75,7 +75,7 @@ class Spawner {
       registry.add<Kinematic>(entity, {world_.motions.add(std::move(*motion))});
     if (node.light) registry.add<Light>(entity, *node.light);
     if (node.camera) registry.add<Camera>(entity, *node.camera);
-    if (const std::string fault = soft_fault(node); !fault.empty()) return state_.at(n, fault);
+    if (const std::optional<Note> fault = soft_fault(node)) return state_.at(n, *fault);
     if (node.handle) registry.add<Handle6>(entity, *node.handle);
     if (Status s = surface(n); !s) return s;
     if (Status s = devices_.add_device(n); !s) return s;
@@ -94,7 +94,7 @@ class Spawner {
     if (node.soft_body) return soft_body(n);
     if (node.mesh < 0) {
       if (node.deformable)
-        return state_.at(n, "has PLIANT_deformable but no mesh; give the node a mesh, or remove the extension");
+        return state_.at(n, "has PLIANT_deformable but no mesh", "give the node a mesh, or remove the extension");
       return Done{};
     }
     const dmat4& to_world = state_.motions.world[n];
@@ -126,7 +126,7 @@ class Spawner {
     const Mesh& mesh = world_.meshes[collision_mesh];
     const double box = std::pow(static_cast<double>(mesh.box.diagonal()), 3.0);
     if (body.fixed || mass_properties(mesh).volume > kFlatScale * box) return Done{};
-    return state_.at(n, "has PLIANT_rigid_body but its mesh encloses no volume; close the mesh, or set `fixed`");
+    return state_.at(n, "has PLIANT_rigid_body but its mesh encloses no volume", "close the mesh, or set `fixed`");
   }
 
   // Soft bodies share nothing, because pinned nodes are per body.
@@ -139,12 +139,11 @@ class Spawner {
     const Pose pose = rigid_part(to_world);
     state_.say_preparing(n, node.name);
     Result<SoftParts> parts = find_soft_parts(node, mesh, mat4(world_to(pose) * to_world), state_.folder);
-    if (!parts) return state_.at(n, parts.error().message());
+    if (!parts) return state_.around(n, parts.error());
     tetrahedra_ += static_cast<double>(parts->tets.tets.size());
     if (Status s = state_.within(n, LevelBudget::ask(limits::kTets, tetrahedra_)); !s) return s;
     for (const std::string& note : parts->notes) state_.notes.push_back(node.soft_body->mesh + ": " + note);
-    for (const std::string& finding : parts->tets.report.findings)
-      state_.notes.push_back("`" + node.name + "`: " + finding);
+    for (const Note& note : parts->tets.report.notes) state_.notes.push_back("`" + node.name + "`: " + note.message());
     meshes_.note_winding(node.mesh, parts->surface);
     const Entity entity = state_.entities[n];
     world_.registry.add<Pose>(entity, pose);

@@ -18,7 +18,7 @@ Status carry_part(SpawnState& state, std::size_t by, std::size_t part, const dma
   if (Status s = state.count_triangles(part, state.budget.of(node.mesh).triangles); !s) return s;
   Result<BuiltMesh> built =
       build_mesh(node.name, mesh.primitives, mat4(to_object * state.motions.world[part]), {0.0, {}, false});
-  if (!built) return state.at(part, built.error().message());
+  if (!built) return state.around(part, built.error());
   const Entity entity = state.entities[part], carrier = state.entities[by];
   Carried carried{carrier, {}, {}};
   if (const SoftBody* const soft = world.registry.find<SoftBody>(carrier)) {
@@ -61,12 +61,10 @@ Status carry_parts_of(SpawnState& state, std::size_t n) {
   });
   if (parts.empty()) return Done{};
   if (!carries) {
-    std::string finding = fmt::format(
-        "leaves behind what lies inside of it and is only drawn ({}); set `carries` to "
-        "`inside`, and it goes along",
-        names_of(state.level, parts));
-    state.notes.push_back("`" + node.name + "`: " + finding);
-    world.tet_meshes[soft->tets].report.findings.push_back(std::move(finding));
+    Note note{fmt::format("leaves behind what lies inside of it and is only drawn ({})", names_of(state.level, parts)),
+              "set `carries` to `inside`, and it goes along", "tissue.leaves_behind", node.name};
+    state.notes.push_back("`" + node.name + "`: " + note.message());
+    world.tet_meshes[soft->tets].report.notes.push_back(std::move(note));
     return Done{};
   }
   for (const std::int32_t part : parts)

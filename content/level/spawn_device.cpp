@@ -10,10 +10,9 @@
 namespace pliant {
 namespace {
 
-std::string no_such_device(const char* key, const std::string& name) {
-  return fmt::format(
-      "{} names `{}`, which is no node of this scene with PLIANT_haptic_device; correct the name, or add the device",
-      key, name);
+Note no_such_device(const char* key, const std::string& name) {
+  return {fmt::format("{} names `{}`, which is no node of this scene with PLIANT_haptic_device", key, name),
+          "correct the name, or add the device", "level.unknown_device", name};
 }
 
 }  // namespace
@@ -23,9 +22,9 @@ Status DeviceSpawner::add_device(std::size_t n) {
   HapticDevice device = *state_.level.nodes[n].device;
   if (device.driver == DriverKind::kScript) {
     if (device.file.empty())
-      return state_.at(n, "its driver is `script` but `file` is missing; name a .csv file, relative to the level");
+      return state_.at(n, "its driver is `script` but `file` is missing", "name a .csv file, relative to the level");
     const Result<std::filesystem::path> file = confined_path(state_.folder, device.file);
-    if (!file) return state_.at(n, file.error().message());
+    if (!file) return state_.around(n, file.error());
     Result<const Path*> path = state_.scripts.read(*file, false);
     if (!path) return path.error();
     const auto [shared, is_new] = paths_.try_emplace(*path);

@@ -36,11 +36,11 @@ Status MeshBaker::count() const {
       if (node.soft_body || shapes.insert({node.mesh, shape_of(n)}).second) wanted.triangles += size.triangles;
       if (node.deformable) wanted.vertices += size.vertices;
     }
-    for (const std::string& over :
+    for (const std::optional<Note>& over :
          {LevelBudget::ask(limits::kHands, hands), LevelBudget::ask(limits::kSoftBodies, soft_bodies),
           LevelBudget::ask(limits::kSurfaces, surfaces), state_.budget.ask_triangles(wanted.triangles),
           state_.budget.ask_vertices(wanted.vertices)})
-      if (!over.empty()) return state_.at(n, over);
+      if (over) return state_.at(n, *over);
   }
   return Done{};
 }
@@ -77,7 +77,7 @@ Result<BakedMesh> MeshBaker::bake(std::size_t n) {
   if (Status s = state_.count_triangles(n, state_.budget.of(node.mesh).triangles); !s) return s.error();
   Result<BuiltMesh> built =
       build_mesh(name, mesh.primitives, matrix_of(shape), {shape.crease_angle, wanted.dents, shape.touchable});
-  if (!built) return state_.at(n, built.error().message());
+  if (!built) return state_.around(n, built.error());
   note_winding(node.mesh, *built);
   note_refinement(node, *built);
   wanted.refined = built->report.refined_from != 0;
@@ -93,9 +93,9 @@ Result<BakedMesh> MeshBaker::bake(std::size_t n) {
 }
 
 void MeshBaker::note_winding(std::int32_t mesh, const BuiltMesh& built) {
-  const std::string turned = winding_note(built.report);
-  if (!turned.empty() && noted_.insert(mesh).second)
-    state_.notes.push_back("mesh `" + built.mesh.name + "`: " + turned);
+  const std::optional<Note> turned = winding_note(built.report);
+  if (turned && noted_.insert(mesh).second)
+    state_.notes.push_back("mesh `" + built.mesh.name + "`: " + turned->message());
 }
 
 void MeshBaker::note_refinement(const LevelNode& node, const BuiltMesh& built) {

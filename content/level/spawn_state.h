@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,11 +20,16 @@ struct SpawnState {
   explicit SpawnState(const Level& from)
       : level(from), folder(from.path.parent_path()), entities(from.nodes.size(), kNoEntity), budget(from) {}
 
-  Error at(std::size_t n, std::string what) const { return node_error(level, n, std::move(what)); }
-  // `over`: of LevelBudget; "": within it.
-  Status within(std::size_t n, const std::string& over) const {
-    if (over.empty()) return Done{};
-    return at(n, over);
+  Error at(std::size_t n, const Note& fault) const { return node_error(level, n, error_at("", fault)); }
+  Error at(std::size_t n, std::string what, std::string cure) const {
+    return at(n, Note{std::move(what), std::move(cure), {}, {}});
+  }
+  // With the place of the inner error in the text.
+  Error around(std::size_t n, const Error& error) const { return node_error_around(level, n, error); }
+  // `over`: of LevelBudget; empty: within it.
+  Status within(std::size_t n, const std::optional<Note>& over) const {
+    if (!over) return Done{};
+    return at(n, *over);
   }
   Status count_triangles(std::size_t n, double triangles) {
     return within(n, budget.ask_triangles(built.triangles += triangles));

@@ -57,8 +57,8 @@ Result<TetFile> load_named_tets(const fs::path& folder, const std::string& name)
 
 Result<TetFile> load_tets(const fs::path& path, const fs::path& within) {
   if (const TetFormat* format = format_of(path)) return format->read(path, within);
-  return Error{path.string(),
-               fmt::format("is no tetrahedra file that is read; formats are: {}", fmt::join(tet_endings(), ", "))};
+  return Error{path.string(), "is no tetrahedra file that is read",
+               fmt::format("formats are: {}", fmt::join(tet_endings(), ", "))};
 }
 
 }  // namespace pliant

@@ -79,7 +79,7 @@ class EvdevLine final : public GamepadLine {
     const std::size_t most = std::min(into.size(), events.size());
     const ssize_t bytes = ::read(file_, events.data(), most * sizeof(input_event));
     if (bytes < 0 && (errno == EAGAIN || errno == EINTR)) return std::size_t(0);
-    if (bytes <= 0 || writer_->failed()) return Error{traits_.name, "is gone; plug it in again"};
+    if (bytes <= 0 || writer_->failed()) return Error{traits_.name, "is gone", "plug it in again"};
     const std::size_t count = static_cast<std::size_t>(bytes) / sizeof(input_event);
     for (std::size_t i = 0; i < count; ++i) into[i] = {events[i].type, events[i].code, events[i].value};
     return count;
@@ -92,13 +92,13 @@ class EvdevLine final : public GamepadLine {
     }
     std::array<unsigned char, KEY_MAX / 8 + 1> keys{};
     if (::ioctl(file_, EVIOCGKEY(keys.size()), keys.data()) < 0)
-      return Error{traits_.name, "is gone; plug it in again"};
+      return Error{traits_.name, "is gone", "plug it in again"};
     for (std::size_t i = 0; i < traits_.key_count; ++i)
       if (keys[traits_.keys[i] / 8] >> traits_.keys[i] % 8 & 1) state.buttons |= 1u << i;
     return Done{};
   }
   Status render(const GamepadOutput& output) override {
-    if (writer_->failed()) return Error{traits_.name, "is gone; plug it in again"};
+    if (writer_->failed()) return Error{traits_.name, "is gone", "plug it in again"};
     writer_->give([&](GamepadOutput& next) { next = output; });
     return Done{};
   }
@@ -218,7 +218,8 @@ Result<std::unique_ptr<GamepadLine>> open_gamepad(const std::string& id) {
   }
   const std::string where = id.empty() ? "gamepad" : "gamepad `" + id + "`";
   if (!missing.empty()) return Error{where, missing};
-  return Error{where, ids.empty() ? "none is there; plug it in and switch it on" : "is not there; there are: " + ids};
+  if (ids.empty()) return Error{where, "none is there", "plug it in and switch it on", "device.missing"};
+  return Error{where, "is not there", "there are: " + ids, "device.missing"};
 }
 
 }  // namespace pliant

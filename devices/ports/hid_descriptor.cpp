@@ -51,7 +51,7 @@ std::int32_t with_sign(std::uint32_t value, std::uint32_t bits) {
 }
 
 Error broken(const char* what) {
-  return Error{"HID report descriptor", std::string(what) + "; the device cannot be read"};
+  return Error{"HID report descriptor", std::string(what), "the device cannot be read"};
 }
 
 std::uint32_t& bits_of(HidLayout& layout, HidKind kind, std::uint8_t report) {

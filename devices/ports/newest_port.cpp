@@ -19,7 +19,7 @@ class NewestPort final : public PacketPort {
 
   Status send(std::span<const std::uint8_t> packet) override {
     if (packet.size() > kLongestNewest) return Error{"device", "a packet is longer than its line takes"};
-    if (writer_.failed()) return Error{"device", "is gone; plug it in again"};
+    if (writer_.failed()) return Error{"device", "is gone", "plug it in again"};
     writer_.give([&](Packet& next) {
       std::copy(packet.begin(), packet.end(), next.bytes.begin());
       next.length = packet.size();

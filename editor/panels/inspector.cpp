@@ -144,11 +144,11 @@ class InspectorPanel : public Panel {
                    extension.name + "." + key.name);
     if (key.name == "error" && ui::button("Measure models\u2026", "What this budget chooses, and from what"))
       app_.show_panel("Error budget");
-    if (const std::string doubtful = doubt(key, value); !doubtful.empty()) {
+    if (const std::optional<Note> doubtful = doubt(key, value)) {
       ImGui::GetWindowDrawList()->AddRect(at, {at.x + ImGui::GetContentRegionAvail().x, at.y + ImGui::GetFrameHeight()},
                                           ui::color(ui::palette().warning), ui::px(4));
       ImGui::TextColored(ui::palette().warning, "%s", "Unusual");
-      ui::hint(doubtful.c_str());
+      ui::hint(doubtful->message().c_str());
     }
   }
 

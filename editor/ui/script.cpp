@@ -42,8 +42,8 @@ Result<Script> Script::load(const std::filesystem::path& file) {
                                       "expect-no", "say",   "hear",    "screenshot", "drop",    "figures",
                                       "felt",      "close", "at-once", "now",        "apart",   "slow"};
     if (std::find(std::begin(kVerbs), std::end(kVerbs), step.verb) == std::end(kVerbs))
-      return Error{fmt::format("{}:{}", script.file_, row),
-                   "'" + step.verb + "' is no step; write, say, `click Inspector/stiffness`"};
+      return Error{fmt::format("{}:{}", script.file_, row), "'" + step.verb + "' is no step",
+                   "write, say, `click Inspector/stiffness`"};
     script.steps_.push_back(std::move(step));
   }
   return script;
@@ -72,7 +72,7 @@ Result<Spot> Script::place(const std::string& text, bool& there, Need need) cons
     std::string like;
     for (const std::string& each : widget_addresses())
       if (like.size() < 600) like += (like.empty() ? "" : ", ") + each;
-    return Error{"", "there is no single widget '" + address + "' now; there are: " + like};
+    return Error{"", "there is no single widget '" + address + "' now", "there are: " + like};
   }
   const double x = static_cast<double>(found->low.x) + fx * static_cast<double>(found->high.x - found->low.x),
                y = static_cast<double>(found->low.y) + fy * static_cast<double>(found->high.y - found->low.y);

@@ -71,7 +71,8 @@ class Script {
   };
   enum class Need : std::uint8_t { kThere, kUncovered, kPress };
   Result<Spot> place(const std::string& text, bool& there, Need need) const;
-  Error wrong(const Step& step, std::string what) const;
+  Error wrong(const Step& step, std::string what, std::string cure = {}) const;
+  Error wrong(const Step& step, const Error& why) const { return wrong(step, why.what, why.cure); }
   // Each appends the step's frames of events. `waits`: the step cannot begin yet.
   Status begin(const Step& step, const Surroundings& at, bool& waits);
   Status begin_press(const Step& step, bool& waits);  // click, press, move, drag

@@ -28,8 +28,8 @@ InputEvent event_at(InputKind kind, double x, double y, MouseButton button = Mou
 
 }  // namespace
 
-Error Script::wrong(const Step& step, std::string what) const {
-  return {fmt::format("{}:{}", file_, step.line), std::move(what)};
+Error Script::wrong(const Step& step, std::string what, std::string cure) const {
+  return {fmt::format("{}:{}", file_, step.line), std::move(what), std::move(cure)};
 }
 
 void Script::key_events(const std::string& keys) {
@@ -89,13 +89,13 @@ Status Script::begin_press(const Step& step, bool& waits) {
   const auto from = place(leading_address(step.words, i), there, step.verb == "move" ? Need::kUncovered : Need::kPress);
   waits = !from && rest_ < kLateFrames;
   if (waits) return Done{};
-  if (!from) return wrong(step, from.error().what);
+  if (!from) return wrong(step, from.error());
   Spot to = *from;
   if (step.verb == "drag") {
     if (i >= step.words.size() || step.words[i] != "to")
-      return wrong(step, "says no place to drag to; write `drag A to B`");
+      return wrong(step, "says no place to drag to", "write `drag A to B`");
     const auto target = place(leading_address(step.words, ++i), there, Need::kThere);
-    if (!target) return wrong(step, target.error().what);
+    if (!target) return wrong(step, target.error());
     to = *target;
   }
   pointer_events(step, manner_of({step.words.begin() + static_cast<std::ptrdiff_t>(i), step.words.end()}), *from, to);
@@ -104,10 +104,11 @@ Status Script::begin_press(const Step& step, bool& waits) {
 
 Status Script::begin_wheel(const Step& step) {
   bool there = true;
-  if (step.words.size() < 2) return wrong(step, "says no clicks; write `wheel Viewport 3`");
+  if (step.words.size() < 2) return wrong(step, "says no clicks", "write `wheel Viewport 3`");
   const auto clicks = number_of(step.words.back());
   const auto from = place(step.rest.substr(0, step.rest.rfind(' ')), there, Need::kUncovered);
-  if (!clicks || !from) return wrong(step, from ? "says no clicks; write `wheel Viewport 3`" : from.error().what);
+  if (!from) return wrong(step, from.error());
+  if (!clicks) return wrong(step, "says no clicks", "write `wheel Viewport 3`");
   frames_.push_back({event_at(InputKind::kMove, from->first, from->second)});
   frames_.push_back({event_at(InputKind::kWheel, 0, *clicks)});
   return Done{};
@@ -117,7 +118,7 @@ Status Script::begin_set(const Step& step, bool& waits) {
   bool there = true;
   // The longest prefix that is a widget's address: names and values may both contain blanks.
   std::size_t last = step.rest.rfind(' ');
-  if (last == std::string::npos) return wrong(step, "says no value; write `set Inspector/stiffness 500`");
+  if (last == std::string::npos) return wrong(step, "says no value", "write `set Inspector/stiffness 500`");
   for (std::size_t at = last; at != std::string::npos && at > 0; at = step.rest.rfind(' ', at - 1))
     if (find_widget(step.rest.substr(0, at))) {
       last = at;
@@ -126,7 +127,7 @@ Status Script::begin_set(const Step& step, bool& waits) {
   const auto from = place(step.rest.substr(0, last), there, Need::kPress);
   waits = !from && rest_ < kLateFrames;
   if (waits) return Done{};
-  if (!from) return wrong(step, from.error().what);
+  if (!from) return wrong(step, from.error());
   frames_.push_back({event_at(InputKind::kMove, from->first, from->second)});
   frames_.push_back({});
   // Ctrl-click edits a number, and selects a text.
@@ -154,7 +155,7 @@ Status Script::begin_await(const Step& step, const Surroundings& now, bool& wait
   const auto seen = place(address, there, Need::kUncovered);
   waits = !seen || (found && !found->enabled);
   if (waits && now.now - began_ > patience)
-    return wrong(step, seen ? "'" + address + "' stays off" : seen.error().what);
+    return seen ? wrong(step, "'" + address + "' stays off") : wrong(step, seen.error());
   return Done{};
 }
 
@@ -164,7 +165,7 @@ Status Script::begin_expect(const Step& step, bool& waits) {
   waits = (step.verb == "expect") != there && rest_ < kLateFrames;
   if (waits) return Done{};
   if ((step.verb == "expect") != there)
-    return wrong(step, found ? "'" + step.rest + "' is there, and should not be" : found.error().what);
+    return found ? wrong(step, "'" + step.rest + "' is there, and should not be") : wrong(step, found.error());
   return Done{};
 }
 
@@ -194,7 +195,8 @@ Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
   if (step.verb == "key") {
     int key = 0;
     std::uint8_t modifiers = 0;
-    if (!parse_keys(step.rest, key, modifiers)) return wrong(step, "'" + step.rest + "' is no key; write, say, Ctrl+S");
+    if (!parse_keys(step.rest, key, modifiers))
+      return wrong(step, "'" + step.rest + "' is no key", "write, say, Ctrl+S");
     key_events(step.rest);
     return Done{};
   }

@@ -142,7 +142,7 @@ Result<std::optional<ModelChoice>> choose_law(Level& level, std::size_t index, M
         ms += press.ms;
         count += 1.0;
       }
-    if (!(size > 0.0)) return Error{node.name, "could not be pressed to measure an error; leave out `error`"};
+    if (!(size > 0.0)) return Error{node.name, "could not be pressed to measure an error", "leave out `error`"};
     ModelCandidate candidate{label_of(law), std::sqrt(off / size)};
     candidate.vertices = surface.tried[surface.chosen].vertices;
     candidate.cost = kTickUs + 1e-3 * candidate.vertices * law_ns(law.spring);

@@ -33,9 +33,9 @@ std::string name_of(const World& world, Entity entity) {
 Status check_names(const std::vector<std::string>& names, const char* what) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
-    if (name.empty()) return Error{"scene", fmt::format("a {} has no name; give it one", what)};
+    if (name.empty()) return Error{"scene", fmt::format("a {} has no name", what), "give it one"};
     if (!seen.insert(name).second)
-      return Error{"scene", fmt::format("two {}s are named `{}`; give each a name of its own", what, name)};
+      return Error{"scene", fmt::format("two {}s are named `{}`", what, name), "give each a name of its own"};
   }
   return Done{};
 }
@@ -52,7 +52,7 @@ std::vector<Entity> touchable(const World& world) {
 }  // namespace
 
 Error work_stopped() {
-  return {"Session::open", "it was stopped by its progress function; nothing is wrong with the scene"};
+  return {"Session::open", "it was stopped by its progress function", "nothing is wrong with the scene"};
 }
 
 Session::Parts::~Parts() {
@@ -74,7 +74,8 @@ Status Session::Parts::prepare() {
   } catch (const std::exception& thrown) {
     made = Error{"scene", std::string("cannot be made: ") + thrown.what()};
   } catch (...) {
-    made = Error{"scene", "cannot be made: something that is no std::exception was thrown; look at what is registered"};
+    made =
+        Error{"scene", "cannot be made: something that is no std::exception was thrown", "look at what is registered"};
   }
   for (SessionEffector& effector : before) effector.link.close();  // those absent from the new world
   if (made)
@@ -221,8 +222,8 @@ const SessionEffector* Session::Parts::find_effector(const std::string& name) co
 Error Session::Parts::unknown_effector(const std::string& name) const {
   std::string names;
   for (const SessionEffector& effector : effectors) names += (names.empty() ? "" : ", ") + effector.name;
-  return {"`" + name + "`", names.empty() ? "the scene has no probe and no tool; add one with Scene::add_probe"
-                                          : "is no probe or tool; they are: " + names};
+  return {"`" + name + "`", names.empty() ? "the scene has no probe and no tool" : "is no probe or tool",
+          names.empty() ? "add one with Scene::add_probe" : "they are: " + names, "name.unknown"};
 }
 
 Result<Entity> Session::Parts::find_object(const std::string& name) const {
@@ -230,21 +231,21 @@ Result<Entity> Session::Parts::find_object(const std::string& name) const {
     if (objects[i] == name) return object_entities[i];
   std::string names;
   for (const std::string& object : objects) names += (names.empty() ? "" : ", ") + object;
-  return Error{"`" + name + "`", names.empty() ? "the scene has no object; add one with Scene::add_surface"
-                                               : "is no object; they are: " + names};
+  return Error{"`" + name + "`", names.empty() ? "the scene has no object" : "is no object",
+               names.empty() ? "add one with Scene::add_surface" : "they are: " + names, "name.unknown"};
 }
 
 Status Session::Parts::stand_still(const char* what) const {
-  if (clock()) return Error{what, "the clocks are running; call Session::stop() first"};
+  if (clock()) return Error{what, "the clocks are running", "call Session::stop() first"};
   return Done{};
 }
 
 Status Session::Parts::may_give(const SessionEffector& effector) const {
-  if (replayed) return Error{"`" + effector.name + "`", "is moved by a recording; call Session::restart() first"};
+  if (replayed) return Error{"`" + effector.name + "`", "is moved by a recording", "call Session::restart() first"};
   if (effector.source == EffectorSource::kNone || effector.source == EffectorSource::kReleased ||
       effector.source == EffectorSource::kLevel)
     return Done{};
-  return Error{"`" + effector.name + "`", "has a source already; call Session::release() first"};
+  return Error{"`" + effector.name + "`", "has a source already", "call Session::release() first"};
 }
 
 Status Session::Parts::give(SessionEffector& effector, EffectorSource source) {
@@ -270,7 +271,7 @@ Status Session::Parts::connect(const std::string& name, std::unique_ptr<Driver> 
   if (!effector) return unknown_effector(name);
   if (Status s = stand_still("Session::connect"); !s) return s;
   const std::string where = "Session::connect `" + name + "`";
-  if (!driver) return Error{where, "the driver is null; give one"};
+  if (!driver) return Error{where, "the driver is null", "give one"};
   if (Status s = may_give(*effector); !s) return s;
   if (Status s = effector->link.connect(std::move(driver), id, where, claimed, effector->guard); !s) return s;
   return give(*effector, EffectorSource::kDriver);

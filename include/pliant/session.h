@@ -187,7 +187,7 @@ class Session {
   SessionFigures figures() const;
   // All deviations from the force law so far, one sentence each with its remedy: clipped, withheld, gated or
   // slew-limited forces, invalid poses, dropped contacts. Not while the clocks run.
-  Result<std::vector<std::string>> findings() const;
+  Result<std::vector<Note>> findings() const;
   // Of the newest soft step: at most 512 contacts, including those of probes with bodies; and every tool's handle.
   // Empty in a scene without bodies. Contacts of probes with surfaces are in Reading::contact.
   Status body_contacts(std::vector<BodyContact>& out);

@@ -170,7 +170,8 @@ Result<StiffnessMap> map_stiffness(const PressBodies& bodies, EachPlace& each_pl
   for (std::size_t i = 0; i < places.size(); ++i)
     if (stiffness[i] > 0) at.push_back(places[i]), value.push_back(stiffness[i]);
   if (at.empty())
-    return Error{"--object " + mesh.name, "cannot be pressed anywhere: what is held leaves no surface free; see --pin"};
+    return Error{"--object " + mesh.name, "cannot be pressed anywhere: what is held leaves no surface free",
+                 "see --pin"};
   out.usual = median(value);
   out.tets = median(tets);
   out.places = at.size();
@@ -310,8 +311,8 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
   if (!map) return map.error();
   out.mapped = map->places;
   out.tets = map->tets;
-  if (const std::string doubt = locking_doubt(bodies.body(), out.tets); !doubt.empty())
-    note("`" + node.name + "` " + doubt);
+  if (const std::optional<Note> doubt = locking_doubt(bodies.body(), out.tets))
+    note("`" + node.name + "` " + doubt->message());
 
   std::vector<PressedPlace> places;
   if (const Status done = press_places(bodies, each_place, options, places, out); !done) return done.error();
@@ -322,7 +323,7 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
   out.shape = fit_shape(places, out.radius, options.reach);
   out.force = fit_force(places);
   if (out.force.error > 1e29)
-    return Error{"--object " + node.name, "gave way without a resting place at every press; try a larger --radius"};
+    return Error{"--object " + node.name, "gave way without a resting place at every press", "try a larger --radius"};
   if (node.deformable) out.surface = *node.deformable;
   take_keys(out, usual, out.surface);
   out.deepest = std::min(out.deepest, kDeepestShare * out.surface.reach);

@@ -298,7 +298,7 @@ int plot_runs(const PlotOptions& options) {
   for (const std::string& name : options.probes)
     if (!known.contains(name))
       return fail(kUsage,
-                  {"--probe " + name, "is in none of the runs; they have " + joined({known.begin(), known.end()})});
+                  {"--probe " + name, "is in none of the runs", "they have " + joined({known.begin(), known.end()})});
   const std::size_t shown = std::min(all.size(), kMostDrawn);
   const Interrupt interrupt(kAllOrNothing);  // removes staged files on interruption
   auto out = OutputFolder::create(options.out.empty() ? "out/plot" : options.out, options.force);

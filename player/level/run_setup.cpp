@@ -54,8 +54,8 @@ void say_added(const RunOptions& options, const Level& level, Prepared& run) {
     const std::string name = argument.substr(0, argument.find('='));
     if (names.empty() || std::find(names.begin(), names.end(), name) != names.end()) continue;
     const std::string near = suggestion(name, names);
-    say(run, fmt::format("--probe {}: the level has no probe or tool of that name, so one was added{}", name,
-                         near.empty() ? fmt::format("; it has: {}", fmt::join(names, ", ")) : near));
+    say(run, Note{fmt::format("--probe {}: the level has no probe or tool of that name, so one was added", name),
+                  near.empty() ? fmt::format("it has: {}", fmt::join(names, ", ")) : near, "run.probe_added", name});
   }
 }
 
@@ -114,11 +114,11 @@ Outcome refuse_requests(bool windowed, const Level& level, Prepared& run) {
     return device.driver != DriverKind::kExternal || device.id != asked.request.allowed;
   });
   for (const LevelRequest& asked : run.refused) {
-    const std::string where = "`" + asked.moves + "`";
+    const std::string where = "`" + asked.moves + "`", code = "device.refused";
     const std::string what =
         "the level asks for more than it may: " + fmt::format("{}", fmt::join(asked.request.refused, "; "));
-    if (asked.request.allowed.empty() && !windowed) return failed({where, what + "; " + device_cure(asked)});
-    say(run, where + ": " + what + "; " + (windowed ? "the window asks you" : device_cure(asked)));
+    if (asked.request.allowed.empty() && !windowed) return failed({where, what, device_cure(asked), code});
+    say(run, Note{where + ": " + what, windowed ? "the window asks you" : device_cure(asked), code, asked.moves});
   }
   return {};
 }
@@ -157,9 +157,9 @@ void say_unmoved(bool windowed, Prepared& run) {
     if (!mouse && (device->driver != DriverKind::kExternal || run.hands.moves(hand))) continue;
     const Name* name = run.world.registry.find<Name>(hand);
     const std::string its = name ? name->value : std::string();
-    say(run,
-        fmt::format("nothing moves `{}`: its driver `{}` {}; give it --probe {}=orbit", its, word_of(device->driver),
-                    mouse ? "needs a window" : "is for programs that embed the engine", its));
+    say(run, Note{fmt::format("nothing moves `{}`: its driver `{}` {}", its, word_of(device->driver),
+                              mouse ? "needs a window" : "is for programs that embed the engine"),
+                  fmt::format("give it --probe {}=orbit", its), "run.unmoved", its});
   }
 }
 
@@ -179,30 +179,31 @@ void keep_one_mouse(const std::vector<ProbeSource>& sources, Prepared& run) {
   });
   for (std::size_t i = 1; i < moved.size(); ++i) {
     moved[i].second->driver = DriverKind::kExternal;
-    say(run, fmt::format("there is one mouse, and it moves `{}`; nothing moves `{}`; give it --probe {}=orbit",
-                         moved[0].first, moved[i].first, moved[i].first));
+    say(run,
+        Note{fmt::format("there is one mouse, and it moves `{}`; nothing moves `{}`", moved[0].first, moved[i].first),
+             fmt::format("give it --probe {}=orbit", moved[i].first), "run.unmoved", moved[i].first});
   }
 }
 
 // One note for all surfaces that settle so slowly that their damping was changed.
 void say_creeping(Prepared& run) {
   std::size_t more = 0;
-  std::string sentence;
+  std::optional<Note> found;
   for (auto [entity, deformable] : run.world.registry.view<const Deformable>()) {
     const double ratio = damping_of(deformable);
     if (!(ratio > deformable.damping_ratio)) continue;
-    if (!sentence.empty()) {
+    if (found) {
       ++more;
       continue;
     }
     const Name* name = run.world.registry.find<Name>(entity);
-    sentence = fmt::format(
-        "`{}`: settling_time {:g} s needs damping_ratio {:.3g}, which is used instead of {:g}; give a shorter "
-        "settling_time to keep your own",
-        name ? name->value : std::string(), deformable.settling_time, ratio, deformable.damping_ratio);
+    const std::string its = name ? name->value : std::string();
+    found = Note{fmt::format("`{}`: settling_time {:g} s needs damping_ratio {:.3g}, which is used instead of {:g}",
+                             its, deformable.settling_time, ratio, deformable.damping_ratio),
+                 "give a shorter settling_time to keep your own", "surface.creeps", its};
   }
-  if (more > 0) sentence += fmt::format(" ({} more surfaces too)", more);
-  if (!sentence.empty()) say(run, sentence);
+  if (more > 0) found->cure += fmt::format(" ({} more surfaces too)", more);
+  if (found) say(run, *found);
 }
 
 // --error of this run, else of the recording.
@@ -225,7 +226,7 @@ Outcome apply_budget(const RunOptions& options, Level& level, Prepared& run) {
 }
 
 // A replay uses its recorded settings, then --set and --tool-force.
-Outcome apply_settings(const RunOptions& options, double unit, Level& level, Prepared& run) {
+Outcome apply_settings(const RunOptions& options, std::optional<double> unit, Level& level, Prepared& run) {
   if (run.replay && !run.replay->header.settings.empty()) {
     for (const std::string& setting : run.replay->header.settings)
       if (!setting.starts_with(kUnitSetting) && !setting.starts_with(kErrorSetting) && !is_driver_setting(setting))
@@ -234,7 +235,7 @@ Outcome apply_settings(const RunOptions& options, double unit, Level& level, Pre
       return failed({options.replay, "its setting " + status.error().message() + "; record it again with this level"});
     if (unit != options.unit || !run.settings.empty())
       say(run, fmt::format("the recording's settings hold:{}{}{}",
-                           unit != options.unit ? fmt::format(" --unit {}", unit) : std::string(),
+                           unit != options.unit ? fmt::format(" --unit {}", *unit) : std::string(),
                            run.settings.empty() ? "" : " --set ", fmt::join(run.settings, " --set ")));
   }
   if (const Status status = set_keys(level, options.sets); !status) return wrong_arguments(status.error());
@@ -243,43 +244,52 @@ Outcome apply_settings(const RunOptions& options, double unit, Level& level, Pre
     if (Outcome wrong = choose_tool_force(options, level)) return wrong;
     run.settings.push_back("*.handle.force=" + options.tool_force);
   }
-  if (unit != 1.0) run.settings.push_back(fmt::format("{}{}", kUnitSetting, unit));
+  if (unit) run.settings.push_back(fmt::format("{}{}", kUnitSetting, *unit));
   return {};
 }
 
-// A bare mesh is replayed in its recorded unit, unless --unit gives another.
-Result<double> choose_unit(const RunOptions& options, const Level& level, const Prepared& run) {
+// A bare mesh is replayed in its recorded unit, unless --unit gives another. Empty: none is said.
+Result<std::optional<double>> choose_unit(const RunOptions& options, const Level& level, const Prepared& run) {
   if (const Status status = check_unit(level, options.unit); !status) return status.error();
-  if (!run.replay || options.unit != 1.0 || level.has_pliant()) return options.unit;
-  for (const std::string& setting : run.replay->header.settings)
-    if (setting.starts_with(kUnitSetting)) return parse_unit(setting.substr(std::string_view(kUnitSetting).size()));
-  return options.unit;
+  std::optional<double> unit = options.unit;
+  if (run.replay && !unit && !level.has_pliant())
+    for (const std::string& setting : run.replay->header.settings) {
+      if (!setting.starts_with(kUnitSetting)) continue;
+      const Result<double> recorded = parse_unit(setting.substr(std::string_view(kUnitSetting).size()));
+      if (!recorded) return recorded.error();
+      unit = *recorded;
+    }
+  if (const Status said = check_unit_said(level, unit); !said) return said.error();
+  return unit;
 }
 
 // One note for all bodies with locking elements.
 void say_locking(Prepared& run) {
   std::size_t more = 0;
-  std::string sentence;
+  std::optional<Note> found;
   for (auto [entity, body] : run.world.registry.view<const SoftBody>()) {
-    const std::string doubt = locking_doubt(body, run.world.tet_meshes[body.tets].tets.size());
-    if (doubt.empty()) continue;
-    const Name* name = run.world.registry.find<Name>(entity);
-    if (sentence.empty())
-      sentence = fmt::format("`{}` {}", name ? name->value : std::string(), doubt);
-    else
+    std::optional<Note> doubt = locking_doubt(body, run.world.tet_meshes[body.tets].tets.size());
+    if (!doubt) continue;
+    if (found) {
       ++more;
+      continue;
+    }
+    const Name* name = run.world.registry.find<Name>(entity);
+    doubt->of = name ? name->value : std::string();
+    doubt->what = "`" + doubt->of + "` " + doubt->what;
+    found = std::move(doubt);
   }
-  if (more > 0) sentence += fmt::format(" ({} more bod{} too)", more, more == 1 ? "y" : "ies");
-  if (!sentence.empty()) say(run, sentence);
+  if (more > 0) found->cure += fmt::format(" ({} more bod{} too)", more, more == 1 ? "y" : "ies");
+  if (found) say(run, *found);
 }
 
 // The level as the run uses it: unit, probes, limits, settings, budget, models.
 Outcome prepare_level(const RunOptions& options, bool windowed, Level& level, std::vector<ProbeSource>& sources,
                       Prepared& run) {
   const bool bare = !level.has_pliant();
-  const Result<double> unit = choose_unit(options, level, run);
-  if (!unit) return wrong_arguments(unit.error());
-  scale_roots(level, *unit);
+  const Result<std::optional<double>> unit = choose_unit(options, level, run);
+  if (!unit) return unit.error().code == kUnitUnsaid ? failed(unit.error()) : wrong_arguments(unit.error());
+  scale_roots(level, unit->value_or(1.0));
   if (bare) {
     make_touchable(level);
     if (const std::string hint = unit_hint(bounds(level)); !hint.empty()) say(run, hint);
@@ -307,7 +317,7 @@ Outcome make_world(const RunOptions& options, bool windowed, Level& level, std::
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();
   for (const std::string& sentence : notes) say(run, sentence);
-  for (const std::string& sentence : unused_key_notes(level)) say(run, sentence);
+  for (const Note& unused : unused_key_notes(level)) say(run, unused);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
   if (windowed) repeat_scripts(run.world);
   run.world.field_place = choose_field(options, windowed, run.world);
@@ -330,9 +340,12 @@ Outcome make_world(const RunOptions& options, bool windowed, Level& level, std::
 
 }  // namespace
 
+void say(Prepared& run, const Note& said) {
+  note(said.message());
+  run.notes.push_back(said);
+}
 void say(Prepared& run, const std::string& sentence) {
-  note(sentence);
-  run.notes.push_back(sentence);
+  say(run, Note{sentence, {}, {}, {}});
 }
 
 Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {

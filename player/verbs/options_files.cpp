@@ -62,9 +62,11 @@ void add_convert(CLI::App& app, int& status) {
 }
 
 void add_validate(CLI::App& app, int& status) {
-  const auto options = std::make_shared<std::string>();
+  const auto options = std::make_shared<ValidateOptions>();
   CLI::App* verb = app.add_subcommand("validate", "every finding of a level with its JSON pointer");
-  verb->add_option("level", *options, "level")->required()->check(named());
+  verb->add_option("level", options->level, "level or mesh")->required()->check(named());
+  verb->add_flag("--json", options->json, "as JSON, with codes (docs/codes.md)");
+  add_unit(verb, options->unit, "what one unit of a bare mesh is (m)");
   add_limits(verb);
   verb->footer("Example:\n  pliant validate level.gltf");
   verb->callback([options, &status] { status = validate(*options); });

@@ -125,7 +125,7 @@ TEST(TetFile, FaultsAreToldInOneSentenceWithTheirPlace) {
     const Result<TetFile> file = parse(text.replace(at, std::strlen(from), to));
     ASSERT_FALSE(file.ok()) << to;
     EXPECT_THAT(file.error().where, HasSubstr(where)) << file.error().message();
-    EXPECT_THAT(file.error().what, HasSubstr(what));
+    EXPECT_THAT(file.error().sentence(), HasSubstr(what));
     EXPECT_THAT(file.error().message(), testing::Not(HasSubstr("\n")));
   };
   const std::string two = test::msh_2(kOne, false, false), four = test::msh_4(kOne, false, false),

@@ -32,9 +32,9 @@ class Reading {
   Result<Quantity> read() {
     const Quantity out = sum();
     text_.blanks();
-    if (text_.wrong().empty() && !text_.ended()) text_.fail_here();
-    if (text_.wrong().empty() && !std::isfinite(out.value)) text_.fail("is no finite number; divide by something else");
-    if (!text_.wrong().empty()) return Error{"", text_.wrong()};
+    if (!text_.failed() && !text_.ended()) text_.fail_here();
+    if (!text_.failed() && !std::isfinite(out.value)) text_.fail("is no finite number", "divide by something else");
+    if (text_.failed()) return text_.wrong();
     return out;
   }
 
@@ -45,11 +45,11 @@ class Reading {
       const bool plus = text_.take("+"), minus = !plus && (text_.take("-") || text_.take("\u2212"));
       if (!plus && !minus) return left;
       const Quantity right = product();
-      if (!text_.wrong().empty()) return left;
+      if (text_.failed()) return left;
       if (left.has_unit != right.has_unit)
-        text_.fail("adds a number with a unit and one without; give both a unit");
+        text_.fail("adds a number with a unit and one without", "give both a unit");
       else if (left.dimension != right.dimension)
-        text_.fail("adds two things of different kinds; write units of the same kind");
+        text_.fail("adds two things of different kinds", "write units of the same kind");
       left.value += plus ? right.value : -right.value;
     }
   }
@@ -65,7 +65,7 @@ class Reading {
         continue;
       }
       // Implicit multiplication: a unit follows, or a bracket after one.
-      if (text_.wrong().empty() && is_letter(text_.here())) {
+      if (!text_.failed() && is_letter(text_.here())) {
         left = multiplied(left, unit(), false);
         continue;
       }
@@ -74,9 +74,9 @@ class Reading {
   }
 
   Quantity factor() {
-    if (++depth_ > kDeepest) text_.fail("is nested too deeply; write fewer signs and brackets");
+    if (++depth_ > kDeepest) text_.fail("is nested too deeply", "write fewer signs and brackets");
     Quantity out;
-    if (!text_.wrong().empty()) return out;
+    if (text_.failed()) return out;
     if (text_.take("+")) {
       out = factor();
     } else if (text_.take("-") || text_.take("\u2212")) {
@@ -84,12 +84,12 @@ class Reading {
       out.value = -out.value;
     } else if (text_.take("(")) {
       out = sum();
-      if (text_.wrong().empty() && !text_.take(")")) text_.fail("lacks a closing bracket; write it");
+      if (!text_.failed() && !text_.take(")")) text_.fail("lacks a closing bracket", "write it");
       out = with_units(raised(out));
     } else {
       text_.blanks();
       if (text_.ended()) {
-        text_.fail("ends too early; write a number behind the last sign");
+        text_.fail("ends too early", "write a number behind the last sign");
       } else if (is_digit(text_.here()) || text_.here() == '.' || text_.here() == ',') {
         out.value = text_.number();
         out = with_units(raised(out));
@@ -106,7 +106,7 @@ class Reading {
   // In the tight interpretation, the units directly after a number: "5 N mm" too.
   Quantity with_units(Quantity out) {
     if (!tight_) return out;
-    for (text_.blanks(); text_.wrong().empty() && is_letter(text_.here()); text_.blanks())
+    for (text_.blanks(); !text_.failed() && is_letter(text_.here()); text_.blanks())
       out = multiplied(out, unit(), false);
     return out;
   }
@@ -116,8 +116,8 @@ class Reading {
     const std::optional<Unit> found = find_unit(name);
     if (!found) {
       const std::string meant = spelled(name);
-      text_.fail(fmt::format("has '{}', which is no unit here{}", name.substr(0, 20),
-                             meant.empty() ? "; write m, mm, N, kPa, kg, s, Hz, deg or %, or none" : meant));
+      text_.fail(fmt::format("has '{}', which is no unit here", name.substr(0, 20)),
+                 meant.empty() ? "write m, mm, N, kPa, kg, s, Hz, deg or %, or none" : meant);
       return {};
     }
     Quantity out{found->si, found->dimension, true};
@@ -129,7 +129,7 @@ class Reading {
         return {};
       }
       if (is_digit(text_.here())) {
-        text_.fail("has an exponent of two digits; write one");
+        text_.fail("has an exponent of two digits", "write one");
         return {};
       }
       return power(out, exponent);
@@ -139,14 +139,14 @@ class Reading {
 
   // ^2, ², ^-1
   Quantity raised(const Quantity& base) {
-    if (!text_.wrong().empty()) return base;
+    if (text_.failed()) return base;
     if (text_.take("\u00b2")) return power(base, 2);
     if (text_.take("\u00b3")) return power(base, 3);
     if (!text_.take("^")) return base;
     const bool negative = text_.take("-");
     text_.blanks();
     if (!is_digit(text_.here()) || is_digit(text_.after())) {
-      text_.fail("has an exponent that is no digit; write ^2");
+      text_.fail("has an exponent that is no digit", "write ^2");
       return base;
     }
     const int exponent = text_.here() - '0';
@@ -162,14 +162,14 @@ class Reading {
   }
   Quantity multiplied(const Quantity& a, const Quantity& b, bool over) {
     Quantity out{over ? a.value / b.value : a.value * b.value, a.dimension, a.has_unit || b.has_unit};
-    if (over && b.value == 0.0) text_.fail("divides by zero; divide by something else");
+    if (over && b.value == 0.0) text_.fail("divides by zero", "divide by something else");
     for (std::size_t i = 0; i < out.dimension.size(); ++i) out.dimension[i] += over ? -b.dimension[i] : b.dimension[i];
     check(out);
     return out;
   }
   void check(const Quantity& it) {
     for (const int each : it.dimension)
-      if (std::abs(each) > kMostExponent) text_.fail("has units to a power that nothing here has; write fewer");
+      if (std::abs(each) > kMostExponent) text_.fail("has units to a power that nothing here has", "write fewer");
   }
 
   QuantityText text_;
@@ -212,21 +212,20 @@ bool fits(const Quantity& it, const Unit& field) {
 
 Result<double> parse_quantity(std::string_view text, std::string_view unit) {
   text = trimmed(text);
-  if (text.empty()) return Error{"", "is empty; write a number"};
-  if (text.size() > 200) return Error{"", "is too long for a number; write less"};
-  if (std::none_of(text.begin(), text.end(), is_digit)) return Error{"", "has no number; write one before the unit"};
+  if (text.empty()) return Error{"", "is empty", "write a number"};
+  if (text.size() > 200) return Error{"", "is too long for a number", "write less"};
+  if (std::none_of(text.begin(), text.end(), is_digit)) return Error{"", "has no number", "write one before the unit"};
   const Unit field = unit_of_field(unit);
   const Result<Quantity> tight = Reading(text, true).read(), loose = Reading(text, false).read();
   const Result<Quantity>& read = tight && fits(*tight, field) ? tight : loose && fits(*loose, field) ? loose : tight;
-  if (!read) return Error{"", read.error().what};
+  if (!read) return read.error();
   if (!fits(*read, field)) {
-    const bool plain = field.dimension == kNumber;
-    return Error{"", plain
-                         ? std::string("is a number with a unit, where a plain number is asked for; leave the unit out")
-                         : fmt::format("is of another kind than {}; write it in {}", unit, unit)};
+    if (field.dimension == kNumber)
+      return Error{"", "is a number with a unit, where a plain number is asked for", "leave the unit out"};
+    return Error{"", fmt::format("is of another kind than {}", unit), fmt::format("write it in {}", unit)};
   }
   const double value = read->has_unit ? read->value / field.si : read->value;
-  if (!std::isfinite(value)) return Error{"", "is too large for a number; write another"};
+  if (!std::isfinite(value)) return Error{"", "is too large for a number", "write another"};
   return read->has_unit ? as_typed(value) : value;
 }
 

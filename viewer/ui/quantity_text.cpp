@@ -14,19 +14,19 @@ bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || static_cast<unsigned char>(c) >= 0x80;
 }
 
-void QuantityText::fail(const std::string& why) {
-  if (wrong_.empty()) wrong_ = why;
+void QuantityText::fail(const std::string& why, const std::string& cure) {
+  if (!failed()) wrong_ = {"", why, cure};
   at_ = text_.size();
 }
 
 void QuantityText::fail_two() {
-  fail("has two numbers side by side; write one, or +, -, * or / between them");
+  fail("has two numbers side by side", "write one, or +, -, * or / between them");
 }
 
 void QuantityText::fail_here() {
   if (is_digit(text_[at_])) return fail_two();
-  fail(fmt::format("cannot be read from '{}' on; write a number and its unit, 5 mm, or a sum, 1/10",
-                   text_.substr(at_, 20)));
+  fail(fmt::format("cannot be read from '{}' on", text_.substr(at_, 20)),
+       "write a number and its unit, 5 mm, or a sum, 1/10");
 }
 
 void QuantityText::blanks() {
@@ -61,18 +61,19 @@ double QuantityText::number() {
   }
   const std::string_view typed = text_.substr(begin, at_ - begin);
   if (marks > 1) {
-    fail(fmt::format("has the number {}, which can be read in two ways; write one point and no other sign in it",
-                     typed));
+    fail(fmt::format("has the number {}, which can be read in two ways", typed),
+         "write one point and no other sign in it");
     return 0;
   }
   if (before + behind == 0) {
-    fail("has a point without digits; write a number");
+    fail("has a point without digits", "write a number");
     return 0;
   }
   // Ambiguous: a thousands separator, or a decimal comma with three digits?
   if (comma && behind == 3 && before >= 1 && before <= 3 && typed[0] != '0') {
-    fail(fmt::format("can be {}{} or {}.{}; write one of them", typed.substr(0, before), typed.substr(before + 1),
-                     typed.substr(0, before), typed.substr(before + 1)));
+    fail(fmt::format("can be {}{} or {}.{}", typed.substr(0, before), typed.substr(before + 1), typed.substr(0, before),
+                     typed.substr(before + 1)),
+         "write one of them");
     return 0;
   }
   // An exponent only if digits follow: "1e-3", but not "5 eV" or "2e".
@@ -89,7 +90,7 @@ double QuantityText::number() {
   double value = 0;
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || stop != digits.data() + digits.size() || !std::isfinite(value))
-    fail("is too large or too small for a number; write another");
+    fail("is too large or too small for a number", "write another");
   return value;
 }
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/result.h"
+
 namespace pliant::ui {
 
 bool is_digit(char c);
@@ -14,10 +16,11 @@ class QuantityText {
   explicit QuantityText(std::string_view text) : text_(text) {}
 
   // The first fault counts; reading ends there.
-  void fail(const std::string& why);
+  void fail(const std::string& why, const std::string& cure);
   void fail_two();
   void fail_here();
-  const std::string& wrong() const { return wrong_; }  // "": nothing so far
+  bool failed() const { return !wrong_.what.empty(); }
+  const Error& wrong() const { return wrong_; }  // the first one
 
   bool ended() const { return at_ >= text_.size(); }
   char here() const { return ended() ? '\0' : text_[at_]; }
@@ -31,7 +34,7 @@ class QuantityText {
  private:
   std::string_view text_;
   std::size_t at_ = 0;
-  std::string wrong_;
+  Error wrong_;
 };
 
 }  // namespace pliant::ui

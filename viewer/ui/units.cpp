@@ -77,10 +77,10 @@ std::optional<Unit> find_unit(std::string_view name) {
 
 std::string spelled(std::string_view name) {
   for (const UnitRow& row : kUnits) {
-    if (lowered(row.name) == lowered(name)) return fmt::format("; did you mean {}?", row.name);
+    if (lowered(row.name) == lowered(name)) return fmt::format("did you mean {}?", row.name);
     for (const Prefix& prefix : kPrefixes)
       if (row.prefixes && lowered(std::string(prefix.name) + std::string(row.name)) == lowered(name))
-        return fmt::format("; did you mean {}{}?", prefix.name, row.name);
+        return fmt::format("did you mean {}{}?", prefix.name, row.name);
   }
   return {};
 }

@@ -20,7 +20,7 @@ struct Unit {
 };
 
 std::optional<Unit> find_unit(std::string_view name);
-// "; did you mean kPa?" of "KPA"; else "".
+// "did you mean kPa?" of "KPA"; else "".
 std::string spelled(std::string_view name);
 
 }  // namespace pliant::ui

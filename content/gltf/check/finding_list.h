@@ -10,20 +10,22 @@ namespace pliant {
 
 class FindingList {
  public:
-  explicit FindingList(Findings& findings) : findings_(findings) {}
-  void error(std::string pointer, std::string message) {
-    add(Severity::kError, std::move(pointer), std::move(message));
+  // `code`: of every finding that has no other.
+  FindingList(Findings& findings, const char* code) : findings_(findings), code_(code) {}
+  void error(std::string pointer, std::string what, std::string cure = {}) {
+    add({Severity::kError, std::move(pointer), std::move(what), std::move(cure), code_});
   }
-  void warn(std::string pointer, std::string message) {
-    add(Severity::kWarning, std::move(pointer), std::move(message));
+  void warn(std::string pointer, std::string what, std::string cure = {}) {
+    add({Severity::kWarning, std::move(pointer), std::move(what), std::move(cure), code_});
+  }
+  void add(Finding finding) {
+    if (findings_.size() < kMostFindings) findings_.push_back(std::move(finding));
   }
 
  private:
   static constexpr std::size_t kMostFindings = 1000;
-  void add(Severity severity, std::string pointer, std::string message) {
-    if (findings_.size() < kMostFindings) findings_.push_back({severity, std::move(pointer), std::move(message)});
-  }
   Findings& findings_;
+  const char* const code_;
 };
 
 }  // namespace pliant

@@ -45,9 +45,9 @@ class PrimitiveData {
     zero_directions_ |= zeros > 0;
     if (zeros > 0)
       check_.warn(pointer_of(i),
-                  fmt::format("holds {} vector{} of length 0{}, the first in element {}; made anew", zeros,
-                              zeros == 1 ? "" : "s",
-                              longest > 0.0 ? fmt::format(" or nearly so (at most {:.3g})", longest) : "", first));
+                  fmt::format("holds {} vector{} of length 0{}, the first in element {}", zeros, zeros == 1 ? "" : "s",
+                              longest > 0.0 ? fmt::format(" or nearly so (at most {:.3g})", longest) : "", first),
+                  "made anew");
     for (std::size_t e = 0; e + width <= values.size(); e += width) {
       if (!has_direction(at(e))) continue;
       const float norm = length(at(e));
@@ -90,11 +90,10 @@ class PrimitiveData {
     // The largest value of an index type restarts a strip in other formats and on some GPUs (glTF 3.7.2.1).
     if (const std::uint32_t restart = restart_index(check_.accessor(i)["componentType"].get<int>());
         largest->second == restart)
-      return check_.error(
-          pointer + "/indices",
-          fmt::format("hold {}, the primitive restart of their type, which glTF forbids; export the mesh with "
-                      "{}",
-                      restart, restart < 65536 ? "wider indices" : "indices of vertices that are there"));
+      return check_.error(pointer + "/indices",
+                          fmt::format("hold {}, the primitive restart of their type, which glTF forbids", restart),
+                          fmt::format("export the mesh with {}",
+                                      restart < 65536 ? "wider indices" : "indices of vertices that are there"));
     if (largest->second >= vertices)
       check_.error(pointer + "/indices", fmt::format("refer to vertex {} of {}", largest->second, vertices));
   }

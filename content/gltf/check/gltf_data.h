@@ -21,7 +21,7 @@ inline constexpr float kUnitTolerance = 0.00674f;
 enum class DataRole { kNormal, kTangent, kColor, kIndex, kJoints, kBindMatrices, kTimes, kRotations, kRotationSplines };
 
 struct DataCheck : FindingList {
-  DataCheck(const SourceDocument& of, Findings& findings) : FindingList(findings), document(of) {}
+  DataCheck(const SourceDocument& of, Findings& findings) : FindingList(findings, "gltf.data"), document(of) {}
   const Json& accessor(std::size_t i) const { return document.json["accessors"][i]; }
   // True the first time an accessor with data is checked in this role.
   bool first(std::size_t i, DataRole role) { return has_data(document, i) && seen.insert({i, role}).second; }

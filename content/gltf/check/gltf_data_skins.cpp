@@ -60,7 +60,8 @@ void WeightData::weights(const Json& attributes, const std::string& pointer) {
   for (std::size_t v = 0; v < sums.size(); ++v)
     if (std::abs(sums[v] - 1.0f) > kWeightTolerance)
       return check_.warn(pointer + "/attributes",
-                         fmt::format("have weights that sum to {:.3g} instead of 1 in element {}; scaled", sums[v], v));
+                         fmt::format("have weights that sum to {:.3g} instead of 1 in element {}", sums[v], v),
+                         "scaled");
 }
 
 // A joint may have only one weight for a vertex (3.7.3.3), within a set and between sets. Skins are only read at
@@ -84,7 +85,7 @@ void WeightData::joints(const Json& attributes, const std::string& pointer) {
         if (weight[k] == 0.0f) continue;
         if (std::find(here.begin(), here.end(), joint[k]) != here.end())
           return check_.warn(pointer + "/attributes",
-                             fmt::format("give joint {} two weights in element {}; added up", joint[k], v));
+                             fmt::format("give joint {} two weights in element {}", joint[k], v), "added up");
         here.push_back(joint[k]);
       }
   }

@@ -16,7 +16,7 @@ enum class BufferUse { kVertices, kIndices, kMatrices, kImage, kTimes, kValues }
 
 class Meaning : public FindingList {
  public:
-  Meaning(const Json& json, Findings& findings) : FindingList(findings), json_(json) {}
+  Meaning(const Json& json, Findings& findings) : FindingList(findings, "gltf.meaning"), json_(json) {}
   // Records this use of an accessor and its bufferView; an error if another use was recorded before.
   void use(std::size_t accessor, BufferUse use, const std::string& pointer);
   void use_view(std::size_t view, BufferUse use, const std::string& pointer);

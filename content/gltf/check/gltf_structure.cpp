@@ -19,7 +19,7 @@ constexpr const char* kPliant = "PLIANT_";
 class Structure : FindingList {
  public:
   bool mended() const { return mended_; }  // an integer was written as 1.0
-  Structure(const Json& root, Findings& findings) : FindingList(findings), root_(root) {
+  Structure(const Json& root, Findings& findings) : FindingList(findings, "gltf.structure"), root_(root) {
     if (root.is_object() && array_of(root, "extensionsUsed").is_array())
       for (const Json& name : array_of(root, "extensionsUsed"))
         if (name.is_string()) used_.insert(name.get<std::string>());
@@ -45,7 +45,7 @@ class Structure : FindingList {
     if (!name.is_string()) return mismatch(pointer, name, "a string");
     const std::size_t size = name.get_ref<const std::string&>().size();
     if (size > most(limits::kName))
-      error(pointer, "has " + beyond(limits::kName, static_cast<double>(size), "shorten it"));
+      add(finding_of(beyond("has", limits::kName, static_cast<double>(size), "shorten it"), Severity::kError, pointer));
   }
 
   static std::string shown(const Json& json) {
@@ -63,8 +63,8 @@ class Structure : FindingList {
     const auto look = [&](const Json& object, const std::string& where) {
       for (const auto& [name, value] : object.items())
         if (name.rfind(kPliant, 0) == 0)
-          warn(where + "/" + escaped(name),
-               "is not read, because it stands outside of `extensions`; move it into " + target + " `extensions`");
+          warn(where + "/" + escaped(name), "is not read, because it stands outside of `extensions`",
+               "move it into " + target + " `extensions`");
     };
     look(json, pointer);
     if (json.contains("extras") && json["extras"].is_object()) look(json["extras"], pointer + "/extras");
@@ -78,7 +78,7 @@ class Structure : FindingList {
         mismatch(here, json, "an object");
         continue;
       }
-      if (!used_.count(name)) error(here, "is not declared; add '" + name + "' to extensionsUsed");
+      if (!used_.count(name)) error(here, "is not declared", "add '" + name + "' to extensionsUsed");
       std::string content = "any";
       if (gltf_rules().known_extensions.count(name)) {
         const auto allowed = gltf_rules().extensions.find(type);
@@ -86,12 +86,12 @@ class Structure : FindingList {
                                ? std::map<std::string, std::string>::const_iterator{}
                                : allowed->second.find(name);
         if (allowed == gltf_rules().extensions.end() || found == allowed->second.end()) {
-          error(here, fmt::format("has no meaning {}; {}", place_of(type), right_place(name, type)));
+          error(here, fmt::format("has no meaning {}", place_of(type)), right_place(name, type));
           continue;
         }
         content = found->second;
       } else if (name.rfind(kPliant, 0) == 0 && type != "node" && type != "scene") {
-        error(here, fmt::format("has no meaning {}; PLIANT extensions stand on nodes and scenes", place_of(type)));
+        error(here, fmt::format("has no meaning {}", place_of(type)), "PLIANT extensions stand on nodes and scenes");
         continue;
       }
       if (content != "any") check_object(json, content, here);
@@ -102,7 +102,7 @@ class Structure : FindingList {
   template <class Check>
   void each(Json& json, const std::string& pointer, bool unique, const Check& check) {
     if (!json.is_array()) return mismatch(pointer, json, "an array");
-    if (json.empty()) return error(pointer, "is empty; leave it out instead");
+    if (json.empty()) return error(pointer, "is empty", "leave it out instead");
     std::set<Json> seen;
     for (std::size_t i = 0; i < json.size(); ++i) {
       const std::string here = fmt::format("{}/{}", pointer, i);

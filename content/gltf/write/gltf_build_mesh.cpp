@@ -30,11 +30,12 @@ Result<tinygltf::Mesh> make_mesh(const LevelMesh& mesh, const std::vector<Materi
     if (!fits(primitive.normal) || !fits(primitive.tangent) || !fits(primitive.uv) || !fits(primitive.stiffness) ||
         !fits(primitive.friction) || !fits(primitive.damping) || !fits(primitive.relaxation) ||
         !fits(primitive.pinned) || !fits(primitive.handle))
-      return Error{mesh.name, "has attributes of different lengths and cannot be saved; give each one value a vertex"};
+      return Error{mesh.name, "has attributes of different lengths and cannot be saved",
+                   "give each one value a vertex"};
     Box box;
     for (const vec3 p : primitive.position) {
       if (!std::isfinite(p.x + p.y + p.z))
-        return Error{mesh.name, "has a position that is not finite and cannot be saved; repair the mesh"};
+        return Error{mesh.name, "has a position that is not finite and cannot be saved", "repair the mesh"};
       box.add(p);
     }
     tinygltf::Primitive made;

@@ -46,9 +46,9 @@ Result<World> open_paced(const std::string& name, double pace) {
   if (const Status status = prepare_tools(*world); !status) return status.error();
   if (const Status status = prepare_soft(*world); !status) return status.error();
   if (!world->tools || world->tools->tools.empty() || !world->soft)
-    return Error{name, "has no tool; choose a level with PLIANT_handle"};
+    return Error{name, "has no tool", "choose a level with PLIANT_handle"};
   const HapticDevice& device = world->registry.get<HapticDevice>(world->tools->tools[0]->device);
-  if (!device.path.valid()) return Error{name, "its tool does not follow a script; give its device one"};
+  if (!device.path.valid()) return Error{name, "its tool does not follow a script", "give its device one"};
   for (PathRow& row : world->paths[device.path].rows) row.time /= pace;
   return std::move(world).value();
 }

@@ -155,10 +155,10 @@ Result<std::vector<PressedBlock>> press_block(const BlockPress& press, const std
     for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i) tissue.position()[i].y -= depth - before;
     const TissueReport report = settle_tissue(tissue, *solver, dvec3(0), settle);
     if (!report.solved || (press.strain == Strain::kCorotational && !(report.change <= settle.tolerance)))
-      return Error{"study",
-                   fmt::format("a block of {} tetrahedra, pressed {:g} mm deep, was not solved; this is a defect "
-                               "of the study",
-                               out.tets, 1000 * depth)};
+      return Error{
+          "study",
+          fmt::format("a block of {} tetrahedra, pressed {:g} mm deep, was not solved", out.tets, 1000 * depth),
+          "this is a defect of the study"};
     out.solves = report.iterations;
     tissue.assemble(1.0, dvec3(0));
     for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i)
