@@ -65,7 +65,7 @@ void targets(benchmark::State& state) {
   source.amplitude = 0.004f;
   source.inv_reach2 = 1 / (0.05f * 0.05f);
   source.shape = static_cast<Shape>(state.range(0));
-  source.parameter = source.shape == Shape::kVolume ? 5.0f : source.shape == Shape::kKelvinlet ? 0.01f : 0.04f;
+  source.parameter = shape_parameter(source.shape, 0.01, 0.05, 1.0);
   ZoneTargets out{};
   for (auto _ : state) {
     add_targets(mesh, 0, source, false, out);
@@ -80,7 +80,7 @@ void targets(benchmark::State& state) {
   }
   state.counters["error"] = error;
 }
-BENCHMARK(targets)->DenseRange(0, 5)->ArgName("shape");
+BENCHMARK(targets)->DenseRange(0, std::size(kShapeRows) - 1)->ArgName("shape");
 
 // Points within 4 mm of a sphere, inside and outside.
 std::vector<dvec3> points_near_a_sphere(double radius) {

@@ -6,9 +6,18 @@
 
 namespace pliant {
 
+bool depends_on_contact(Shape shape) {
+  const ShapeParameter parameter = row_of(shape).parameter;
+  return parameter == ShapeParameter::kContactShare || parameter == ShapeParameter::kContactLength;
+}
+
+bool has_arm(SpringLaw law) {
+  return row_of(law).step == SpringStep::kArm;
+}
+
 bool has_closed_form(const Deformable& d, const Mesh& mesh) {
-  return d.spring == SpringLaw::kLinear && d.response == Response::kFollow && d.distance == Distance::kChord &&
-         gpu_knows(d) && mesh.stiffness_factor.empty() && mesh.damping_factor.empty();
+  return row_of(d.spring).step == SpringStep::kExact && d.response == Response::kFollow &&
+         d.distance == Distance::kChord && gpu_knows(d) && mesh.stiffness_factor.empty() && mesh.damping_factor.empty();
 }
 
 bool gpu_knows(const Deformable& d) {

@@ -31,9 +31,9 @@ struct DeformableRange {
 };
 
 // Whether a shape is that of an indenter on a half-space, so that `contact_radius` has an effect.
-inline bool depends_on_contact(Shape shape) {
-  return shape == Shape::kPunch || shape == Shape::kHertz || shape == Shape::kKelvinlet;
-}
+bool depends_on_contact(Shape shape);
+// Whether a law has the Maxwell arm of the standard linear solid: `relaxation.*`, and a memory per vertex.
+bool has_arm(SpringLaw law);
 
 inline constexpr double kMostContactShare = 0.95;  // [1] of the reach: upper bound of contact_radius
 inline constexpr double kDefaultReach = 0.08;      // [1] of the diagonal of the object's box

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <string_view>
 
 namespace pliant {
 namespace {
@@ -23,12 +24,12 @@ class Table {
   // Returns the index of the new entry.
   Result<std::size_t> add(const std::string& name, Value value) {
     const std::string where = std::string(kind_) + " `" + name + "`";
-    if (name.empty()) return Error{where, "has no name; give it one"};
+    if (name.empty()) return Error{where, "has no name", "give it one"};
     const std::lock_guard lock(mutex_);
     const std::size_t count = count_.load();
     for (std::size_t i = 0; i < count; ++i)
-      if (entries_[i].name == name) return Error{where, "is registered twice; give each a name of its own"};
-    if (count == kMost) return Error{where, "is one too many; at most " + std::to_string(kMost) + " are taken"};
+      if (entries_[i].name == name) return Error{where, "is registered twice", "give each a name of its own"};
+    if (count == kMost) return Error{where, "is one too many", "at most " + std::to_string(kMost) + " are taken"};
     entries_[count] = {name, std::move(value)};
     count_.store(count + 1);
     return count;
@@ -55,19 +56,32 @@ Table<SolverFactory>& solvers() {
   return table;
 }
 
-template <class Enum>
-std::size_t place_of(Enum value, Enum last) {  // indices of tables begin after the built-in ones
-  return static_cast<std::size_t>(value) - static_cast<std::size_t>(last) - 1;
+// The enumerators are the first rows, in their order.
+template <class Row, std::size_t size, class Enum>
+constexpr bool has(const Row (&rows)[size], Enum value, std::string_view word) {
+  return static_cast<std::size_t>(value) < size && rows[static_cast<std::size_t>(value)].word == word;
 }
-template <class Enum, class Value>
-Result<Enum> added(Table<Value>& table, const std::string& name, Value value, Enum last,
-                   const char* (*word_of_built_in)(Enum)) {
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(last); ++i)
-    if (name == word_of_built_in(static_cast<Enum>(i)))
-      return Error{"`" + name + "`", "is the name of a built-in one; give it another"};
+static_assert(has(kSpringRows, SpringLaw::kLinear, "linear") && has(kSpringRows, SpringLaw::kCubic, "cubic") &&
+              has(kSpringRows, SpringLaw::kExponential, "exponential") &&
+              has(kSpringRows, SpringLaw::kStandardLinearSolid, "sls"));
+static_assert(has(kShapeRows, Shape::kPunch, "punch") && has(kShapeRows, Shape::kHertz, "hertz") &&
+              has(kShapeRows, Shape::kGaussian, "gaussian") && has(kShapeRows, Shape::kWendland, "wendland") &&
+              has(kShapeRows, Shape::kVolume, "volume") && has(kShapeRows, Shape::kKelvinlet, "kelvinlet"));
+static_assert(has(kSolverRows, SolverKind::kAuto, "auto") &&
+              has(kSolverRows, SolverKind::kBlockCholesky, "block_cholesky") &&
+              has(kSolverRows, SolverKind::kEigenCholesky, "eigen_cholesky") &&
+              has(kSolverRows, SolverKind::kCholmod, "cholmod") &&
+              has(kSolverRows, SolverKind::kConjugateGradient, "conjugate_gradient") &&
+              has(kSolverRows, SolverKind::kDense, "dense"));
+
+// Registered ones are numbered after those that ship.
+template <class Row, std::size_t size, class Enum, class Value>
+Result<Enum> added(const Row (&rows)[size], Table<Value>& table, const std::string& name, Value value) {
+  for (const Row& row : rows)
+    if (name == row.word) return Error{"`" + name + "`", "is the name of a built-in one", "give it another"};
   const auto place = table.add(name, std::move(value));
   if (!place) return place.error();
-  return static_cast<Enum>(static_cast<std::size_t>(last) + 1 + *place);
+  return static_cast<Enum>(size + *place);
 }
 
 // Whether a derivative agrees with the central difference.
@@ -112,47 +126,66 @@ const char* fault_of(const ShapeFunction& shape) {
 }  // namespace
 
 const SpringFunction* registered_spring(SpringLaw law) {
-  const auto* entry = springs().find(place_of(law, kLastSpring));
+  const auto* entry = springs().find(static_cast<std::size_t>(law) - std::size(kSpringRows));
   return entry ? entry->value.get() : nullptr;
 }
 const ShapeFunction* registered_shape(Shape shape) {
-  const auto* entry = shapes().find(place_of(shape, kLastShape));
+  const auto* entry = shapes().find(static_cast<std::size_t>(shape) - std::size(kShapeRows));
   return entry ? entry->value.get() : nullptr;
 }
 const SolverFactory* registered_solver(SolverKind kind) {
-  const auto* entry = solvers().find(place_of(kind, kLastSolver));
+  const auto* entry = solvers().find(static_cast<std::size_t>(kind) - std::size(kSolverRows));
   return entry ? &entry->value : nullptr;
 }
 const char* registered_word(SpringLaw law) {
-  const auto* entry = springs().find(place_of(law, kLastSpring));
+  const auto* entry = springs().find(static_cast<std::size_t>(law) - std::size(kSpringRows));
   return entry ? entry->name.c_str() : nullptr;
 }
 const char* registered_word(Shape shape) {
-  const auto* entry = shapes().find(place_of(shape, kLastShape));
+  const auto* entry = shapes().find(static_cast<std::size_t>(shape) - std::size(kShapeRows));
   return entry ? entry->name.c_str() : nullptr;
 }
 const char* registered_word(SolverKind kind) {
-  const auto* entry = solvers().find(place_of(kind, kLastSolver));
+  const auto* entry = solvers().find(static_cast<std::size_t>(kind) - std::size(kSolverRows));
   return entry ? entry->name.c_str() : nullptr;
+}
+
+bool reads_key(SpringLaw law, const char* key) {
+  const std::string all = std::string(" ") + row_of(law).reads + " ";
+  return all.find(std::string(" ") + key + " ") != std::string::npos;
+}
+
+// The difference of the potential; where it would cancel, the mean of the force (Gauss-Legendre, four points).
+double SpringFunction::mean_force(double h0, double h1, const SpringConstants& constants) const {
+  const double d = h1 - h0;
+  if (std::abs(d) > 1e-3 * (std::abs(h0) + std::abs(h1)))
+    return (potential(h1, constants) - potential(h0, constants)) / d;
+  constexpr double kAt[2] = {0.3399810435848563, 0.8611363115940526};
+  constexpr double kWeight[2] = {0.6521451548625461, 0.3478548451374538};
+  const double middle = 0.5 * (h0 + h1);
+  double sum = 0.0;
+  for (int i = 0; i < 2; ++i)
+    sum += kWeight[i] * (force(middle - 0.5 * d * kAt[i], constants) + force(middle + 0.5 * d * kAt[i], constants));
+  return 0.5 * sum;
 }
 
 Result<SpringLaw> register_spring(const std::string& name, std::shared_ptr<const SpringFunction> function) {
   const std::string where = "spring law `" + name + "`";
-  if (!function) return Error{where, "has no function; give one"};
-  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault) + "; see pliant/surface_law.h"};
-  return added<SpringLaw>(springs(), name, std::move(function), kLastSpring, word_of);
+  if (!function) return Error{where, "has no function", "give one"};
+  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault), "see pliant/surface_law.h"};
+  return added<SpringRow, std::size(kSpringRows), SpringLaw>(kSpringRows, springs(), name, std::move(function));
 }
 
 Result<Shape> register_shape(const std::string& name, std::shared_ptr<const ShapeFunction> function) {
   const std::string where = "shape `" + name + "`";
-  if (!function) return Error{where, "has no function; give one"};
-  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault) + "; see pliant/surface_law.h"};
-  return added<Shape>(shapes(), name, std::move(function), kLastShape, word_of);
+  if (!function) return Error{where, "has no function", "give one"};
+  if (const char* fault = fault_of(*function)) return Error{where, std::string(fault), "see pliant/surface_law.h"};
+  return added<ShapeRow, std::size(kShapeRows), Shape>(kShapeRows, shapes(), name, std::move(function));
 }
 
 Result<SolverKind> register_solver(const std::string& name, SolverFactory factory) {
-  if (!factory) return Error{"linear solver `" + name + "`", "has no factory; give a function that makes one"};
-  return added<SolverKind>(solvers(), name, std::move(factory), kLastSolver, word_of);
+  if (!factory) return Error{"linear solver `" + name + "`", "has no factory", "give a function that makes one"};
+  return added<SolverRow, std::size(kSolverRows), SolverKind>(kSolverRows, solvers(), name, std::move(factory));
 }
 
 }  // namespace pliant

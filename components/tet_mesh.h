@@ -9,6 +9,7 @@
 
 #include "components/math.h"
 #include "runtime/entity.h"
+#include "runtime/result.h"
 #include "runtime/store.h"
 
 namespace pliant {
@@ -40,7 +41,8 @@ struct TetReport {
   double thin = 0.0;                  // [1] share of the surface with less tissue behind it than thin_places.h requires
   double least_thickness = 0.0;       // [m] of that tissue; 0: nothing is thin
   vec3 thinnest{0};                   // [m] where
-  std::vector<std::string> findings;  // warnings and remarks, one sentence each, without the body's name
+  std::vector<Note> notes;            // on how it is filled and what it carries, without the body's name
+  std::vector<std::string> findings;  // on how it stands under gravity, one sentence each, without the body's name
 };
 
 // A mesh that is only drawn and moves with the tissue around it.

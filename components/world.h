@@ -24,6 +24,7 @@
 #include "runtime/exchange.h"
 #include "runtime/hierarchy.h"
 #include "runtime/registry.h"
+#include "runtime/result.h"
 #include "runtime/store.h"
 
 namespace pliant {
@@ -87,6 +88,6 @@ struct World {
 // The first entity with this name, or kNoEntity.
 Entity find_by_name(const World& world, const std::string& name);
 // One sentence per set bit of `dropped`.
-std::vector<std::string> explain_dropped(std::uint32_t dropped);
+std::vector<Note> explain_dropped(std::uint32_t dropped);
 
 }  // namespace pliant

@@ -14,7 +14,7 @@ Result<Level> load_watched(const std::filesystem::path& file, const OpenProgress
     check_in("reading `" + file.filename().string() + "`");
     return load_level(file);
   } catch (const WorkStopped&) {
-    return Error{file.string(), "its reading was stopped; nothing is wrong with it"};
+    return Error{file.string(), "its reading was stopped", "nothing is wrong with it"};
   }
 }
 

@@ -15,6 +15,7 @@
 #include "content/level/device_use.h"
 #include "content/level/script.h"
 #include "content/level/spawn_soft.h"
+#include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "content/tets/tet_file.h"
@@ -61,19 +62,27 @@ std::string pointer_of(const Level& level, const World& world, Entity entity) {
   return scene_pointer(level);
 }
 
+// With the place of the error in the text.
+Finding in_scene(const Level& level, Error error, const char* family) {
+  if (!error.where.empty()) error.what = error.where + ": " + error.what;
+  return finding_of(error, scene_pointer(level), family);
+}
+
 Finding from_spawn(const Level& level, const Error& error) {
-  if (error.node < 0) return {Severity::kError, scene_pointer(level), error.message()};
-  return {Severity::kError, pointer_of(level, static_cast<std::size_t>(error.node)), error.what};
+  constexpr const char* kFamily = "level.build";
+  if (error.node < 0) return in_scene(level, error, kFamily);
+  return finding_of(error, pointer_of(level, static_cast<std::size_t>(error.node)), kFamily);
 }
 
 // prepare's errors name the node as `name`, or the name alone.
 Finding from_prepare(const Level& level, const Error& error) {
+  constexpr const char* kFamily = "level.prepare";
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     const std::string& name = level.nodes[i].name;
     if (level.nodes[i].in_scene && (error.where == name || error.where.find("`" + name + "`") != std::string::npos))
-      return {Severity::kError, pointer_of(level, i), error.what};
+      return finding_of(error, pointer_of(level, i), kFamily);
   }
-  return {Severity::kError, scene_pointer(level), error.message()};
+  return in_scene(level, error, kFamily);
 }
 
 // Extensions without effect, because their node is not in the shown scene.
@@ -82,8 +91,9 @@ void find_outside(const Level& level, Findings& findings) {
     const LevelNode& node = level.nodes[i];
     if (node.in_scene || !node.has_pliant()) continue;
     findings.push_back({Severity::kWarning, pointer_of(level, i),
-                        "has PLIANT extensions but is not in the scene that is shown, so they do nothing; add it to " +
-                            scene_pointer(level) + "/nodes, or to the children of a node there"});
+                        "has PLIANT extensions but is not in the scene that is shown, so they do nothing",
+                        "add it to " + scene_pointer(level) + "/nodes, or to the children of a node there",
+                        "level.not_shown"});
   }
   if (!level.source) return;
   const Json& scenes = array_of(level.source->json, "scenes");
@@ -93,7 +103,8 @@ void find_outside(const Level& level, Findings& findings) {
     for (const auto& [name, value] : scenes[s]["extensions"].items())
       if (name.rfind("PLIANT_", 0) == 0)
         findings.push_back({Severity::kWarning, here + "/extensions/" + name,
-                            "is of a scene that is not shown, so it does nothing; move it to " + scene_pointer(level)});
+                            "is of a scene that is not shown, so it does nothing", "move it to " + scene_pointer(level),
+                            "level.not_shown"});
   }
 }
 
@@ -102,21 +113,24 @@ double find_in_mesh(const LevelNode& node, const LevelMesh& mesh, double crease,
                     Findings& findings) {
   const Result<BuiltMesh> built = build_mesh(node.name, mesh.primitives, mat4(1), {crease});
   if (!built) {
-    findings.push_back({Severity::kError, pointer, built.error().what});
+    findings.push_back(finding_of(built.error(), pointer, "mesh.build"));
     return -1.0;
   }
-  const auto warn = [&](std::string message) { findings.push_back({Severity::kWarning, pointer, std::move(message)}); };
+  const auto warn = [&](const char* code, std::string what) {
+    findings.push_back({Severity::kWarning, pointer, std::move(what), {}, code});
+  };
   const MeshReport& report = built->report;
   if (report.degenerate_triangles + report.duplicate_triangles > 0)
-    warn(fmt::format("has {} degenerate and {} duplicate triangles, which are dropped", report.degenerate_triangles,
-                     report.duplicate_triangles));
+    warn("mesh.degenerate", fmt::format("has {} degenerate and {} duplicate triangles, which are dropped",
+                                        report.degenerate_triangles, report.duplicate_triangles));
   if (report.border_edges > 0)
-    warn(fmt::format("is open along {} edges: volume is not conserved there", report.border_edges));
+    warn("mesh.open_edges", fmt::format("is open along {} edges: volume is not conserved there", report.border_edges));
   if (report.non_manifold_edges > 0)
-    warn(fmt::format("has {} edges where more than two triangles, or two of opposite orientation, meet",
+    warn("mesh.non_manifold",
+         fmt::format("has {} edges where more than two triangles, or two of opposite orientation, meet",
                      report.non_manifold_edges));
-  if (const std::string turned = winding_note(report); !turned.empty()) warn(turned);
-  if (const std::string doubt = winding_doubt(report); !doubt.empty()) warn(doubt);
+  for (const std::optional<Note>& found : {winding_note(report), winding_doubt(report)})
+    if (found) findings.push_back(finding_of(*found, Severity::kWarning, pointer));
   return static_cast<double>(built->mesh.mean_edge);
 }
 
@@ -138,9 +152,12 @@ void find_in_meshes(const Level& level, Findings& findings, const std::atomic<bo
           find_in_mesh(node, level.meshes[static_cast<std::size_t>(node.mesh)], crease, pointer_of(level, i), findings);
     if (reach > 0.0 && reach < edge->second)
       findings.push_back(
-          {Severity::kWarning, pointer_of(level, i),
+          {Severity::kWarning,
+           pointer_of(level, i),
            fmt::format("has a reach of {} m, less than its mean edge of {:.3g} m: dents will be single vertices", reach,
-                       edge->second)});
+                       edge->second),
+           {},
+           "mesh.coarse"});
   }
 }
 
@@ -150,11 +167,11 @@ void find_in_soft_nodes(const Level& level, const fs::path& folder, Findings& fi
     const LevelNode& node = level.nodes[i];
     if (!node.in_scene) continue;
     const std::string pointer = pointer_of(level, i);
-    if (const std::string fault = soft_fault(node); !fault.empty())
-      findings.push_back({Severity::kError, pointer, fault});
+    if (const std::optional<Note> fault = soft_fault(node))
+      findings.push_back(finding_of(*fault, Severity::kError, pointer));
     if (!node.soft_body || node.soft_body->mesh.empty()) continue;
     if (const Result<TetFile> file = load_named_tets(folder, node.soft_body->mesh); file)  // otherwise spawn reports it
-      for (const std::string& note : file->notes) findings.push_back({Severity::kNote, pointer, note});
+      for (const std::string& note : file->notes) findings.push_back({Severity::kNote, pointer, note, {}, "tets.note"});
   }
 }
 
@@ -165,10 +182,10 @@ void find_idle(const Level& level, Findings& findings) {
         key.node < 0 ? scene_pointer(level) : pointer_of(level, static_cast<std::size_t>(key.node));
     std::string pointer = owner + "/extensions/" + key.pointer;
     std::replace(pointer.begin(), pointer.end(), '.', '/');  // dots in keys are nested objects
-    findings.push_back({Severity::kNote, std::move(pointer), key.what});
+    findings.push_back({Severity::kNote, std::move(pointer), key.what, key.cure, "key.unused"});
   }
   for (const DeviceFault& idle : find_unmoved_probes(level))
-    findings.push_back({Severity::kNote, pointer_of(level, idle.node), idle.what});
+    findings.push_back(finding_of(idle.what, Severity::kNote, pointer_of(level, idle.node)));
 }
 
 // Devices requested by id: lists the allowed ones, and rejects the others as `run` does.
@@ -179,9 +196,10 @@ void find_requests(const Level& level, Findings& findings) {
     const bool nothing = asked.used && asked.request.allowed.empty();
     for (const std::string& sentence : asked.request.refused)
       findings.push_back({nothing ? Severity::kError : Severity::kWarning, pointer,
-                          "asks for more than a level may: " + sentence + "; " + device_cure(asked)});
+                          "asks for more than a level may: " + sentence, device_cure(asked), "device.refused"});
     if (asked.used && !asked.request.allowed.empty())
-      findings.push_back({Severity::kNote, pointer, "asks for the device `" + asked.request.allowed + "`"});
+      findings.push_back(
+          {Severity::kNote, pointer, "asks for the device `" + asked.request.allowed + "`", {}, "device.asked"});
   }
 }
 
@@ -192,12 +210,17 @@ void find_in_scripts(const Level& level, const fs::path& folder, Findings& findi
     const LevelNode& node = level.nodes[i];
     const auto find = [&](const std::string& name, const char* key, bool reads) {
       const std::string pointer = pointer_of(level, i) + "/extensions/" + key;
-      const auto error = [&](std::string what) { findings.push_back({Severity::kError, pointer, std::move(what)}); };
+      const auto error = [&](Error fault, const char* code) {
+        if (!fault.where.empty()) fault.what = fault.where + ": " + fault.what;
+        findings.push_back(finding_of(fault, pointer, code));
+      };
       const Result<fs::path> file = confined_path(folder, name);
-      if (!file) return error(file.error().message());
-      if (!fs::is_regular_file(*file)) return error("names the script " + name + ", which does not exist");
+      if (!file) return error(file.error(), "script.place");
+      if (!fs::is_regular_file(*file))
+        return error({"", "names the script " + name + ", which does not exist"}, "script.missing");
       if (!reads) return;
-      if (const Result<const Path*> script = scripts.read(*file, false); !script) error(script.error().message());
+      if (const Result<const Path*> script = scripts.read(*file, false); !script)
+        error(script.error(), "script.unreadable");
     };
     if (node.motion && !node.motion->script.empty()) find(node.motion->script, "PLIANT_motion/script", false);
     if (node.device && !node.device->file.empty())
@@ -210,20 +233,23 @@ void find_in_tissue(const Level& level, const World& world, Findings& findings) 
   for (auto [entity, soft_body] : world.registry.view<const SoftBody>()) {
     const std::string node = pointer_of(level, world, entity);  // clang 14 captures no structured bindings
     const TetMesh& tets = world.tet_meshes[soft_body.tets];
-    const auto warn = [&](std::string what) { findings.push_back({Severity::kWarning, node, std::move(what)}); };
-    for (const std::string& finding : tets.report.findings) warn(finding);
-    if (const std::string doubt = locking_doubt(soft_body, tets.tets.size()); !doubt.empty()) warn(doubt);
+    for (const Note& note : tets.report.notes) findings.push_back(finding_of(note, Severity::kWarning, node));
+    for (const std::string& sentence : tets.report.findings)
+      findings.push_back({Severity::kWarning, node, sentence, {}, "tissue.gravity"});
+    if (const std::optional<Note> doubt = locking_doubt(soft_body, tets.tets.size()))
+      findings.push_back(finding_of(*doubt, Severity::kWarning, node));
     if (tets.quality.smallest_dihedral < kSharp)
-      warn(
-          fmt::format("has a dihedral angle of {:.2g} degrees: steps may need more work; mesh it again, or leave "
-                      "`mesh` out for a lattice",
-                      glm::degrees(tets.quality.smallest_dihedral)));
+      findings.push_back({Severity::kWarning, node,
+                          fmt::format("has a dihedral angle of {:.2g} degrees: steps may need more work",
+                                      glm::degrees(tets.quality.smallest_dihedral)),
+                          "mesh it again, or leave `mesh` out for a lattice", "tissue.sharp"});
   }
 }
 
 }  // namespace
 
-Findings validate_level(const fs::path& path, const std::function<Status(World&)>& prepare) {
+Findings validate_level(const fs::path& path, const std::function<Status(World&)>& prepare,
+                        std::optional<double> unit) {
   Findings findings;
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -240,12 +266,16 @@ Findings validate_level(const fs::path& path, const std::function<Status(World&)
   Result<Level> level = document ? load_document(std::move(*document), of_document, path) : load_level(path);
   document.reset();
   if (!level) {
-    findings.push_back({Severity::kError, level.error().pointer, level.error().what});
+    findings.push_back(finding_of(level.error(), level.error().pointer, "file.unreadable"));
     return findings;
   }
   for (std::size_t i = level->document_notes; i < level->notes.size(); ++i)  // those before are already in the findings
-    findings.push_back({Severity::kNote, "", level->notes[i]});
+    findings.push_back({Severity::kNote, "", level->notes[i], {}, "file.note"});
   level->path = path;
+  for (const Status& status : {check_unit(*level, unit), check_unit_said(*level, unit)})
+    if (!status) findings.push_back(finding_of(status.error(), "", "mesh.unit"));
+  if (any_error(findings)) return findings;
+  scale_roots(*level, unit.value_or(1.0));
   const Findings of_level = validate_level(*std::move(level), prepare);
   findings.insert(findings.end(), of_level.begin(), of_level.end());
   return findings;
@@ -256,8 +286,11 @@ Findings validate_level(Level level, const std::function<Status(World&)>& prepar
   const auto stopped = [stop] { return stop && *stop; };
   const bool bare = !level.has_pliant();
   if (bare) {
-    findings.push_back(
-        {Severity::kNote, "", "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds"});
+    findings.push_back({Severity::kNote,
+                        "",
+                        "has no Pliant extension: a bare mesh, touchable with defaults sized to its bounds",
+                        {},
+                        "level.bare"});
     make_touchable(level);
   }
   find_outside(level, findings);
@@ -268,7 +301,7 @@ Findings validate_level(Level level, const std::function<Status(World&)>& prepar
   find_in_meshes(level, findings, stop);
   if (stopped()) return findings;
   for (const DeviceFault& fault : find_shared_devices(level))
-    findings.push_back({Severity::kError, pointer_of(level, fault.node), fault.what});
+    findings.push_back(finding_of(fault.what, Severity::kError, pointer_of(level, fault.node)));
   find_idle(level, findings);
   find_requests(level, findings);
   // Files that the level names.
@@ -279,8 +312,12 @@ Findings validate_level(Level level, const std::function<Status(World&)>& prepar
     std::vector<std::string> notes;
     const Result<Panorama> panorama = load_named_panorama(folder, level.environment->panorama, &notes);
     const std::string pointer = scene_pointer(level) + "/extensions/PLIANT_environment/panorama";
-    if (!panorama) findings.push_back({Severity::kError, pointer, panorama.error().message()});
-    for (const std::string& note : notes) findings.push_back({Severity::kNote, pointer, note});
+    if (!panorama) {
+      Error error = panorama.error();
+      if (!error.where.empty()) error.what = error.where + ": " + error.what;
+      findings.push_back(finding_of(error, pointer, "panorama.unreadable"));
+    }
+    for (const std::string& note : notes) findings.push_back({Severity::kNote, pointer, note, {}, "panorama.note"});
   }
   if (any_error(findings) || stopped()) return findings;
   Result<World> world = spawn_moving_images(level);

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "components/device_spec.h"
 #include "devices/believable.h"
-#include "devices/spec.h"
 
 namespace pliant {
 namespace {
@@ -21,22 +21,10 @@ bool senses_a_pose(const DeviceInfo& device) {
   return device.can.senses_position && device.can.senses_rotation;
 }
 
-struct Alternative {
-  std::string what;      // "falcon:0", "any-force", "mouse"
-  std::string wrappers;  // "|delay=5ms" or empty
-};
-
-std::vector<Alternative> alternatives_of(std::string_view wish) {
-  std::vector<Alternative> all;
-  while (true) {
-    const std::size_t end = wish.find(';');
-    const std::string_view one = trimmed(wish.substr(0, end));
-    const std::size_t bar = one.find('|');
-    all.push_back({std::string(trimmed(one.substr(0, bar))),
-                   bar == std::string_view::npos ? std::string() : std::string(one.substr(bar))});
-    if (end == std::string_view::npos) return all;
-    wish.remove_prefix(end + 1);
-  }
+// The device with the wrappers of the wish.
+std::string wrapped(std::string device, const DeviceSpec& wish) {
+  for (const std::string& wrapper : wish.wrappers) device += "|" + wrapper;
+  return device;
 }
 
 // Of a kind; the strongest first.
@@ -67,21 +55,18 @@ Result<const DeviceInfo*> of_kind(const std::string& kind, std::span<const Devic
 }
 
 // Of a driver by name, including devices that cannot be listed.
-Result<DeviceChoice> by_name(const Alternative& wish, std::span<const DeviceInfo> there) {
-  const std::size_t colon = wish.what.find(':');
-  const std::string driver = wish.what.substr(0, colon);
-  const std::string id = colon == std::string::npos ? "" : wish.what.substr(colon + 1);
+Result<DeviceChoice> by_name(const DeviceSpec& wish, std::span<const DeviceInfo> there) {
   const std::vector<std::string> names = driver_names();
-  if (std::find(names.begin(), names.end(), driver) == names.end())
-    return Error{driver, fmt::format("no driver has that name; drivers are: {}", fmt::join(names, ", "))};
+  if (std::find(names.begin(), names.end(), wish.driver) == names.end())
+    return Error{wish.driver, "no driver has that name", fmt::format("drivers are: {}", fmt::join(names, ", "))};
   const DeviceInfo* missing = nullptr;
   for (const DeviceInfo& device : there) {
-    if (device.driver != driver || (!id.empty() && device.id != id)) continue;
-    if (device.missing.empty()) return DeviceChoice{full_id(device) + wish.wrappers, device.name, {}};
+    if (device.driver != wish.driver || (!wish.id.empty() && device.id != wish.id)) continue;
+    if (device.missing.empty()) return DeviceChoice{wrapped(full_id(device), wish), device.name, {}};
     if (!missing) missing = &device;
   }
-  if (missing) return Error{wish.what, fmt::format("{}: {}", missing->name, missing->missing)};
-  return DeviceChoice{wish.what + wish.wrappers, wish.what, {}};  // open() reports it if it is missing
+  if (missing) return Error{wish.device(), fmt::format("{}: {}", missing->name, missing->missing)};
+  return DeviceChoice{wish.words(), wish.device(), {}};  // open() reports it if it is missing
 }
 
 }  // namespace
@@ -92,15 +77,15 @@ std::string full_id(const DeviceInfo& device) {
 
 Result<DeviceChoice> choose_device(const std::string& wish, std::span<const DeviceInfo> there) {
   std::vector<std::string> notes;
-  for (const Alternative& one : alternatives_of(wish)) {
+  for (const DeviceSpec& one : parse_device_specs(wish)) {
     Result<DeviceChoice> chosen = Error{"", ""};
-    if (one.what.empty()) {
-      chosen = Error{wish, "names no device; write a driver, DRIVER:ID, any-force, any-pose, any or mouse"};
-    } else if (one.what == "mouse") {
+    if (one.driver.empty()) {
+      chosen = Error{wish, "names no device", "write a driver, DRIVER:ID, any-force, any-pose, any or mouse"};
+    } else if (one.device() == "mouse") {
       chosen = DeviceChoice{"", "mouse", {}};
-    } else if (one.what == "any" || one.what == "any-force" || one.what == "any-pose") {
-      if (const auto device = of_kind(one.what, there); device)
-        chosen = DeviceChoice{full_id(**device) + one.wrappers, (*device)->name, {}};
+    } else if (!one.has_id && (one.driver == "any" || one.driver == "any-force" || one.driver == "any-pose")) {
+      if (const auto device = of_kind(one.driver, there); device)
+        chosen = DeviceChoice{wrapped(full_id(**device), one), (*device)->name, {}};
       else
         chosen = device.error();
     } else {
@@ -111,9 +96,9 @@ Result<DeviceChoice> choose_device(const std::string& wish, std::span<const Devi
       return chosen;
     }
     const Error& why = chosen.error();
-    notes.push_back(why.where.empty() ? why.what : fmt::format("`{}`: {}", why.where, why.what));
+    notes.push_back(why.where.empty() ? why.sentence() : fmt::format("`{}`: {}", why.where, why.sentence()));
   }
-  return Error{"device:" + wish, fmt::format("{}; `pliant devices` lists what there is", fmt::join(notes, "; "))};
+  return Error{"device:" + wish, fmt::format("{}", fmt::join(notes, "; ")), "`pliant devices` lists what there is"};
 }
 
 }  // namespace pliant

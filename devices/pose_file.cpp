@@ -78,20 +78,20 @@ Result<std::vector<PoseFileRow>> parse_poses(std::string_view text, const std::s
     row.wrench = {{v[11], v[12], v[13]}, {v[14], v[15], v[16]}, v[17]};
     rows.push_back(row);
   }
-  if (rows.empty()) return Error{where, "holds no rows; write a header and at least one row below it"};
+  if (rows.empty()) return Error{where, "holds no rows", "write a header and at least one row below it"};
   return rows;
 }
 
 Result<std::vector<PoseFileRow>> read_poses(const std::string& file) {
   const File in(std::fopen(file.c_str(), "rb"), std::fclose);
-  if (!in) return Error{file, std::string("cannot be opened: ") + std::strerror(errno) + "; check the path"};
+  if (!in) return Error{file, std::string("cannot be opened: ") + std::strerror(errno), "check the path"};
   std::string text;
   char part[65536];
   for (std::size_t got; (got = std::fread(part, 1, sizeof part, in.get())) > 0;) {
     text.append(part, got);
-    if (text.size() > kMostBytes) return Error{file, "is larger than 512 MiB; split it or sample it more coarsely"};
+    if (text.size() > kMostBytes) return Error{file, "is larger than 512 MiB", "split it or sample it more coarsely"};
   }
-  if (std::ferror(in.get())) return Error{file, "cannot be read; is it a file?"};
+  if (std::ferror(in.get())) return Error{file, "cannot be read", "is it a file?"};
   return parse_poses(text, file);
 }
 
@@ -106,7 +106,7 @@ Path path_of(const std::vector<PoseFileRow>& rows) {
 Status write_poses(const std::string& file, const std::vector<PoseFileRow>& rows, const std::string& comment) {
   const File out(std::fopen(file.c_str(), "wbx"), std::fclose);
   if (!out)
-    return Error{file, std::string("cannot be written: ") + std::strerror(errno) + "; give the name of a new file"};
+    return Error{file, std::string("cannot be written: ") + std::strerror(errno), "give the name of a new file"};
   std::string text = fmt::format("# {}\n{}\n", comment, kPoseFileHeader);
   bool written = true;
   for (const PoseFileRow& row : rows) {
@@ -121,7 +121,7 @@ Status write_poses(const std::string& file, const std::vector<PoseFileRow>& rows
     text.clear();
   }
   written = written && std::fwrite(text.data(), 1, text.size(), out.get()) == text.size();
-  if (!written || std::fflush(out.get()) != 0) return Error{file, "cannot be written; check the space left"};
+  if (!written || std::fflush(out.get()) != 0) return Error{file, "cannot be written", "check the space left"};
   return Done{};
 }
 

@@ -53,7 +53,7 @@ std::vector<DeviceInfo> each_once(std::vector<DeviceInfo> found) {
 
 void Driver::wait(double) {}
 Status Driver::run(std::function<void()>) {
-  return Error{"driver", "has no loop of its own; derive run(), or say another DeviceLoop"};
+  return Error{"driver", "has no loop of its own", "derive run(), or say another DeviceLoop"};
 }
 bool Driver::write_model(const DeviceModel&, const DeviceWrench&) {
   return false;
@@ -77,12 +77,12 @@ void Driver::make_safe() noexcept {
 Status register_driver(const std::string& name, DriverFactory factory, DeviceLister lister) {
   const std::string where = "driver `" + name + "`";
   if (name.empty() || name.find(':') != std::string::npos)
-    return Error{where, "has no usable name; give it one without ':'"};
-  if (!factory) return Error{where, "has no factory; give a function that makes one"};
+    return Error{where, "has no usable name", "give it one without ':'"};
+  if (!factory) return Error{where, "has no factory", "give a function that makes one"};
   Registered& all = registered();
   const std::lock_guard lock(all.mutex);
   if (!all.drivers.emplace(name, Registered::Entry{std::move(factory), std::move(lister)}).second)
-    return Error{where, "is registered twice; give each driver a name of its own"};
+    return Error{where, "is registered twice", "give each driver a name of its own"};
   return Done{};
 }
 
@@ -110,12 +110,12 @@ Result<std::unique_ptr<Driver>> make_driver(const std::string& name) {
     } catch (...) {
       return Error{where, "its factory threw something unknown"};
     }
-    return Error{where, "its factory made nothing; return a driver from it"};
+    return Error{where, "its factory made nothing", "return a driver from it"};
   }
   std::string names;
   for (const std::string& known : driver_names()) names += (names.empty() ? "" : ", ") + known;
-  return Error{
-      where, names.empty() ? "no driver is registered; call register_driver first" : "unknown; drivers are: " + names};
+  if (names.empty()) return Error{where, "no driver is registered", "call register_driver first", "device.driver"};
+  return Error{where, "unknown", "drivers are: " + names, "device.driver"};
 }
 
 std::vector<DeviceInfo> list_devices() {

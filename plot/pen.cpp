@@ -134,7 +134,7 @@ Status draw_png_and_svg(const std::filesystem::path& png, const std::filesystem:
   draw(vectors);
   for (const bool as_png : {true, false})
     if (!(as_png ? image.save(png) : vectors.finish()))
-      return Error{(as_png ? png : svg).string(), "the plot cannot be written; check the space left"};
+      return Error{(as_png ? png : svg).string(), "the plot cannot be written", "check the space left", "disk.full"};
   return Done{};
 }
 

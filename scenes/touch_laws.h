@@ -1,10 +1,13 @@
-// Surfaces for tests of the touch tick, and the forces that they must produce.
+// Surfaces for tests of the touch tick, and the forces that they must produce. The lists have every law and shape that
+// ships (components/built_in.h), so that a test over them covers a new one.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "components/deformable.h"
-#include "runtime/assert.h"
+#include "components/registered.h"
+#include "systems/touch/model/local_model.h"
 
 namespace pliant {
 
@@ -16,7 +19,8 @@ inline Deformable frictionless(SpringLaw law = SpringLaw::kLinear) {
   return d;
 }
 
-// [N] Normal force at a given depth [m] in equilibrium, written out from level-format.md.
+// [N] Normal force at a given depth [m] in equilibrium, written out from level-format.md. A law that is not there: its
+// own, whose arithmetic tests/touch/law_table_test.cpp checks.
 inline double law(const Deformable& d, double depth) {
   switch (d.spring) {
     case SpringLaw::kLinear:
@@ -27,10 +31,16 @@ inline double law(const Deformable& d, double depth) {
     case SpringLaw::kExponential:
       return d.stiffness / d.stiffening * (std::exp(d.stiffening * depth) - 1);
   }
-  UNREACHABLE();
+  return -d.stiffness * restoring_law(d).force(-depth);
 }
 
-inline constexpr SpringLaw kLaws[] = {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential,
-                                      SpringLaw::kStandardLinearSolid};
+template <class Enum, std::size_t size>
+constexpr std::array<Enum, size> first_values() {
+  std::array<Enum, size> all{};
+  for (std::size_t i = 0; i < size; ++i) all[i] = static_cast<Enum>(i);
+  return all;
+}
+inline constexpr auto kLaws = first_values<SpringLaw, std::size(kSpringRows)>();
+inline constexpr auto kEveryShape = first_values<Shape, std::size(kShapeRows)>();
 
 }  // namespace pliant

@@ -5,6 +5,7 @@ layout(local_size_x = 128) in;
 #define SHARED
 #include "shared/shape.glsl"
 #include "shared/field.glsl"
+#include "shape_list.glsl"
 
 layout(std430, binding = 0) writeonly buffer Stream { vec4 stream[]; };
 layout(std430, binding = 1) readonly buffer Rest { vec4 rest[]; };        // per vertex (P0 [m], N0.x), (N0.y, N0.z) packed:

@@ -1,10 +1,15 @@
-// One step of the free surface by the cubic and the exponential law, as in systems/touch/model/nonlinear_step.cpp. Discrete
+// One step of the free surface by a law of shared/law.glsl, as in systems/touch/model/nonlinear_step.cpp. Discrete
 // gradient, or backward Euler for steps that are long for the spring (methods.md 1.2). Heights [m], forces per unit of
 // stiffness [m], mass m/k [s2], damping b/k [s].
 
-uniform uint law;  // SpringLaw: 0 linear, 1 cubic, 2 exponential, 3 standard linear solid
+uniform uint law;  // line of components/built_in.h
 uniform float cubic, stiffening;  // [1/m2] [1/m]
 uniform float dt;  // [s]
+
+#define REAL float
+struct LawConstants {
+  float cubic, stiffening;
+};
 
 // e^x to float precision; GLSL guarantees less for its function.
 float law_exp(float x) {
@@ -14,40 +19,29 @@ float law_exp(float x) {
   return (p * r * r + r + 1.0) * intBitsToFloat((int(n) + 127) << 23);
 }
 
-// (e^x - 1 - x) / x^2, by its series where that cancels.
-float law_second(float x) {
+// (e^x - 1 - x) / x^2, by its series where that cancels. Single precision cannot use e^x - 1.
+float law_second(float x, float unused) {
   if (abs(x) < 0.7) {
     return 0.5 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * (1.0 / 120.0 + x * (1.0 / 720.0 + x * (1.0 / 5040.0 + x * (1.0 / 40320.0 + x / 362880.0))))));
   }
   return (law_exp(x) - 1.0 - x) / (x * x);
 }
 
-float law_expm1(float x) { return x + x * x * law_second(x); }
+float law_expm1(float x) { return x + x * x * law_second(x, 0.0); }
 
-float law_force(float h) {
-  if (law == 1u) return h + cubic * h * h * h;
-  return h < 0.0 ? -law_expm1(-stiffening * h) / stiffening : h;
+float law_select(bool first, float a, float b) { return first ? a : b; }
+
+#include "shared/law.glsl"
+
+LawConstants law_constants() {
+  LawConstants k;
+  k.cubic = cubic;
+  k.stiffening = stiffening;
+  return k;
 }
 
-float law_slope(float h) {
-  if (law == 1u) return 1.0 + 3.0 * cubic * h * h;
-  return h < 0.0 ? 1.0 + law_expm1(-stiffening * h) : 1.0;
-}
-
-// (U(h0 + d) - U(h0)) / d without cancellation.
-float law_gradient(float h0, float d) {
-  float h1 = h0 + d;
-  if (law == 1u) return 0.5 * (h0 + h1) * (1.0 + 0.5 * cubic * (h0 * h0 + h1 * h1));
-  if (h0 >= 0.0 && h1 >= 0.0) return 0.5 * (h0 + h1);
-  if (h0 < 0.0 && h1 < 0.0) {
-    float x = -stiffening * d;
-    float em0 = law_expm1(-stiffening * h0), rise = x * law_second(x);
-    return -(em0 * (1.0 + rise) + rise) / stiffening;
-  }
-  float U0 = h0 * h0 * (h0 < 0.0 ? law_second(-stiffening * h0) : 0.5);
-  float U1 = h1 * h1 * (h1 < 0.0 ? law_second(-stiffening * h1) : 0.5);
-  return (U1 - U0) / d;  // d crosses zero
-}
+// law_force, law_slope, law_keep, law_between of the law in `law`: made from the list of laws.
+#include "law_list.glsl"
 
 // state and rate: (normal correction, height); target: equilibrium of the spring, 0 if none.
 void law_step(inout vec4 state, inout vec4 rate, vec4 target, float m, float b) {
@@ -58,15 +52,16 @@ void law_step(inout vec4 state, inout vec4 rate, vec4 target, float m, float b) 
   float constant = -whole * dt * v0 - law_force(target.w);
   // The spring can only shorten the step that mass and damping alone would make: d is between 0 and that step.
   float r = law_force(h0) + constant;
+  float kept = law_keep(h0);
   float farthest = -r / inertia;
   float low = min(farthest, 0.0), high = max(farthest, 0.0);
   float d = -r / (inertia + (stiff ? 1.0 : 0.5) * law_slope(h0));
   for (int i = 0; i < 30 && r != 0.0; ++i) {
-    float h1 = h0 + d;
-    r = inertia * d + (stiff ? law_force(h1) : law_gradient(h0, d)) + constant;
+    LawAt at = law_between(h0, d, kept);
+    r = inertia * d + (stiff ? at.force : at.gradient) + constant;
     if (r < 0.0) low = d; else high = d;
     // The gradient's slope is close to half the force's for such short steps; the bracket handles the rest.
-    float next = d - r / (inertia + (stiff ? 1.0 : 0.5) * law_slope(h1));
+    float next = d - r / (inertia + (stiff ? 1.0 : 0.5) * at.slope);
     if (!(next >= low && next <= high)) next = 0.5 * (low + high);
     bool settled = abs(next - d) <= 1e-7 * (abs(h0) + abs(d));
     d = next;

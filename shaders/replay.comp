@@ -5,6 +5,7 @@ layout(local_size_x = 128) in;  // kZoneSize
 #define SHARED
 #include "shared/shape.glsl"
 #include "shared/field.glsl"
+#include "shape_list.glsl"
 #include "law.glsl"
 
 layout(std430, binding = 0) buffer Stream { vec4 stream[]; };
@@ -24,6 +25,7 @@ layout(std430, binding = 6) readonly buffer Steps { uvec4 steps[]; };
 layout(std430, binding = 7) readonly buffer Offsets { vec4 offsets[]; };
 
 uniform uint vertex_count, stride, lags, has_offsets;
+uniform uint way;  // SpringStep: 0 exact, 1 exact with an arm, 2 passive
 uniform uint first_run, first_zone;  // into steps
 uniform float inv_dt, arm_decay, arm_ramp;
 
@@ -62,7 +64,7 @@ void main() {
   if (v >= vertex_count) return;
   P = rest[v].xyz;
   N = vec3(rest[v].w, rest_yz[v]);
-  bool solid = law == 3u, follows = lags == 0u;
+  bool solid = way == 1u, follows = lags == 0u;
   uint parts = solid ? 4u : 2u, c = stride * v;
   vec4 residual = state[parts * v], rate = state[parts * v + 1u], arm = vec4(0), relaxed = vec4(0);
   float r1 = 0.0;
@@ -107,7 +109,7 @@ void main() {
       }
 
       vec4 pulled = follows ? vec4(0) : target;
-      if (law == 1u || law == 2u) {
+      if (way == 2u) {
         law_step(residual, rate, pulled, coefficient[c], coefficient[c + 1u]);
       } else {  // linear: the state relative to the target moves freely
         vec4 x = residual - pulled, w = rate;

@@ -171,14 +171,14 @@ NodesMoved remove_node(Level& level, std::int32_t node) {
 Result<NodesMoved> move_node(Level& level, std::int32_t node, std::int32_t parent, std::size_t place) {
   const std::vector<std::int32_t> all = subtree(level, node);
   if (std::find(all.begin(), all.end(), parent) != all.end())
-    return Error{at(level, node).name, "cannot be a child of itself or of what is below it; choose another parent"};
+    return Error{at(level, node).name, "cannot be a child of itself or of what is below it", "choose another parent"};
   const std::vector<dmat4> world = world_matrices(level.nodes);
   const std::int32_t old = at(level, node).parent;
   if (old != parent) {
     const dmat4 frame = parent < 0 ? dmat4(1.0) : world[static_cast<std::size_t>(parent)];
     if (glm::determinant(dmat3(frame)) == 0.0)
-      return Error{at(level, parent).name,
-                   "has a scale of zero, so nothing can be placed in it; choose another parent"};
+      return Error{at(level, parent).name, "has a scale of zero, so nothing can be placed in it",
+                   "choose another parent"};
     at(level, node).local = decomposed(glm::inverse(frame) * world[static_cast<std::size_t>(node)]);
   }
   if (old >= 0) erase(at(level, old).children, node);

@@ -186,7 +186,7 @@ void make_hand(Level& level, LevelNode& node, double diagonal, const InstrumentS
 Status check_object(const Level& level, std::int32_t object) {
   const LevelNode& it = level.nodes[static_cast<std::size_t>(object)];
   if (it.mesh < 0 || world_box(level, object).empty())
-    return Error{it.name, "has no mesh that an instrument could be for; choose a node that shows one"};
+    return Error{it.name, "has no mesh that an instrument could be for", "choose a node that shows one"};
   return Done{};
 }
 

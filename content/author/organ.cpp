@@ -73,8 +73,8 @@ Result<Organ> organ_of(const Level& level, std::int32_t node) {
       if (size > largest) largest = size, organ.body = i;
     }
     if (organ.body < 0)
-      return Error{level.nodes[static_cast<std::size_t>(node)].name,
-                   "has no mesh, and none below it; choose a node that shows one"};
+      return Error{level.nodes[static_cast<std::size_t>(node)].name, "has no mesh, and none below it",
+                   "choose a node that shows one"};
   }
   organ.parts = nested_in(level, organ.body);
   return organ;

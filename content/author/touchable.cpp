@@ -16,10 +16,10 @@ constexpr double kBeyond = 0.02;  // [1] of the extent: margin of a pinned box, 
 
 Status check_area(const Level& level, std::int32_t node) {
   const LevelNode& it = level.nodes[static_cast<std::size_t>(node)];
-  if (it.mesh < 0) return Error{it.name, "has no mesh; choose a node that shows one"};
+  if (it.mesh < 0) return Error{it.name, "has no mesh", "choose a node that shows one"};
   const dmat3 frame(world_matrices(level.nodes)[static_cast<std::size_t>(node)]);
   if (!has_area(level.meshes[static_cast<std::size_t>(it.mesh)], frame))
-    return Error{it.name, "has a mesh without area; choose another node"};
+    return Error{it.name, "has a mesh without area", "choose another node"};
   return Done{};
 }
 
@@ -50,9 +50,9 @@ Status make_soft(Level& level, std::int32_t node, const SoftBodyParameters& para
 
 Status pin(Level& level, std::int32_t node, Side side, double share) {
   LevelNode& it = level.nodes[static_cast<std::size_t>(node)];
-  if (!it.soft_body) return Error{it.name, "has no soft body to pin; make it soft first"};
+  if (!it.soft_body) return Error{it.name, "has no soft body to pin", "make it soft first"};
   if (!(share > 0.0 && share <= 1.0))
-    return Error{it.name, fmt::format("cannot be pinned by a share of {:g}; use more than 0, at most 1", share)};
+    return Error{it.name, fmt::format("cannot be pinned by a share of {:g}", share), "use more than 0, at most 1"};
   const ObjectFrame frame = object_frame(level, node);
   const dvec3 direction = glm::conjugate(frame.pose.rotation) * direction_of(level, side);
   int axis = 0;
@@ -113,11 +113,12 @@ Status pin_vertices(Level& level, std::int32_t node, std::size_t primitive, std:
   if (it.mesh < 0 || primitive >= level.meshes[static_cast<std::size_t>(it.mesh)].primitives.size())
     return Error{it.name, fmt::format("has no primitive {} to pin", primitive)};
   if (!(value >= 0.0f && value <= 1.0f))
-    return Error{it.name, fmt::format("cannot be pinned by {:g}; use 0 to 1", value)};
+    return Error{it.name, fmt::format("cannot be pinned by {:g}", value), "use 0 to 1"};
   Primitive& to = own_mesh(level, node).primitives[primitive];
   for (const std::uint32_t vertex : vertices)
     if (vertex >= to.position.size())
-      return Error{it.name, fmt::format("has no vertex {}; the last one is {}", vertex, to.position.size() - 1)};
+      return Error{it.name, fmt::format("has no vertex {}", vertex),
+                   fmt::format("the last one is {}", to.position.size() - 1)};
   if (to.pinned.empty()) to.pinned.assign(to.position.size(), 0.0f);
   for (const std::uint32_t vertex : vertices) to.pinned[vertex] = value;
   return Done{};

@@ -16,7 +16,7 @@
 
 #include "content/files/image.h"
 #include "content/files/isolation.h"
-#include "content/files/mesh_check.h"
+#include "content/files/mesh_reader.h"
 #include "content/gltf/form/gltf_document.h"
 #include "content/gltf/form/gltf_draco.h"
 #include "content/gltf/write/gltf_save.h"
@@ -32,7 +32,7 @@ std::string utf8(const std::string& bytes) {
   return Json::parse(Json(bytes).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
-// Records Assimp's warnings about indices that it clamps or drops, for formats that mesh_check.h does not read.
+// Records Assimp's warnings about indices that it clamps or drops. It reports them in words and nothing else.
 class IndexComplaints : public Assimp::LogStream {
  public:
   void write(const char* message) override {
@@ -49,11 +49,11 @@ class IndexComplaints : public Assimp::LogStream {
   std::string any_;
 };
 
-// Gives Assimp the checked bytes instead of the file that it opens. Some formats name other files (an .obj its
-// materials). These are read from the disk, within the folders that a level may reach.
-class CheckedFile : public Assimp::DefaultIOSystem {
+// Gives Assimp the bytes that were read instead of the file that it opens. Some formats name other files. These are
+// read from the disk, within the folders that a level may reach.
+class GivenFile : public Assimp::DefaultIOSystem {
  public:
-  CheckedFile(const fs::path& file, const Bytes& bytes)
+  GivenFile(const fs::path& file, const Bytes& bytes)
       : file_(file.string()), folder_(file.parent_path()), bytes_(bytes) {}
   bool Exists(const char* name) const override { return allows(name) && DefaultIOSystem::Exists(name); }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
@@ -112,7 +112,7 @@ Result<Primitive> read_primitive(const aiMesh& mesh) {
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
     const aiVector3D& p = mesh.mVertices[v];
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      return Error{"", fmt::format("has a position that is not a finite number, vertex {}; repair the mesh", v)};
+      return Error{"", fmt::format("has a position that is not a finite number, vertex {}", v), "repair the mesh"};
     out.position.emplace_back(p.x, p.y, p.z);
     if (has_normals) {
       const aiVector3D& n = mesh.mNormals[v];
@@ -132,7 +132,7 @@ Result<Primitive> read_primitive(const aiMesh& mesh) {
     if (face.mNumIndices != 3) continue;
     for (unsigned i = 0; i < 3; ++i) {
       if (face.mIndices[i] >= mesh.mNumVertices)
-        return Error{"", "has a triangle with a vertex that does not exist; export it again"};
+        return Error{"", "has a triangle with a vertex that does not exist", "export it again"};
       out.index.push_back(face.mIndices[i]);
     }
   }
@@ -157,9 +157,8 @@ Material read_material(const aiMaterial& in, std::string& texture_name) {
   return out;
 }
 
-// Makes one Level node per scene node; its meshes become the primitives of one Level mesh. `name` is used where an OBJ
-// gives none.
-Status read_nodes(const aiScene& scene, const std::string& name, Level& level) {
+// Makes one Level node per scene node; its meshes become the primitives of one Level mesh.
+Status read_nodes(const aiScene& scene, Level& level) {
   struct Visit {
     const aiNode* node;
     std::int32_t parent;
@@ -170,25 +169,24 @@ Status read_nodes(const aiScene& scene, const std::string& name, Level& level) {
     const Visit visit = stack.back();
     stack.pop_back();
     if (level.nodes.size() >= most(limits::kElements))
-      return Error{"", "has " + beyond(limits::kElements, static_cast<double>(level.nodes.size() + 1), "simplify it")};
+      return error_at("", beyond("has", limits::kElements, static_cast<double>(level.nodes.size() + 1), "simplify it"));
     const std::int32_t here = static_cast<std::int32_t>(level.nodes.size());
     LevelNode node;
     node.parent = visit.parent;
     node.name = visit.node->mName.length > 0 ? utf8(visit.node->mName.C_Str()) : fmt::format("node_{}", here);
-    if (node.name == "defaultobject" && !name.empty()) node.name = name;  // Assimp's default name
     node.local = decompose(visit.node->mTransformation);
-    if (!finite(node.local)) return Error{"", "has a transformation that is not finite; repair the file"};
+    if (!finite(node.local)) return Error{"", "has a transformation that is not finite", "repair the file"};
     if (visit.node->mNumMeshes > 0) {
       LevelMesh mesh;
       mesh.name = node.name;
       for (unsigned m = 0; m < visit.node->mNumMeshes; ++m) {
         const unsigned which = visit.node->mMeshes[m];
-        if (which >= scene.mNumMeshes) return Error{"", "refers to a mesh that it does not have; export it again"};
+        if (which >= scene.mNumMeshes) return Error{"", "refers to a mesh that it does not have", "export it again"};
         Result<Primitive> primitive = read_primitive(*scene.mMeshes[which]);
         if (!primitive) return primitive.error();
         if (primitive->index.empty()) continue;
         vertices += primitive->position.size();
-        if (vertices > (1u << 26)) return Error{"", "has more than 67 million vertices; split it"};
+        if (vertices > (1u << 26)) return Error{"", "has more than 67 million vertices", "split it"};
         mesh.primitives.push_back(std::move(*primitive));
       }
       if (!mesh.primitives.empty()) {
@@ -205,8 +203,6 @@ Status read_nodes(const aiScene& scene, const std::string& name, Level& level) {
 
 // Runs in the child process. Returns the scene as GLB, after a header with each material's texture.
 Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::string& extension) {
-  const Result<MeshFile> file = check_mesh_file(bytes, extension.empty() ? "" : extension.substr(1));
-  if (!file) return file.error();
   IndexComplaints& complaints = listen_to_assimp();
   Assimp::Importer importer;
   // Keeps only what is read below; drops skeletons, animations, lights and cameras.
@@ -216,19 +212,18 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const unsigned steps =
       aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_RemoveComponent;
-  const bool in_memory = file->in_memory || path.empty();
-  if (!in_memory) importer.SetIOHandler(new CheckedFile(path, file->bytes));  // owned by the importer from here on
-  const aiScene* scene =
-      in_memory ? importer.ReadFileFromMemory(file->bytes.data(), file->bytes.size(), steps, file->format.c_str())
-                : importer.ReadFile(path.string(), steps);
+  if (!path.empty()) importer.SetIOHandler(new GivenFile(path, bytes));  // owned by the importer from here on
+  const std::string format = extension.empty() ? "" : extension.substr(1);
+  const aiScene* scene = path.empty() ? importer.ReadFileFromMemory(bytes.data(), bytes.size(), steps, format.c_str())
+                                      : importer.ReadFile(path.string(), steps);
   if (!scene || !scene->mRootNode) {
     std::string why = importer.GetErrorString();
     std::replace(why.begin(), why.end(), '\n', ' ');
-    return Error{"", "cannot be read: " + (why.empty() ? "unknown format" : utf8(why.substr(0, 200))) +
-                         "; export it again, or as glTF"};
+    return Error{"", "cannot be read: " + (why.empty() ? "unknown format" : utf8(why.substr(0, 200))),
+                 "export it again, or as glTF"};
   }
   if (const std::string said = complaints.take(); !said.empty())
-    return Error{"", "has a fault that would change its shape (" + said + "); export it again"};
+    return Error{"", "has a fault that would change its shape (" + said + ")", "export it again"};
   Level level;
   Json textures = Json::array();
   for (unsigned m = 0; m < scene->mNumMaterials; ++m) {
@@ -236,11 +231,11 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
     level.materials.push_back(read_material(*scene->mMaterials[m], texture));
     textures.push_back(texture);
   }
-  if (const Status status = read_nodes(*scene, utf8(path.stem().string()), level); !status) return status.error();
+  if (const Status status = read_nodes(*scene, level); !status) return status.error();
   for (LevelMesh& mesh : level.meshes)
     for (Primitive& primitive : mesh.primitives)
       if (primitive.material >= static_cast<std::int32_t>(level.materials.size())) primitive.material = -1;
-  if (level.meshes.empty()) return Error{"", "has no triangles; a point cloud or an empty mesh cannot be touched"};
+  if (level.meshes.empty()) return Error{"", "has no triangles", "a point cloud or an empty mesh cannot be touched"};
   const Result<Bytes> glb = level_as_glb(level);
   if (!glb) return glb.error();
   const std::string header = textures.dump();
@@ -252,32 +247,43 @@ Result<Bytes> import_scene(const fs::path& path, const Bytes& bytes, const std::
   return out;
 }
 
+// Loads the pictures that materials name; `names` per material, "" for none.
+void add_textures(const std::vector<std::string>& names, const fs::path& folder, Level& level) {
+  for (std::size_t m = 0; m < names.size() && m < level.materials.size(); ++m) {
+    const std::string& name = names[m];
+    if (name.empty()) continue;
+    const Result<fs::path> path = confined_path(folder, name);
+    Result<Image> image = path ? load_image(*path) : Result<Image>(path.error());
+    if (!image) {
+      level.notes.push_back("the texture " + name + " is left out: " + image.error().sentence());
+      continue;
+    }
+    image->name = fs::path(name).filename().string();
+    level.materials[m].base_color_texture = static_cast<std::int32_t>(level.images.size());
+    level.images.push_back(std::move(*image));
+  }
+}
+
+Result<Level> read_here(const Bytes& bytes, const std::string& format, const fs::path& path) {
+  std::vector<std::string> textures;
+  Result<Level> level = read_mesh_file(bytes, format, path, textures);
+  if (level) add_textures(textures, path.empty() ? "/nonexistent" : path.parent_path(), *level);
+  return level;
+}
+
 // Runs in the parent process. The child's answer is checked like any other file.
 Result<Level> receive(const Bytes& answer, const fs::path& folder) {
   Taker in(answer);
   std::uint64_t size = 0;
   std::string header;
   if (!in.take(&size, sizeof size) || size > in.rest().size())
-    return Error{"", "was not imported to its end; try again"};
+    return Error{"", "was not imported to its end", "try again"};
   header.resize(size);
   in.take(header.data(), size);
   Result<Level> level = load_gltf(in.rest(), true, {});
   if (!level) return level;
   level->source.reset();  // the GLB was only the transfer format
-  const Json textures = Json::parse(header);
-  for (std::size_t m = 0; m < textures.size() && m < level->materials.size(); ++m) {
-    const std::string name = textures[m].get<std::string>();
-    if (name.empty()) continue;
-    const Result<fs::path> path = confined_path(folder, name);
-    Result<Image> image = path ? load_image(*path) : Result<Image>(path.error());
-    if (!image) {
-      level->notes.push_back("the texture " + name + " is left out: " + image.error().what);
-      continue;
-    }
-    image->name = fs::path(name).filename().string();
-    level->materials[m].base_color_texture = static_cast<std::int32_t>(level->images.size());
-    level->images.push_back(std::move(*image));
-  }
+  add_textures(Json::parse(header).get<std::vector<std::string>>(), folder, *level);
   return level;
 }
 
@@ -294,9 +300,9 @@ Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::strin
     for (std::size_t v = 0; v < mesh->vertices; ++v)
       for (std::size_t c = 0; c < attribute.width; ++c)
         if (!std::isfinite(at(v, c)))
-          return Error{"Draco data", "has a number in " + semantic + " that is not finite; export it again"};
+          return Error{"Draco data", "has a number in " + semantic + " that is not finite", "export it again"};
     if (semantic == "POSITION" && attribute.width != 3)
-      return Error{"Draco data", "has positions that are not in space; export it again"};
+      return Error{"Draco data", "has positions that are not in space", "export it again"};
     for (std::size_t v = 0; v < mesh->vertices; ++v) {
       if (semantic == "POSITION") primitive.position.emplace_back(at(v, 0), at(v, 1), at(v, 2));
       if (semantic == "NORMAL" && attribute.width == 3) primitive.normal.emplace_back(at(v, 0), at(v, 1), at(v, 2));
@@ -304,7 +310,7 @@ Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::strin
     }
   }
   if (primitive.position.empty() || primitive.index.empty())
-    return Error{"Draco data", "has no triangles to touch; export a mesh with faces"};
+    return Error{"Draco data", "has no triangles to touch", "export a mesh with faces"};
   for (const vec3 normal : primitive.normal)
     if (std::abs(length(normal) - 1.0f) > 0.006f) {
       primitive.normal.clear();  // recomputed at spawn
@@ -319,10 +325,15 @@ Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::strin
   return level;
 }
 
-Result<Level> import_mesh_here(const Bytes& bytes, const std::string& extension) {
+Result<Level> import_by_assimp(const Bytes& bytes, const std::string& extension) {
   const Result<Bytes> answer = import_scene({}, bytes, extension);
   if (!answer) return answer.error();
   return receive(*answer, "/nonexistent");
+}
+
+Result<Level> import_mesh_here(const Bytes& bytes, const std::string& extension) {
+  const std::string format = extension.empty() ? "" : extension.substr(1);
+  return is_read_here(format) ? read_here(bytes, format, {}) : import_by_assimp(bytes, extension);
 }
 
 Result<Level> import_mesh(const fs::path& path) {
@@ -333,11 +344,13 @@ Result<Level> import_mesh(const fs::path& path) {
   if (!bytes) return bytes.error();
   try {
     if (extension == ".drc") return import_draco(*bytes, path.stem().string());
+    const std::string format = extension.empty() ? "" : extension.substr(1);
+    if (is_read_here(format)) return read_here(*bytes, format, path);
     const Result<Bytes> answer = in_isolation(bytes->size(), [&] { return import_scene(path, *bytes, extension); });
     if (!answer) return answer.error();
     return receive(*answer, path.parent_path());
   } catch (const std::exception& e) {
-    return Error{"", std::string("cannot be read: ") + e.what() + "; export it again, or as glTF"};
+    return Error{"", std::string("cannot be read: ") + e.what(), "export it again, or as glTF"};
   }
 }
 

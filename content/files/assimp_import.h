@@ -1,5 +1,6 @@
-// Loads other mesh formats (.obj, .ply, .off, .stl, .fbx, ...) with Assimp, and bare .drc files with Draco. The Levels
-// have no source document, one node per mesh instance, and core materials. The libraries run in a child process.
+// Loads other mesh formats: .obj, .off, .ply and .stl are read here (mesh_reader.h), the others (.fbx, .dae, ...) by
+// Assimp, and bare .drc files by Draco. The Levels have no source document, one node per mesh instance, and core
+// materials. Assimp runs in a child process.
 #pragma once
 
 #include <filesystem>
@@ -15,6 +16,8 @@ Result<Level> import_mesh(const std::filesystem::path& path);
 // The same from memory, with `extension` ".ply", ".obj", ... It runs in this process, so that a fuzzer sees a crash.
 // Other files named by the input are not opened.
 Result<Level> import_mesh_here(const Bytes& bytes, const std::string& extension);
+// By Assimp, whatever the format: a second reader for tests.
+Result<Level> import_by_assimp(const Bytes& bytes, const std::string& extension);
 Result<Level> import_draco(std::span<const std::uint8_t> bytes, const std::string& name);
 
 }  // namespace pliant

@@ -48,17 +48,18 @@ class MemoryStream final : public Imf::IStream {
 };
 
 Status check_header(const ExrHeader& header, std::size_t size, const std::string& name) {
-  if (header.deep) return Error{name, "holds deep samples instead of a flat picture; flatten it"};
+  if (header.deep) return Error{name, "holds deep samples instead of a flat picture", "flatten it"};
   if (header.width > kMaxPanoramaWidth || header.height > kMaxPanoramaHeight ||
       static_cast<std::uint64_t>(header.width * header.height) > most(limits::kPanoramaPixels))
-    return Error{name, fmt::format("has {} x {} pixels; use at most {} x {}", header.width, header.height,
-                                   kMaxPanoramaWidth, most(limits::kPanoramaPixels) / kMaxPanoramaWidth)};
-  if (header.width * header.height > kFreePixels + kExrPixelsPerByte * static_cast<std::int64_t>(size))
     return Error{
-        name, fmt::format("claims {} x {} pixels in {} bytes; the file is damaged", header.width, header.height, size)};
+        name, fmt::format("has {} x {} pixels", header.width, header.height),
+        fmt::format("use at most {} x {}", kMaxPanoramaWidth, most(limits::kPanoramaPixels) / kMaxPanoramaWidth)};
+  if (header.width * header.height > kFreePixels + kExrPixelsPerByte * static_cast<std::int64_t>(size))
+    return Error{name, fmt::format("claims {} x {} pixels in {} bytes", header.width, header.height, size),
+                 "the file is damaged"};
   std::int64_t pixel = 0;
   for (const auto& [channel, bytes] : header.channels) pixel += bytes;
-  if (pixel * header.width * 256 > kMaxRowBlock) return Error{name, "has too many channels; keep R, G and B"};
+  if (pixel * header.width * 256 > kMaxRowBlock) return Error{name, "has too many channels", "keep R, G and B"};
   return Done{};
 }
 
@@ -107,7 +108,7 @@ Result<Panorama> decode_panorama(std::span<const std::uint8_t> bytes, const std:
   if (const Status status = check_header(*header, bytes.size(), name); !status) return status.error();
   const auto has = [&](const char* channel) { return header->channels.count(channel) != 0; };
   const bool color = has("R") || has("G") || has("B"), luminance = !color && has("Y");
-  if (!color && !luminance) return Error{name, "has neither R, G, B nor luminance (Y); save it as an RGB picture"};
+  if (!color && !luminance) return Error{name, "has neither R, G, B nor luminance (Y)", "save it as an RGB picture"};
 
   static std::once_flag limited;
   std::call_once(limited, [] {
@@ -129,7 +130,7 @@ Result<Panorama> decode_panorama(std::span<const std::uint8_t> bytes, const std:
     std::string what = e.what();
     for (char& c : what)
       if (c == '\n') c = ' ';
-    return Error{name, "is a damaged OpenEXR file (" + what.substr(0, 200) + "); save it again"};
+    return Error{name, "is a damaged OpenEXR file (" + what.substr(0, 200) + ")", "save it again"};
   }
   std::size_t mended = 0;
   for (float& value : out.rgb)

@@ -101,12 +101,11 @@ bool read_strings(std::span<const std::uint8_t> value) {
 }  // namespace
 
 Result<ExrHeader> read_exr_header(std::span<const std::uint8_t> bytes, const std::string& name) {
-  const auto damaged = [&](const std::string& what) {
-    return Error{name, what + "; the file is damaged, save it again"};
-  };
+  const auto damaged = [&](const std::string& what) { return Error{name, what, "the file is damaged, save it again"}; };
   ByteReader in(bytes);
   const std::optional<std::int32_t> magic = in.integer(), version = in.integer();
-  if (!magic || !version || *magic != 20000630) return Error{name, "is no OpenEXR file; convert the panorama to .exr"};
+  if (!magic || !version || *magic != 20000630)
+    return Error{name, "is no OpenEXR file", "convert the panorama to .exr"};
   ExrHeader header;
   header.deep = (*version & 0x800) != 0;
   const bool multi_part = (*version & 0x1000) != 0;

@@ -40,34 +40,27 @@ Result<Bytes> read_file(const fs::path& path, const Limit& limit) {
 Result<Bytes> read_beginning(const fs::path& path, const Limit& limit, std::uint64_t wanted) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (error || !fs::exists(status)) return Error{path.string(), "no such file; check the path"};
-  if (!fs::is_regular_file(status)) return Error{path.string(), "is not a regular file; name a file"};
+  if (error || !fs::exists(status)) return Error{path.string(), "no such file", "check the path"};
+  if (!fs::is_regular_file(status)) return Error{path.string(), "is not a regular file", "name a file"};
   const std::uint64_t size = std::min<std::uint64_t>(fs::file_size(path, error), wanted);
-  if (error) return Error{path.string(), "its size cannot be told: " + error.message() + "; check the path"};
+  if (error) return Error{path.string(), "its size cannot be told: " + error.message(), "check the path"};
   if (size > most(limit))
-    return Error{path.string(), "has " + beyond(limit, static_cast<double>(size), "use a smaller file")};
+    return error_at(path.string(), beyond("has", limit, static_cast<double>(size), "use a smaller file"));
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file)
-    return Error{path.string(), fmt::format("cannot be opened: {}; check its permissions", std::strerror(errno))};
+    return Error{path.string(), fmt::format("cannot be opened: {}", std::strerror(errno)), "check its permissions"};
   Bytes bytes(size);
   if (std::fread(bytes.data(), 1, size, file.get()) != size)
-    return Error{path.string(), "could not be read to its end; check the disk"};
+    return Error{path.string(), "could not be read to its end", "check the disk"};
   return bytes;
 }
 
-std::string why_not_written(int error) {
-  const char* cure = "check the folder and its permissions";
+Error not_written(std::string where, const std::string& what, int error) {
+  const char *cure = "check the folder and its permissions", *code = kDiskFull;
   if (error == ENOSPC || error == EDQUOT) cure = "free some space";
   if (error == EFBIG) cure = "raise the limit on the size of a file (`ulimit -f`)";
-  return fmt::format("{}; {}", std::generic_category().message(error), cure);
-}
-
-bool wants_room(const std::string& sentence) {
-  if (sentence.find("check the space left") != std::string::npos) return true;
-  constexpr int kFull[] = {ENOSPC, EDQUOT, EFBIG};
-  return std::any_of(std::begin(kFull), std::end(kFull), [&](int error) {
-    return sentence.find(std::generic_category().message(error)) != std::string::npos;
-  });
+  if (error != ENOSPC && error != EDQUOT && error != EFBIG) code = "file.unwritable";
+  return {std::move(where), what + ": " + std::generic_category().message(error), cure, code};
 }
 
 fs::path numbered(const fs::path& path, int number) {
@@ -131,16 +124,16 @@ void forget(const std::vector<Replaced>& all) {
 Status write_files(const std::vector<FileToWrite>& files, Existing existing) {
   std::error_code ignored;
   const auto taken = [](const fs::path& path) {
-    return Error{path.string(), "is there already; name another, or replace it with --force"};
+    return Error{path.string(), "is there already", "name another, or replace it with --force"};
   };
   for (const FileToWrite& each : files) {
     if (existing == Existing::kRefuse && fs::exists(fs::symlink_status(each.path, ignored))) return taken(each.path);
     if (fs::is_directory(fs::symlink_status(each.path, ignored)))
-      return Error{each.path.string(), "is a folder; name a file"};
+      return Error{each.path.string(), "is a folder", "name a file"};
   }
   std::vector<fs::path> aside;
   const auto fail = [&](const fs::path& path, const char* what) {
-    Error error{path.string(), fmt::format("{}: {}", what, why_not_written(errno))};
+    Error error = not_written(path.string(), what, errno);
     for (const fs::path& each : aside) fs::remove(each, ignored);
     return error;
   };
@@ -180,23 +173,24 @@ Result<fs::path> confined_file(const fs::path& folder, const fs::path& file) {
   const std::string name = file.string();
   std::error_code error;
   const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
-  if (error) return Error{folder.string(), "cannot be resolved: " + error.message() + "; check the path"};
+  if (error) return Error{folder.string(), "cannot be resolved: " + error.message(), "check the path"};
   const fs::path whole = fs::weakly_canonical(root / file, error);
-  if (error) return Error{name, "cannot be resolved: " + error.message() + "; check the path"};
+  if (error) return Error{name, "cannot be resolved: " + error.message(), "check the path"};
   const fs::path from_root = whole.lexically_relative(root);
   if (file.is_absolute() || from_root.empty() || *from_root.begin() == "..")
-    return Error{name, "lies outside the level's folder, where a level may not reach; copy the file beside the level"};
+    return Error{name, "lies outside the level's folder, where a level may not reach",
+                 "copy the file beside the level"};
   return whole;
 }
 
 Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {
-  if (uri.empty()) return Error{uri, "is an empty URI; name a file"};
+  if (uri.empty()) return Error{uri, "is an empty URI", "name a file"};
   const auto confined = [&](const std::string& name) -> Result<fs::path> {
-    if (name.find('\0') != std::string::npos) return Error{"URI", "contains a zero byte; name a file"};
+    if (name.find('\0') != std::string::npos) return Error{"URI", "contains a zero byte", "name a file"};
     // A colon before any slash makes a scheme (RFC 3986, 4.2).
     const std::size_t colon = name.find(':');
     if (colon != std::string::npos && name.find('/') > colon)
-      return Error{uri, "names another place than the level's folder; put the file beside the level"};
+      return Error{uri, "names another place than the level's folder", "put the file beside the level"};
     return confined_file(folder, name);
   };
   // A file name may contain a literal %; scripts and panoramas are named without encoding.
@@ -214,7 +208,7 @@ Result<fs::path> confined_path(const fs::path& folder, const std::string& uri) {
     const int high = i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
     const int low = i + 2 < uri.size() ? hex_digit(uri[i + 2]) : -1;
     if (high < 0 || low < 0)
-      return Error{uri, "is not a valid URI (a % without two hexadecimal digits); write %25 for a % in a name"};
+      return Error{uri, "is not a valid URI (a % without two hexadecimal digits)", "write %25 for a % in a name"};
     decoded += static_cast<char>(high * 16 + low);
     i += 2;
   }

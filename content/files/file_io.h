@@ -19,10 +19,10 @@ Result<Bytes> read_file(const std::filesystem::path& path, const Limit& limit = 
 // Reads at most the first `wanted` bytes; only these count for the limit.
 Result<Bytes> read_beginning(const std::filesystem::path& path, const Limit& limit, std::uint64_t wanted);
 
-// A sentence for an `errno`: why a file cannot be written, and what to do.
-std::string why_not_written(int error);
-// Whether an error sentence from here means that a disk, a quota or a file size limit was reached.
-bool wants_room(const std::string& sentence);
+// Code of an error: a disk, a quota or a file size limit was reached.
+inline constexpr const char* kDiskFull = "disk.full";
+// The error for an `errno`: "WHERE: WHAT: No space left on device; free some space".
+Error not_written(std::string where, const std::string& what, int error);
 
 // "a.glb" -> "a-2.glb": an alternative for a name in use.
 std::filesystem::path numbered(const std::filesystem::path& path, int number);

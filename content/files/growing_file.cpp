@@ -36,7 +36,7 @@ Result<GrowingFile> GrowingFile::create(const fs::path& path) {
   GrowingFile file;
   file.path_ = path;
   file.file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);  // always a new file
-  if (file.file_ < 0) return Error{path.string(), "cannot be written: " + why_not_written(errno)};
+  if (file.file_ < 0) return not_written(path.string(), "cannot be written", errno);
   ::flock(file.file_, LOCK_EX | LOCK_NB);  // without lock support, files of killed processes are never removed
   return file;
 }
@@ -73,7 +73,7 @@ void GrowingFile::flush() {
 
 void GrowingFile::fail(int error, std::size_t written) {
   kept_ = static_cast<std::size_t>(std::upper_bound(ends_.begin(), ends_.end(), written) - ends_.begin());
-  failure_ = Error{path_.string(), "could not be written to its end: " + why_not_written(error)};
+  failure_ = not_written(path_.string(), "could not be written to its end", error);
   const std::size_t whole = flushed_ + (kept_ > 0 ? ends_[kept_ - 1] : 0);
   if (::ftruncate(file_, static_cast<off_t>(whole)) != 0) failure_->what += " (its last row is not whole)";
 }
@@ -89,7 +89,7 @@ bool GrowingFile::end_instead(std::size_t records, std::string_view bytes) {
 Status GrowingFile::close() {
   flush();
   if (file_ >= 0 && ::close(std::exchange(file_, -1)) != 0 && !failure_)
-    failure_ = Error{path_.string(), "could not be written to its end: " + why_not_written(errno)};
+    failure_ = not_written(path_.string(), "could not be written to its end", errno);
   if (failure_) return *failure_;
   return Done{};
 }

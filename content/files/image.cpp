@@ -134,29 +134,31 @@ std::uint64_t decoded_size(std::span<const std::uint8_t> bytes) {
 
 Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
   if (image_format(bytes) == ImageFormat::kUnknown)
-    return Error{name, "is neither PNG nor JPEG; convert the picture to one of them"};
-  if (bytes.size() > 0x7fffffff) return Error{name, "is too large a picture; use one below 2 GB"};
+    return Error{name, "is neither PNG nor JPEG", "convert the picture to one of them"};
+  if (bytes.size() > 0x7fffffff) return Error{name, "is too large a picture", "use one below 2 GB"};
   if (!is_sound(bytes))
-    return Error{name, fmt::format("is a {} that is cut off or damaged; save it again",
-                                   image_format(bytes) == ImageFormat::kPng ? "PNG" : "JPEG")};
+    return Error{
+        name,
+        fmt::format("is a {} that is cut off or damaged", image_format(bytes) == ImageFormat::kPng ? "PNG" : "JPEG"),
+        "save it again"};
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
   if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) || width <= 0 || height <= 0)
-    return Error{name, fmt::format("is a damaged picture ({}); save it again", stbi_failure_reason())};
+    return Error{name, fmt::format("is a damaged picture ({})", stbi_failure_reason()), "save it again"};
   const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   const bool two_bytes = stbi_is_16_bit_from_memory(bytes.data(), size) != 0;
   const std::uint64_t allowed = most(limits::kPicturePixels) / (two_bytes ? 2 : 1);
   if (width > 16384 || height > 16384 || pixels > allowed)
-    return Error{name, fmt::format("has {} x {} pixels, more than are read; use at most 8192 x 8192", width, height)};
+    return Error{name, fmt::format("has {} x {} pixels, more than are read", width, height), "use at most 8192 x 8192"};
   if (pixels > bytes.size() * kPixelsPerByte)
-    return Error{name, fmt::format("claims {} x {} pixels in {} bytes; the picture is damaged", width, height, size)};
+    return Error{name, fmt::format("claims {} x {} pixels in {} bytes", width, height, size), "the picture is damaged"};
   const BoundedBlocks bounded(
       largest_block(bytes.size(), static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), two_bytes));
   const std::unique_ptr<stbi_uc, FreePixels> decoded(
       stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4));
   if (!decoded && BoundedBlocks::refused())
-    return Error{name, fmt::format("unpacks to far more than its {} x {} pixels; save it again", width, height)};
-  if (!decoded) return Error{name, fmt::format("is a damaged picture ({}); save it again", stbi_failure_reason())};
+    return Error{name, fmt::format("unpacks to far more than its {} x {} pixels", width, height), "save it again"};
+  if (!decoded) return Error{name, fmt::format("is a damaged picture ({})", stbi_failure_reason()), "save it again"};
   Image image;
   image.name = name;
   image.width = static_cast<std::uint32_t>(width);

@@ -62,6 +62,17 @@ void end_after(double seconds) {
   setrlimit(RLIMIT_CPU, &limit);
 }
 
+// Sends the parts of an error: each with its length before it.
+bool refuse(int end, const Error& error) {
+  Bytes out;
+  for (const std::string* part : {&error.where, &error.what, &error.cure, &error.code}) {
+    const std::uint64_t size = part->size();
+    append_bytes(out, &size, sizeof size);
+    append_bytes(out, part->data(), size);
+  }
+  return write_all(end, &kRefused, 1) && write_all(end, out.data(), out.size());
+}
+
 [[noreturn]] void child(int end, std::uint64_t memory, double seconds, const std::function<Result<Bytes>()>& work) {
 #ifndef PLIANT_SANITIZED  // sanitizers reserve more address space than any limit
   const rlimit limit{memory, memory};
@@ -83,18 +94,28 @@ void end_after(double seconds) {
   bool sent = false;
   try {
     const Result<Bytes> result = work();
-    const std::string sentence = result ? "" : result.error().where + '\n' + result.error().what;
     sent = result ? write_all(end, &kDone, 1) && write_all(end, result->data(), result->size())
-                  : write_all(end, &kRefused, 1) && write_all(end, sentence.data(), sentence.size());
+                  : refuse(end, result.error());
   } catch (const std::bad_alloc&) {
-    const std::string sentence =
-        "\nneeds more memory than a file of this size may use; simplify it, or convert it to glTF";
-    sent = write_all(end, &kRefused, 1) && write_all(end, sentence.data(), sentence.size());
+    sent =
+        refuse(end, {"", "needs more memory than a file of this size may use", "simplify it, or convert it to glTF"});
   } catch (const std::exception& e) {
-    const std::string sentence = std::string("\ncannot be read: ") + e.what();
-    sent = write_all(end, &kRefused, 1) && write_all(end, sentence.data(), sentence.size());
+    sent = refuse(end, {"", std::string("cannot be read: ") + e.what()});
   }
   _exit(sent ? 0 : 1);
+}
+
+// The inverse of refuse().
+Error refusal(const Bytes& answer) {
+  Error error;
+  Taker in(answer);
+  for (std::string* part : {&error.where, &error.what, &error.cure, &error.code}) {
+    std::uint64_t size = 0;
+    if (!in.take(&size, sizeof size) || size > in.rest().size()) break;
+    part->resize(size);
+    in.take(part->data(), size);
+  }
+  return error;
 }
 
 using Clock = std::chrono::steady_clock;
@@ -180,11 +201,11 @@ Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<B
   for (int attempt = 1; attempt == 1 || ended.stuck; ++attempt) {
     int ends[2];
     if (pipe(ends) != 0)
-      return Error{"", std::string("cannot be read: no pipe: ") + std::strerror(errno) + "; close other programs"};
+      return Error{"", std::string("cannot be read: no pipe: ") + std::strerror(errno), "close other programs"};
     const pid_t pid = fork();
     if (pid < 0) {
       close(ends[0]), close(ends[1]);
-      return Error{"", std::string("cannot be read: no process: ") + std::strerror(errno) + "; close other programs"};
+      return Error{"", std::string("cannot be read: no process: ") + std::strerror(errno), "close other programs"};
     }
     if (pid == 0) {
       close(ends[0]);
@@ -197,16 +218,14 @@ Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<B
   }
   const int status = ended.status;
   const bool spent = WIFSIGNALED(status) && (WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGXCPU);
-  if (ended.late || spent) return Error{"", "takes too long to read; the file is damaged, or too large"};
+  if (ended.late || spent) return Error{"", "takes too long to read", "the file is damaged, or too large"};
   Bytes& answer = ended.answer;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.empty())
-    return Error{"", "crashed the importer; the file is damaged, export it again"};
+    return Error{"", "crashed the importer", "the file is damaged, export it again"};
   const char verdict = static_cast<char>(answer.front());
   answer.erase(answer.begin());
   if (verdict == kDone) return std::move(answer);
-  const std::string sentence(answer.begin(), answer.end());
-  const std::size_t line = std::min(sentence.find('\n'), sentence.size());
-  return Error{sentence.substr(0, line), sentence.substr(std::min(line + 1, sentence.size()))};
+  return refusal(answer);
 }
 
 void append_bytes(Bytes& out, const void* data, std::size_t size) {

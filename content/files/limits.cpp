@@ -24,12 +24,15 @@ std::uint64_t most(const Limit& limit) {
   return static_cast<std::uint64_t>(limit.scales ? limit.most * g_factor : limit.most);
 }
 
-std::string beyond(const Limit& limit, double found, const std::string& cure) {
-  std::string text = fmt::format("{:.0f} {}, more than the {} that are taken ({}); {}", found, limit.unit, most(limit),
-                                 limit.reason, cure);
+Note beyond(const std::string& what, const Limit& limit, double found, const std::string& cure) {
+  Note note{fmt::format("{} {:.0f} {}, more than the {} that are taken ({})", what, found, limit.unit, most(limit),
+                        limit.reason),
+            cure,
+            "limit.exceeded",
+            {}};
   if (limit.scales && found <= limit.most * kLimitFactor.max)
-    text += fmt::format(", or allow it with --limits {}", std::ceil(found / limit.most));
-  return text;
+    note.cure += fmt::format(", or allow it with --limits {}", std::ceil(found / limit.most));
+  return note;
 }
 
 }  // namespace pliant

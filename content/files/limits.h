@@ -80,7 +80,7 @@ double limit_factor();
 // The limit times the current factor.
 std::uint64_t most(const Limit& limit);
 
-// "1900000 elements, more than the 100000 that are read (REASON); CURE, or allow it with --limits 19".
-std::string beyond(const Limit& limit, double found, const std::string& cure);
+// "WHAT 1900000 elements, more than the 100000 that are taken (REASON); CURE, or allow it with --limits 19".
+Note beyond(const std::string& what, const Limit& limit, double found, const std::string& cure);
 
 }  // namespace pliant

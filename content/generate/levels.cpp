@@ -276,7 +276,7 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   std::error_code code;
   std::filesystem::create_directories(levels, code);
   std::filesystem::create_directories(environments, code);
-  if (code) return Error{folder.string(), "cannot make the folders levels/ and environments/; check its permissions"};
+  if (code) return Error{folder.string(), "cannot make the folders levels/ and environments/", "check its permissions"};
 
   if (Status s = save_panorama(sky(detail.sky_width), environments / "sky.exr"); !s) return s;
   if (Status s = save_panorama(terrace(2 * detail.sky_width), environments / "terrace.exr"); !s) return s;

@@ -89,8 +89,8 @@ Status save_panorama(const Panorama& panorama, const std::filesystem::path& path
     file.setFrameBuffer(pixels.data(), 1, panorama.width);
     file.writePixels(static_cast<int>(panorama.height));
   } catch (const std::exception& e) {  // the library reports errors only by exceptions
-    return Error{path.string(),
-                 std::string("cannot be written (") + e.what() + "); check the folder and its permissions"};
+    return Error{path.string(), std::string("cannot be written (") + e.what() + ")",
+                 "check the folder and its permissions"};
   }
   return Done{};
 }

@@ -1,6 +1,7 @@
 #include "content/keys/extension_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -8,6 +9,7 @@
 #include "content/keys/enum_words.h"
 #include "content/level/spawn_soft.h"
 #include "content/mesh/mesh_crease.h"
+#include "content/tets/tet_file.h"
 
 namespace pliant {
 
@@ -153,9 +155,13 @@ std::vector<Key> deformable_keys() {
              fmt::format("radius R of the field; 0: {} of the diagonal of the object's box", kDefaultReach)));
   keys.push_back(
       number("volume", "1", R::kVolume, d(&D::volume), "share of the volume conserved by the shape `volume`"));
+  std::vector<std::string> depending;
+  for (std::size_t i = 0; i < std::size(kShapeRows); ++i)
+    if (depends_on_contact(static_cast<Shape>(i))) depending.emplace_back(kShapeRows[i].word);
   keys.push_back(number("contact_radius", "m", {R::kContactRadius, {1e-4, 1.0}}, d(&D::contact_radius),
-                        "indenter's radius of the shapes punch, hertz and kelvinlet, beside a probe's own contact "
-                        "circle; 0: a fifth of `reach`"));
+                        fmt::format("indenter's radius of the shapes {}, beside a probe's own contact circle; 0: a "
+                                    "fifth of `reach`",
+                                    listed(depending))));
   keys.push_back(number("friction_static", "1", kFrictionRange, d(&D::friction_static),
                         "coefficient of static friction, at least that of sliding"));
   keys.push_back(
@@ -186,16 +192,19 @@ std::vector<Key> deformable_keys() {
   return keys;
 }
 
-std::string settle_deformable(void* owner) {
+std::optional<Note> settle_deformable(void* owner) {
   Deformable& it = *static_cast<LevelNode*>(owner)->deformable;
   if (it.friction_sliding > it.friction_static)
-    return fmt::format("friction_sliding ({}) is above friction_static ({}); lower it, or set `friction` for both",
-                       it.friction_sliding, it.friction_static);
+    return Note{
+        fmt::format("friction_sliding ({}) is above friction_static ({})", it.friction_sliding, it.friction_static),
+        "lower it, or set `friction` for both", "key.value", "friction_sliding"};
   if (it.young > 0.0) it.stiffness = calibrated_stiffness(it.young, it.poisson, it.thickness);
   if (it.young > 0.0 && !DeformableRange::kStiffness.holds(it.stiffness))
-    return fmt::format("young ({:g} Pa) makes a stiffness of {:.3g} N/m; it must be in the range [{}, {}] N/m",
-                       it.young, it.stiffness, DeformableRange::kStiffness.min, DeformableRange::kStiffness.max);
-  return "";
+    return Note{fmt::format("young ({:g} Pa) makes a stiffness of {:.3g} N/m", it.young, it.stiffness),
+                fmt::format("it must be in the range [{}, {}] N/m", DeformableRange::kStiffness.min,
+                            DeformableRange::kStiffness.max),
+                "key.value", "young"};
+  return std::nullopt;
 }
 
 std::vector<Key> probe_keys() {
@@ -282,8 +291,9 @@ std::vector<Key> soft_body_keys() {
                         "fills all that the surface encloses, the cavity of a thin wall too, or only the wall"));
   keys.push_back(number("thickness", "m", {SoftBodyRange::kThickness, {1e-4, 0.5}}, s(&S::thickness),
                         "of a wall, inwards from the surface; 0: the wall as the surface has it"));
-  keys.push_back(
-      text("mesh", KeyType::kText, s(&S::mesh), "tetrahedra file, instead of `cell`, relative to the level"));
+  keys.push_back(text(
+      "mesh", KeyType::kText, s(&S::mesh),
+      fmt::format("tetrahedra file ({}), instead of `cell`, relative to the level", fmt::join(tet_endings(), ", "))));
   keys.push_back(
       box("pinned", s(&S::pinned), "pinned part: a box in the object frame; left out: the attribute _PINNED"));
   keys.push_back(
@@ -397,25 +407,26 @@ Extension extension(std::string name, std::string doc, std::optional<T> Owner::*
   out.keys = std::move(keys);
   out.present = [slot](const void* owner) { return (static_cast<const Owner*>(owner)->*slot).has_value(); };
   out.add = [slot](void* owner) { (static_cast<Owner*>(owner)->*slot).emplace(); };
-  out.settle = [](void*) { return std::string(); };
+  out.settle = [](void*) { return std::optional<Note>(); };
   return out;
 }
 
-std::string settle_device(void* owner) {
+std::optional<Note> settle_device(void* owner) {
   const HapticDevice& it = *static_cast<LevelNode*>(owner)->device;
-  return it.driver == DriverKind::kScript && it.file.empty()
-             ? "has the driver script without a `file`; name the CSV file"
-             : "";
+  if (it.driver != DriverKind::kScript || !it.file.empty()) return std::nullopt;
+  return Note{"has the driver script without a `file`", "name the CSV file", "key.missing", "file"};
 }
 
 template <class T>
-std::string settle_friction(const T& it) {
-  return it.friction_sliding > it.friction_static ? "friction_sliding is above friction_static; lower it" : "";
+std::optional<Note> settle_friction(const T& it) {
+  if (!(it.friction_sliding > it.friction_static)) return std::nullopt;
+  return Note{"friction_sliding is above friction_static", "lower it", "key.value", "friction_sliding"};
 }
 
-std::string settle_motion(void* owner) {
+std::optional<Note> settle_motion(void* owner) {
   const NodeMotion& it = *static_cast<LevelNode*>(owner)->motion;
-  return it.script.empty() || it.animation.empty() ? "" : "gives both script and animation; keep one";
+  if (it.script.empty() || it.animation.empty()) return std::nullopt;
+  return Note{"gives both script and animation", "keep one", "key.both", {}};
 }
 
 std::vector<Extension> make_table() {
@@ -444,7 +455,7 @@ std::vector<Extension> make_table() {
   simulation.keys = simulation_keys();
   simulation.present = [](const void*) { return true; };
   simulation.add = [](void*) {};
-  simulation.settle = [](void*) { return std::string(); };
+  simulation.settle = [](void*) { return std::optional<Note>(); };
   table.push_back(simulation);
   return table;
 }
@@ -454,6 +465,13 @@ std::vector<Extension> make_table() {
 double calibrated_stiffness(double young, double poisson, double thickness) {
   const double layer = thickness > 0.0 ? bonded_layer_factor(kYoungRadius / thickness, poisson) : 1.0;
   return 2.0 * young / (1.0 - poisson * poisson) * kYoungRadius * layer;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    out += (i == 0 ? "" : i + 1 < words.size() ? ", " : " and ") + words[i];
+  return out;
 }
 
 const std::vector<Extension>& extension_table() {

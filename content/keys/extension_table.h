@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,9 +35,9 @@ struct Extension {
   bool on_scene = false;
   std::vector<Key> keys;
   std::function<bool(const void*)> present;
-  std::function<void(void*)> add;            // adds it with defaults
-  std::function<std::string(void*)> settle;  // after keys were set: computes derived values; returns an error if keys
-                                             // conflict
+  std::function<void(void*)> add;  // adds it with defaults
+  // After keys were set: computes derived values. Returns the fault if keys conflict, `of` the key to change.
+  std::function<std::optional<Note>(void*)> settle;
 };
 
 const std::vector<Extension>& extension_table();
@@ -47,18 +48,21 @@ const Key* find_key(const Extension& extension, const std::string& name);
 // The key of NODE.EXTENSION.KEY; the node's name may contain dots. nullptr: none.
 const Key* find_key_of_path(const std::string& path);
 
-// Returns "" or an error.
-std::string check_value(const Key& key, const Json& value);
+std::optional<Note> check_value(const Key& key, const Json& value);  // the fault
 std::string range_text(const Key& key);
-// Returns "" or a question if a number (or any component of a vector or point) is outside the usual range, with the
-// unit that was perhaps meant.
-std::string doubt(const Key& key, const Json& value);
+// A question if a number (or any component of a vector or point) is outside the usual range, with the unit that was
+// perhaps meant.
+std::optional<Note> doubt(const Key& key, const Json& value);
 std::string usual_text(const Key& key);
-// The closest of `names`, as "; did you mean X?", or "" if none is close.
+// "a, b and c".
+std::string listed(const std::vector<std::string>& words);
+// The closest of `names`, or "" if none is close.
+std::string nearest(const std::string& word, const std::vector<std::string>& names);
+// "did you mean X?", or "".
 std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 // "unknown `what` 'word' in `in`; did you mean X?", or, if none is close, "...; `all` are: A, B, C".
-std::string unknown(const std::string& what, const std::string& word, const std::string& in, const std::string& all,
-                    const std::vector<std::string>& names);
-std::string unknown_key(const Extension& extension, const std::string& word);
+Note unknown(const std::string& what, const std::string& word, const std::string& in, const std::string& all,
+             const std::vector<std::string>& names);
+Note unknown_key(const Extension& extension, const std::string& word);
 
 }  // namespace pliant

@@ -32,12 +32,12 @@ constexpr Prefixed kMeant[] = {
     {"rad", "degrees", kDegree}, {"N/m", "N/mm", 1e3},    {"kg/m3", "g/cm3", 1e3}, {"kg", "g", 1e-3}, {"N", "mN", 1e-3},
     {"Hz", "kHz", 1e3},          {"m/s2", "cm/s2", 1e-2}, {"N m", "N mm", 1e-3}};
 
-// "; kPa meant? then write 5000", if that would be a usual value.
+// "kPa meant? then write 5000", if that would be a usual value.
 std::string unit_question(const Key& key, double value) {
   if (!std::isfinite(key.usual.min)) return "";
   for (const Prefixed& each : kMeant)
     if (key.unit == each.unit && key.usual.holds(value * each.factor) && key.range.holds(value * each.factor))
-      return fmt::format("; {} meant? then write {:.6g}", each.meant, value * each.factor);
+      return fmt::format("{} meant? then write {:.6g}", each.meant, value * each.factor);
   return "";
 }
 
@@ -53,16 +53,16 @@ std::string usual_text(const Key& key) {
   return fmt::format("{:g} to {:g}", key.usual.min, key.usual.max);
 }
 
-std::string doubt(const Key& key, const Json& value) {
+std::optional<Note> doubt(const Key& key, const Json& value) {
   if (value.is_array()) {
     for (const Json& each : value)
-      if (const std::string found = doubt(key, each); !found.empty()) return found;
-    return "";
+      if (std::optional<Note> found = doubt(key, each)) return found;
+    return std::nullopt;
   }
-  if (!value.is_number() || value == 0 || key.usual.holds(value.get<double>())) return "";
+  if (!value.is_number() || value == 0 || key.usual.holds(value.get<double>())) return std::nullopt;
   const std::string unit = key.unit.empty() || key.unit == "1" ? "" : " " + key.unit;
-  return fmt::format("is {:g}{}, which is unusual ({}{})", value.get<double>(), unit, usual_text(key), unit) +
-         unit_question(key, value.get<double>());
+  return Note{fmt::format("is {:g}{}, which is unusual ({}{})", value.get<double>(), unit, usual_text(key), unit),
+              unit_question(key, value.get<double>()), "key.unusual", key.name};
 }
 
 std::string range_text(const Key& key) {
@@ -71,61 +71,65 @@ std::string range_text(const Key& key) {
   return fmt::format("{}{}, {}", key.range.above_min ? "(" : "[", key.range.min, key.range.max) + (high ? "]" : ")");
 }
 
-std::string check_value(const Key& key, const Json& value) {
+std::optional<Note> check_value(const Key& key, const Json& value) {
+  const std::optional<Note> fine;
+  const auto fault = [&](std::string what, std::string cure = {}) -> std::optional<Note> {
+    return Note{std::move(what), std::move(cure), "key.value", key.name};
+  };
   const auto number = [&] {
     const double it = value.get<double>();
-    return key.range.holds(it) ? std::string()
-                               : fmt::format("must be in the range {}{}; got {}", range_text(key),
-                                             key.unit.empty() || key.unit == "1" ? "" : " " + key.unit, value.dump()) +
-                                     unit_question(key, it);
+    if (key.range.holds(it)) return fine;
+    return fault(fmt::format("must be in the range {}{}; got {}", range_text(key),
+                             key.unit.empty() || key.unit == "1" ? "" : " " + key.unit, value.dump()),
+                 unit_question(key, it));
   };
   const std::string given = value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60);
-  const auto must_be = [&](const std::string& what) { return "must be " + what + "; got " + given; };
+  const auto must_be = [&](const std::string& what) { return fault("must be " + what + "; got " + given); };
   switch (key.type) {
     case KeyType::kNumber:
       return value.is_number() ? number() : must_be("a number");
     case KeyType::kNumberOrMaterial:
-      if (value == "material") return "";
+      if (value == "material") return fine;
       return value.is_number() ? number() : must_be("a number or \"material\"");
     case KeyType::kFlag:
-      return value.is_boolean() ? "" : must_be("true or false");
+      return value.is_boolean() ? fine : must_be("true or false");
     case KeyType::kText:
     case KeyType::kNode:
-      return value.is_string() ? "" : must_be("a text");
+      return value.is_string() ? fine : must_be("a text");
     case KeyType::kChoice: {
       std::string all;
       for (const std::string& each : key.choices()) {
-        if (value == each) return "";
+        if (value == each) return fine;
         all += (all.empty() ? "" : ", ") + each;
       }
-      return "must be one of " + all + "; got " +
-             (value.is_string() ? "'" + cut(value.get<std::string>()) + "'" : given);
+      return fault("must be one of " + all + "; got " +
+                   (value.is_string() ? "'" + cut(value.get<std::string>()) + "'" : given));
     }
     case KeyType::kColor:
-      return numbers(value, 3, key.range) ? "" : must_be("three numbers in " + range_text(key));
+      return numbers(value, 3, key.range) ? fine : must_be("three numbers in " + range_text(key));
     case KeyType::kPair:
-      return numbers(value, 2, key.range) ? "" : must_be("two numbers in " + range_text(key));
+      return numbers(value, 2, key.range) ? fine : must_be("two numbers in " + range_text(key));
     case KeyType::kVector:
       if (value.is_number()) return number();
-      return numbers(value, 3, key.range) ? "" : must_be("three numbers in " + range_text(key));
+      return numbers(value, 3, key.range) ? fine : must_be("three numbers in " + range_text(key));
     case KeyType::kPoints: {
       const bool good =
           value.is_array() && value.size() <= kMostPoints &&
           std::all_of(value.begin(), value.end(), [&](const Json& each) { return numbers(each, 3, key.range); });
-      return good ? "" : must_be(fmt::format("a list of at most {} points [x, y, z]", kMostPoints));
+      return good ? fine : must_be(fmt::format("a list of at most {} points [x, y, z]", kMostPoints));
     }
     case KeyType::kBox: {
       const Range any{-1e6, 1e6};
       bool good = value.is_object() && value.size() == 2 && value.contains("min") && value.contains("max") &&
                   numbers(value["min"], 3, any) && numbers(value["max"], 3, any);
       for (std::size_t i = 0; good && i < 3; ++i) good = value["min"][i].get<double>() <= value["max"][i].get<double>();
-      return good ? "" : must_be("a box {\"min\": [x, y, z], \"max\": [x, y, z]}");
+      return good ? fine : must_be("a box {\"min\": [x, y, z], \"max\": [x, y, z]}");
     }
   }
   UNREACHABLE();
 }
 
-std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
+std::string nearest(const std::string& word, const std::vector<std::string>& names) {
   std::string best;
   std::size_t least = 1 + std::min<std::size_t>(3, word.size() / 2);
   for (const std::string& name : names) {
@@ -148,21 +152,27 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
       best = name;
     }
   }
-  return best.empty() ? "" : "; did you mean " + best + "?";
+  return best;
 }
 
-std::string unknown(const std::string& what, const std::string& word, const std::string& in, const std::string& all,
-                    const std::vector<std::string>& names) {
+std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
+  const std::string near = nearest(word, names);
+  return near.empty() ? "" : "did you mean " + near + "?";
+}
+
+Note unknown(const std::string& what, const std::string& word, const std::string& in, const std::string& all,
+             const std::vector<std::string>& names) {
   constexpr std::size_t kNamed = 40;  // a scene may have a hundred nodes
   const std::string near = suggestion(word, names);
   const auto last = names.begin() + static_cast<std::ptrdiff_t>(std::min(kNamed, names.size()));
-  return fmt::format("unknown {} '{}'{}{}", what, cut(word), in.empty() ? "" : " in ", in) +
-         (near.empty() ? fmt::format("; {} are: {}{}", all, fmt::join(names.begin(), last, ", "),
+  return {fmt::format("unknown {} '{}'{}{}", what, cut(word), in.empty() ? "" : " in ", in),
+          near.empty() ? fmt::format("{} are: {}{}", all, fmt::join(names.begin(), last, ", "),
                                      names.size() > kNamed ? " and others" : "")
-                       : near);
+                       : near,
+          "name.unknown", word};
 }
 
-std::string unknown_key(const Extension& extension, const std::string& word) {
+Note unknown_key(const Extension& extension, const std::string& word) {
   std::vector<std::string> names;
   for (const Key& key : extension.keys) names.push_back(key.name);
   return unknown("key", word, "PLIANT_" + extension.name, "keys", names);

@@ -12,7 +12,7 @@ namespace pliant {
 
 namespace {
 
-// Reads one extension object into its owner; calls `report(pointer, message)` for every fault.
+// Reads one extension object into its owner; calls `report(pointer, note)` for every fault.
 template <class Report>
 class KeyReader {
  public:
@@ -24,11 +24,10 @@ class KeyReader {
     walk(json, "", pointer);
     // A modulus of 0 counts as absent.
     if (extension_.name == "deformable" && given("stiffness") && static_cast<LevelNode*>(owner_)->deformable->young > 0)
-      report_(pointer, "gives both young and stiffness; keep one, young is calibrated to a stiffness");
-    if (const std::string clash = extension_.settle(owner_); !clash.empty()) {
-      const std::string first = clash.substr(0, clash.find(' '));  // the message begins with the key, if there is one
-      report_(given(first.c_str()) ? pointer + "/" + first : pointer, clash);
-    }
+      report_(pointer,
+              {"gives both young and stiffness", "keep one, young is calibrated to a stiffness", "key.both", {}});
+    if (const std::optional<Note> clash = extension_.settle(owner_))
+      report_(given(clash->of.c_str()) ? pointer + "/" + clash->of : pointer, *clash);
   }
 
  private:
@@ -36,7 +35,7 @@ class KeyReader {
 
   // Nested objects are keys with dots.
   void walk(const Json& json, const std::string& prefix, const std::string& pointer) {
-    if (!json.is_object()) return report_(pointer, "is not an object");
+    if (!json.is_object()) return report_(pointer, {"is not an object", {}, "key.value", {}});
     for (const auto& [name, value] : json.items()) {
       const std::string here = pointer + "/" + name;
       if (prefix.empty() && (name == "extras" || name == "extensions")) continue;
@@ -57,12 +56,13 @@ class KeyReader {
   void take(const Key& key, Json value, const std::string& pointer) {
     if (key.type == KeyType::kNode && as_integer(value) && value.is_number_unsigned()) {
       if (value.get<std::uint64_t>() >= node_names_.size())
-        return report_(pointer, fmt::format("refers to node {} of {}", value.dump(), node_names_.size()));
+        return report_(
+            pointer,
+            {fmt::format("refers to node {} of {}", value.dump(), node_names_.size()), {}, "key.value", key.name});
       value = node_names_[value.get<std::size_t>()];
     }
-    const std::string wrong = check_value(key, value);
-    if (!wrong.empty()) return report_(pointer, wrong);
-    if (const std::string found = doubt(key, value); !found.empty()) report_.doubt(pointer, found);
+    if (const std::optional<Note> wrong = check_value(key, value)) return report_(pointer, *wrong);
+    if (const std::optional<Note> found = doubt(key, value)) report_.doubt(pointer, *found);
     key.set(owner_, value);
     note_stated(extension_, key, owner_);
     given_.push_back(key.name);
@@ -96,18 +96,18 @@ void read_all(const Json& extensions, const std::string& pointer, bool on_scene,
 // Keeps the first fault as an error.
 struct FirstFault {
   std::optional<Error>& error;
-  void operator()(const std::string& pointer, const std::string& message) const {
-    if (!error) error = Error{pointer, message};
+  void operator()(const std::string& pointer, const Note& fault) const {
+    if (!error) error = error_at(pointer, fault);
   }
-  void doubt(const std::string&, const std::string&) const {}  // only `validate` reports doubts
+  void doubt(const std::string&, const Note&) const {}  // only `validate` reports doubts
 };
 struct AllFaults {
   Findings& findings;
-  void operator()(const std::string& pointer, const std::string& message) const {
-    findings.push_back({Severity::kError, pointer, message});
+  void operator()(const std::string& pointer, const Note& fault) const {
+    findings.push_back(finding_of(fault, Severity::kError, pointer));
   }
-  void doubt(const std::string& pointer, const std::string& message) const {
-    findings.push_back({Severity::kWarning, pointer, message});
+  void doubt(const std::string& pointer, const Note& found) const {
+    findings.push_back(finding_of(found, Severity::kWarning, pointer));
   }
 };
 
@@ -185,9 +185,9 @@ Status check_references(const Level& level) {
     if (node.device) devices.push_back(node.name);
   const auto check = [&](const LevelNode& node, const char* extension, const std::string& device) -> Status {
     if (device.empty() || std::find(devices.begin(), devices.end(), device) != devices.end()) return Done{};
-    return Error{node.name + "." + extension + ".device", "names '" + device.substr(0, 100) +
-                                                              "', which is no node with a PLIANT_haptic_device" +
-                                                              suggestion(device, devices)};
+    return Error{node.name + "." + extension + ".device",
+                 "names '" + device.substr(0, 100) + "', which is no node with a PLIANT_haptic_device",
+                 suggestion(device, devices), "level.unknown_device"};
   };
   for (const LevelNode& node : level.nodes) {
     if (node.probe)

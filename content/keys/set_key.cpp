@@ -80,23 +80,26 @@ Status set_one(Level& level, const std::string& assignment, std::vector<Touched>
   const std::size_t equals = assignment.find('=');
   Assignment it;
   if (equals == std::string::npos || !split(level, assignment.substr(0, equals), it))
-    return Error{where, "is not NODE.EXTENSION.KEY=VALUE; write for example belly.deformable.stiffness=300"};
+    return Error{where, "is not NODE.EXTENSION.KEY=VALUE", "write for example belly.deformable.stiffness=300"};
   const std::string text = assignment.substr(equals + 1);
 
   std::vector<std::string> extensions, nodes;
   for (const Extension& each : extension_table()) extensions.push_back(each.name);
   const Extension* extension = find_extension(it.extension);
-  if (!extension) return Error{where, unknown("extension", it.extension, "", "extensions", extensions)};
+  if (!extension) return error_at(where, unknown("extension", it.extension, "", "extensions", extensions));
   const Key* key = find_key(*extension, it.key);
-  if (!key) return Error{where, unknown_key(*extension, it.key)};
+  if (!key) return error_at(where, unknown_key(*extension, it.key));
   if (key->type == KeyType::kNode)
     it.value = name_of_node(level, text);
   else if (key->type == KeyType::kText || key->type == KeyType::kChoice)
     it.value = text;
   else
     it.value = value_of_text(text);
-  const std::string wrong = check_value(*key, it.value);
-  if (!wrong.empty()) return Error{where, it.key + " " + wrong + " (" + key->doc + ")"};
+  if (std::optional<Note> wrong = check_value(*key, it.value)) {
+    wrong->what = it.key + " " + wrong->what;
+    (wrong->cure.empty() ? wrong->what : wrong->cure) += " (" + key->doc + ")";
+    return error_at(where, *wrong);
+  }
 
   if (extension->on_scene) {
     if (!extension->present(&level)) extension->add(&level);
@@ -114,13 +117,14 @@ Status set_one(Level& level, const std::string& assignment, std::vector<Touched>
   }
   std::string have;
   for (std::size_t i = 0; i < nodes.size() && i < 5; ++i) have += (i ? ", " : "") + nodes[i];
-  const std::string hint = have.empty() ? "; no node of this level has one" : "; nodes that have one: " + have;
+  const std::string hint = have.empty() ? "no node of this level has one" : "nodes that have one: " + have;
+  const std::string near = suggestion(it.node, nodes);
   if (!node_exists)
-    return Error{where, "names the node '" + it.node + "', which the level does not have" +
-                            (suggestion(it.node, nodes).empty() ? hint : suggestion(it.node, nodes))};
-  if (!done) return Error{where, "names a node without PLIANT_" + it.extension + hint};
+    return Error{where, "names the node '" + it.node + "', which the level does not have", near.empty() ? hint : near,
+                 "name.unknown"};
+  if (!done) return Error{where, "names a node without PLIANT_" + it.extension, hint, "name.unknown"};
   if (key->type == KeyType::kNode)
-    if (const Status status = check_references(level); !status) return Error{where, status.error().what};
+    if (const Status status = check_references(level); !status) return status.error().at(where);
   return Done{};
 }
 
@@ -138,7 +142,7 @@ Status set_keys(Level& level, const std::vector<std::string>& assignments) {
   for (const std::string& assignment : assignments)
     if (const Status status = set_one(changed, assignment, touched); !status) return status;
   for (const Touched& each : touched)
-    if (const std::string clash = each.extension->settle(each.owner); !clash.empty()) return Error{each.where, clash};
+    if (const std::optional<Note> clash = each.extension->settle(each.owner)) return error_at(each.where, *clash);
   level.nodes = std::move(changed.nodes);
   level.environment = std::move(changed.environment);
   level.simulation = changed.simulation;

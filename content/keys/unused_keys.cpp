@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
+#include "components/registered.h"
 #include "content/keys/extension_table.h"
 
 namespace pliant {
@@ -12,58 +14,97 @@ namespace pliant {
 namespace {
 
 // When a key has no effect. A key without a row always has one.
+struct UnusedWords {
+  std::string what, cure;
+};
 struct UnusedRow {
   const char *extension, *key;
   bool (*unused)(const LevelNode&);
-  const char* what;
+  UnusedWords words;
 };
 
-// A registered law may read any constant.
-bool is_law_other_than(SpringLaw law, const LevelNode& node) {
-  return node.deformable->spring != law && node.deformable->spring <= SpringLaw::kStandardLinearSolid;
+template <class Row, std::size_t size>
+UnusedWords only_with(const char* key, const Row (&rows)[size], const std::function<bool(std::size_t)>& matters) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < size; ++i)
+    if (matters(i)) words.push_back(fmt::format("`{}`", rows[i].word));
+  return {fmt::format("is read with `{}` {} only", key, listed(words)),
+          fmt::format("set {}, or remove the key", words.size() > 1 ? "one of these" : "that")};
 }
 
-constexpr UnusedRow kRows[] = {
-    {"deformable", "cubic", [](const LevelNode& n) { return is_law_other_than(SpringLaw::kCubic, n); },
-     "is read with `spring` `cubic` only; set that, or remove the key"},
-    {"deformable", "stiffening", [](const LevelNode& n) { return is_law_other_than(SpringLaw::kExponential, n); },
-     "is read with `spring` `exponential` only; set that, or remove the key"},
-    {"deformable", "relaxation.stiffness",
-     [](const LevelNode& n) { return is_law_other_than(SpringLaw::kStandardLinearSolid, n); },
-     "is read with `spring` `sls` only; set that, or remove the key"},
-    {"deformable", "relaxation.time",
-     [](const LevelNode& n) { return is_law_other_than(SpringLaw::kStandardLinearSolid, n); },
-     "is read with `spring` `sls` only; set that, or remove the key"},
-    {"deformable", "volume", [](const LevelNode& n) { return n.deformable->shape != Shape::kVolume; },
-     "is read with `shape` `volume` only; set that, or remove the key"},
+// A registered law may read any constant.
+bool is_law_without(const char* key, const LevelNode& node) {
+  return !registered_spring(node.deformable->spring) && !reads_key(node.deformable->spring, key);
+}
+UnusedWords laws_with(const char* key) {
+  return only_with("spring", kSpringRows, [key](std::size_t i) { return reads_key(static_cast<SpringLaw>(i), key); });
+}
+ShapeParameter parameter_of(const LevelNode& node) {
+  return row_of(node.deformable->shape).parameter;
+}
+
+const UnusedRow kRows[] = {
+    {"deformable", "cubic", [](const LevelNode& n) { return is_law_without("cubic", n); }, laws_with("cubic")},
+    {"deformable", "stiffening", [](const LevelNode& n) { return is_law_without("stiffening", n); },
+     laws_with("stiffening")},
+    {"deformable", "relaxation.stiffness", [](const LevelNode& n) { return is_law_without("relaxation.stiffness", n); },
+     laws_with("relaxation.stiffness")},
+    {"deformable", "relaxation.time", [](const LevelNode& n) { return is_law_without("relaxation.time", n); },
+     laws_with("relaxation.time")},
+    {"deformable", "volume", [](const LevelNode& n) { return parameter_of(n) != ShapeParameter::kVolume; },
+     only_with("shape", kShapeRows, [](std::size_t i) { return kShapeRows[i].parameter == ShapeParameter::kVolume; })},
     {"deformable", "contact_radius", [](const LevelNode& n) { return !depends_on_contact(n.deformable->shape); },
-     "is read with `shape` `punch`, `hertz` and `kelvinlet` only; set one of these, or remove the key"},
-    {"deformable", "poisson", [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
-     "is read with `young` only; give that too, or remove the key"},
-    {"deformable", "thickness", [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
-     "is read with `young` only; give that too, or remove the key"},
-    {"probe", "coupling", [](const LevelNode& n) { return n.probe->meets == ProbeMeets::kSurfaces; },
-     "is for soft and rigid bodies, which a probe whose `meets` is `surfaces` does not meet; set `meets` to `all`, or "
-     "remove the key"},
-    {"haptic_device", "file", [](const LevelNode& n) { return n.device->driver != DriverKind::kScript; },
-     "is read with `driver` `script` only; set that, or remove the key"},
-    {"haptic_device", "id", [](const LevelNode& n) { return n.device->driver != DriverKind::kExternal; },
-     "is read with `driver` `external` only; set that, or remove the key"},
-    {"haptic_device", "scale", [](const LevelNode& n) { return n.device->driver != DriverKind::kExternal; },
-     "is of a real device's workspace, which only the `driver` `external` has: a path is in metres of the world; "
-     "write the path as large as it shall be, or remove the key"},
-    {"soft_body", "cell", [](const LevelNode& n) { return !n.soft_body->mesh.empty(); },
-     "is not needed where `mesh` gives the tetrahedra; remove one of them"},
-    {"soft_body", "focus", [](const LevelNode& n) { return !n.soft_body->mesh.empty(); },
-     "is of a lattice, and `mesh` gives the tetrahedra; remove one of them"},
-    {"soft_body", "under_gravity", [](const LevelNode& n) { return n.handle.has_value(); },
-     "is of bodies that are pinned, and a tool always begins as it rests in the hand; remove the key"},
-    {"handle", "box", [](const LevelNode& n) { return n.rigid_body && !n.soft_body; },
-     "has no effect on a rigid body, all of which is its handle; remove it"},
-    {"handle", "attachment", [](const LevelNode& n) { return n.rigid_body && !n.soft_body; },
-     "is how tissue is held, and a rigid body has none; remove it"},
-    {"rigid_body", "density", [](const LevelNode& n) { return n.rigid_body->mass > 0.0; },
-     "is not needed where `mass` is given; remove one of them"},
+     only_with("shape", kShapeRows, [](std::size_t i) { return depends_on_contact(static_cast<Shape>(i)); })},
+    {"deformable",
+     "poisson",
+     [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
+     {"is read with `young` only", "give that too, or remove the key"}},
+    {"deformable",
+     "thickness",
+     [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
+     {"is read with `young` only", "give that too, or remove the key"}},
+    {"probe",
+     "coupling",
+     [](const LevelNode& n) { return n.probe->meets == ProbeMeets::kSurfaces; },
+     {"is for soft and rigid bodies, which a probe whose `meets` is `surfaces` does not meet",
+      "set `meets` to `all`, or remove the key"}},
+    {"haptic_device",
+     "file",
+     [](const LevelNode& n) { return n.device->driver != DriverKind::kScript; },
+     {"is read with `driver` `script` only", "set that, or remove the key"}},
+    {"haptic_device",
+     "id",
+     [](const LevelNode& n) { return n.device->driver != DriverKind::kExternal; },
+     {"is read with `driver` `external` only", "set that, or remove the key"}},
+    {"haptic_device",
+     "scale",
+     [](const LevelNode& n) { return n.device->driver != DriverKind::kExternal; },
+     {"is of a real device's workspace, which only the `driver` `external` has: a path is in metres of the world",
+      "write the path as large as it shall be, or remove the key"}},
+    {"soft_body",
+     "cell",
+     [](const LevelNode& n) { return !n.soft_body->mesh.empty(); },
+     {"is not needed where `mesh` gives the tetrahedra", "remove one of them"}},
+    {"soft_body",
+     "focus",
+     [](const LevelNode& n) { return !n.soft_body->mesh.empty(); },
+     {"is of a lattice, and `mesh` gives the tetrahedra", "remove one of them"}},
+    {"soft_body",
+     "under_gravity",
+     [](const LevelNode& n) { return n.handle.has_value(); },
+     {"is of bodies that are pinned, and a tool always begins as it rests in the hand", "remove the key"}},
+    {"handle",
+     "box",
+     [](const LevelNode& n) { return n.rigid_body && !n.soft_body; },
+     {"has no effect on a rigid body, all of which is its handle", "remove it"}},
+    {"handle",
+     "attachment",
+     [](const LevelNode& n) { return n.rigid_body && !n.soft_body; },
+     {"is how tissue is held, and a rigid body has none", "remove it"}},
+    {"rigid_body",
+     "density",
+     [](const LevelNode& n) { return n.rigid_body->mass > 0.0; },
+     {"is not needed where `mass` is given", "remove one of them"}},
 };
 
 // Whether the owner's value differs from the default.
@@ -80,7 +121,8 @@ void find_in_node(const Level& level, std::size_t n, std::vector<UnusedKey>& fou
     const Extension& extension = *find_extension(row.extension);
     if (!extension.present(&node) || !row.unused(node)) continue;
     if (is_set(extension, *find_key(extension, row.key), node))
-      found.push_back({static_cast<std::int32_t>(n), fmt::format("PLIANT_{}/{}", row.extension, row.key), row.what});
+      found.push_back({static_cast<std::int32_t>(n), fmt::format("PLIANT_{}/{}", row.extension, row.key),
+                       row.words.what, row.words.cure});
   }
 }
 
@@ -88,16 +130,16 @@ void find_in_scene(const Level& level, std::vector<UnusedKey>& found) {
   const bool has_bodies = std::any_of(level.nodes.begin(), level.nodes.end(), [](const LevelNode& node) {
     return node.in_scene && (node.soft_body || node.rigid_body || node.handle);
   });
-  const auto add = [&](const char* extension, const char* key, bool unused, const char* what) {
+  const auto add = [&](const char* extension, const char* key, bool unused, const char* what, const char* cure) {
     const Extension& in = *find_extension(extension);
     if (unused && in.present(&level) && is_set(in, *find_key(in, key), level))
-      found.push_back({-1, fmt::format("PLIANT_{}/{}", extension, key), what});
+      found.push_back({-1, fmt::format("PLIANT_{}/{}", extension, key), what, cure});
   };
   const bool bare = !level.environment || level.environment->panorama.empty();
   for (const char* key : {"intensity", "rotation"})
-    add("environment", key, bare, "is of the `panorama`, and there is none; name one, or remove the key");
+    add("environment", key, bare, "is of the `panorama`, and there is none", "name one, or remove the key");
   for (const char* key : {"soft_step", "gravity"})
-    add("simulation", key, !has_bodies, "is for soft and rigid bodies, and the scene has none; remove it");
+    add("simulation", key, !has_bodies, "is for soft and rigid bodies, and the scene has none", "remove it");
 }
 
 }  // namespace
@@ -123,17 +165,18 @@ std::vector<UnusedKey> find_unused_keys(const Level& level) {
   return found;
 }
 
-std::vector<std::string> unused_key_notes(const Level& level) {
+std::vector<Note> unused_key_notes(const Level& level) {
   const std::vector<UnusedKey> found = find_unused_keys(level);
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   std::set<std::string> said;
   for (const UnusedKey& key : found) {
     if (!said.insert(key.pointer).second) continue;
     const auto same = [&](const UnusedKey& other) { return other.pointer == key.pointer; };
     const std::ptrdiff_t more = std::count_if(found.begin(), found.end(), same) - 1;
-    const std::string node = key.node < 0 ? "" : "`" + level.nodes[static_cast<std::size_t>(key.node)].name + "`: ";
-    notes.push_back(node + key.pointer + " " + key.what +
-                    (more > 0 ? fmt::format(" ({} more node{} too)", more, more == 1 ? "" : "s") : ""));
+    const std::string name = key.node < 0 ? "" : level.nodes[static_cast<std::size_t>(key.node)].name;
+    const std::string others = more > 0 ? fmt::format(" ({} more node{} too)", more, more == 1 ? "" : "s") : "";
+    notes.push_back({(key.node < 0 ? "" : "`" + name + "`: ") + key.pointer + " " + key.what, key.cure + others,
+                     "key.unused", key.pointer});
   }
   return notes;
 }

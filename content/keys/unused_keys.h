@@ -11,7 +11,7 @@ namespace pliant {
 struct UnusedKey {
   std::int32_t node = -1;  // Level node; -1: the scene
   std::string pointer;     // "PLIANT_haptic_device/scale"; the key as in the table, relaxation.time
-  std::string what;        // why it has no effect, and what to do
+  std::string what, cure;  // why it has no effect, and what to do
 };
 
 // Keys that differ from their default, and whole devices, in the order of nodes, then the scene. Only nodes in the
@@ -19,6 +19,6 @@ struct UnusedKey {
 std::vector<UnusedKey> find_unused_keys(const Level& level);
 
 // The same as notes: each key once, with the number of other nodes that have it.
-std::vector<std::string> unused_key_notes(const Level& level);
+std::vector<Note> unused_key_notes(const Level& level);
 
 }  // namespace pliant

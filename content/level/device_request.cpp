@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 
+#include "components/device_spec.h"
 #include "runtime/printable.h"
 
 namespace pliant {
@@ -77,12 +78,11 @@ std::string wrapper(std::string_view words, std::string& out) {
   return {};
 }
 
-std::string simulated(std::string_view words, std::string& out) {
-  out = "simulated";
-  const std::size_t colon = words.find(':');
-  if (colon == std::string_view::npos) return {};
+std::string simulated(const DeviceSpec& spec, std::string& out) {
+  out = spec.driver;
+  if (!spec.has_id) return {};
   bool first = true;
-  for (const std::string_view piece : parts_of(words.substr(colon + 1), ',')) {
+  for (const std::string_view piece : parts_of(spec.id, ',')) {
     const Option it = option(piece);
     if (it.key == "path") return "reads a file";
     const bool profile = first && it.key.empty();
@@ -94,25 +94,23 @@ std::string simulated(std::string_view words, std::string& out) {
   return {};
 }
 
-std::string kind(std::string_view what, std::string& out) {
-  const std::string_view driver = bare(what.substr(0, what.find(':')));
-  if (driver == "simulated") return simulated(what, out);
-  out = what;
-  if (among(kKinds, what) || among(kHardware, what)) return {};
-  if (driver == "network") return "talks to an address of the network";
-  if (driver == "serial") return "opens a serial line";
-  if (among(kHardware, driver)) return "names one device, or a file, of this machine";
-  if (driver.empty()) return "names no device";
+std::string kind(const DeviceSpec& spec, std::string& out) {
+  if (spec.driver == "simulated") return simulated(spec, out);
+  out = spec.device();
+  if (!spec.has_id && (among(kKinds, spec.driver) || among(kHardware, spec.driver))) return {};
+  if (spec.driver == "network") return "talks to an address of the network";
+  if (spec.driver == "serial") return "opens a serial line";
+  if (among(kHardware, spec.driver)) return "names one device, or a file, of this machine";
+  if (spec.driver.empty()) return "names no device";
   return "is no kind of device";
 }
 
 // Returns "" and what to open, or why a level may not request this.
-std::string alternative(std::string_view text, std::string& out) {
-  const std::vector<std::string_view> parts = parts_of(text, '|');
-  if (std::string wrong = kind(parts.front(), out); !wrong.empty()) return wrong;
-  if (parts.size() - 1 > kMostWrappers) return fmt::format("has more than {} wrappers", kMostWrappers);
-  for (std::size_t i = 1; i < parts.size(); ++i)
-    if (std::string wrong = wrapper(parts[i], out); !wrong.empty()) return wrong;
+std::string alternative(const DeviceSpec& spec, std::string& out) {
+  if (std::string wrong = kind(spec, out); !wrong.empty()) return wrong;
+  if (spec.wrappers.size() > kMostWrappers) return fmt::format("has more than {} wrappers", kMostWrappers);
+  for (const std::string& words : spec.wrappers)
+    if (std::string wrong = wrapper(words, out); !wrong.empty()) return wrong;
   return {};
 }
 
@@ -131,19 +129,19 @@ std::string quoted(const std::string& text) {
 
 DeviceRequest device_request(std::string_view id) {
   DeviceRequest request;
-  std::vector<std::string_view> all = parts_of(id, ';');
+  std::vector<DeviceSpec> all = parse_device_specs(id);
   if (all.size() > kMostAlternatives) {
-    request.refused.push_back(fmt::format("`{}` and more are {} alternatives; a level may give {}", shown(all.front()),
-                                          all.size(), kMostAlternatives));
+    request.refused.push_back(fmt::format("`{}` and more are {} alternatives; a level may give {}",
+                                          shown(all.front().words()), all.size(), kMostAlternatives));
     all.clear();
   }
-  for (const std::string_view one : all) {
+  for (const DeviceSpec& one : all) {
     std::string out;
     if (const std::string wrong = alternative(one, out); !wrong.empty())
       request.refused.push_back(
           fmt::format("`{}` {}, and a level may ask for kinds of devices only (any-force, any-pose, any, mouse, "
                       "simulated, a driver's name without an address)",
-                      shown(one), wrong));
+                      shown(one.words()), wrong));
     else
       request.allowed += (request.allowed.empty() ? "" : "; ") + out;
   }

@@ -27,9 +27,11 @@ std::vector<DeviceFault> find_shared_devices(const Level& level) {
     if (!level.nodes[device].device) return;
     const auto [taken, fresh] = moves.try_emplace(device, n);
     if (!fresh)
-      faults.push_back({n, "is moved by the device `" + level.nodes[device].name + "`, which moves `" +
-                               level.nodes[taken->second].name +
-                               "` already; give each a node with PLIANT_haptic_device of its own"});
+      faults.push_back(
+          {n,
+           {"is moved by the device `" + level.nodes[device].name + "`, which moves `" +
+                level.nodes[taken->second].name + "` already",
+            "give each a node with PLIANT_haptic_device of its own", "level.shared_device", level.nodes[n].name}});
   };
   for (std::size_t n = 0; n < level.nodes.size(); ++n) {
     const LevelNode& node = level.nodes[n];
@@ -54,10 +56,11 @@ std::vector<DeviceFault> find_unmoved_probes(const Level& level) {
     }
     const std::optional<HapticDevice>& device = level.nodes[mover].device;
     const std::string cure = "give it one that moves it, or run it with --probe " + node.name + "=orbit";
-    if (!device)
-      found.push_back({n, "is a probe without a PLIANT_haptic_device, so nothing moves it; " + cure});
-    else if (device->driver == DriverKind::kNull)
-      found.push_back({n, "is a probe whose device has the `driver` `null`, so nothing moves it; " + cure});
+    const char* const what = !device ? "is a probe without a PLIANT_haptic_device, so nothing moves it"
+                             : device->driver == DriverKind::kNull
+                                 ? "is a probe whose device has the `driver` `null`, so nothing moves it"
+                                 : nullptr;
+    if (what) found.push_back({n, {what, cure, "level.unmoved_probe", node.name}});
   }
   return found;
 }

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "content/level/level.h"
+#include "runtime/result.h"
 
 namespace pliant {
 
 struct DeviceFault {
   std::size_t node;  // a probe or tool
-  std::string what;  // text that follows "node X"
+  Note what;         // text that follows "node X"
 };
 
 // Probes and tools whose device already moves another one. In the order of the nodes; only those of the scene.

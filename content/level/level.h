@@ -111,7 +111,8 @@ struct Level {
   Simulation simulation;         // PLIANT_simulation
   std::set<std::string> stated;  // keys set by the file or --set: simulation.soft_step
   std::vector<std::string>
-      notes;  // notes on conversions that a user might not expect (collision meshes, skipped points...)
+      notes;              // notes on conversions that a user might not expect (collision meshes, skipped points...)
+  bool unitless = false;  // from a format that does not say what its unit is; read as metres
   std::size_t document_notes = 0;  // how many of these, at the front, are warnings of the document (open_gltf)
   // The source glTF document. If present, save_level updates it with all changes and keeps the rest: extras, unknown
   // extensions, skins, morph targets. `source` of a node, mesh, primitive or animation identifies the document's

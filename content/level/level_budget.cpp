@@ -14,19 +14,19 @@ LevelBudget::LevelBudget(const Level& level) {
   }
 }
 
-std::string LevelBudget::ask_triangles(double count) const {
+std::optional<Note> LevelBudget::ask_triangles(double count) const {
   constexpr const char* kCure = "use fewer instances, or give them one scale and rotation so that they share";
-  const std::string all = ask(limits::kTriangles, count, kCure);
-  return all.empty() ? ask(limits::kAddedTriangles, count - own_.triangles, kCure) : all;
+  std::optional<Note> all = ask(limits::kTriangles, count, kCure);
+  return all ? all : ask(limits::kAddedTriangles, count - own_.triangles, kCure);
 }
 
-std::string LevelBudget::ask_vertices(double count) const {
+std::optional<Note> LevelBudget::ask_vertices(double count) const {
   return ask(limits::kAddedVertices, count - own_.vertices, "use fewer instances, or make fewer of them deformable");
 }
 
-std::string LevelBudget::ask(const Limit& limit, double count, const char* cure) {
+std::optional<Note> LevelBudget::ask(const Limit& limit, double count, const char* cure) {
   if (count <= static_cast<double>(most(limit))) return {};
-  return "brings the level to " + beyond(limit, count, cure);
+  return beyond("brings the level to", limit, count, cure);
 }
 
 }  // namespace pliant

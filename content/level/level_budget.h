@@ -1,9 +1,9 @@
 // The total size of a level's mesh instances: a small file can instance a mesh often. Spawn checks it before building,
-// and again after refining a mesh. Each function returns "" if the size is within the limits (content/files/limits.h),
-// else an error sentence.
+// and again after refining a mesh. Each function returns nothing if the size is within the limits
+// (content/files/limits.h), else the fault.
 #pragma once
 
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "content/files/limits.h"
@@ -21,9 +21,9 @@ class LevelBudget {
   const MeshSize& of(std::int32_t mesh) const { return sizes_[static_cast<std::size_t>(mesh)]; }
 
   // Triangles built; vertices of deformable surfaces.
-  std::string ask_triangles(double count) const;
-  std::string ask_vertices(double count) const;
-  static std::string ask(const Limit& limit, double count, const char* cure = "use fewer of them");
+  std::optional<Note> ask_triangles(double count) const;
+  std::optional<Note> ask_vertices(double count) const;
+  static std::optional<Note> ask(const Limit& limit, double count, const char* cure = "use fewer of them");
 
  private:
   std::vector<MeshSize> sizes_;

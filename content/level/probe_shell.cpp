@@ -2,6 +2,7 @@
 
 #include <glm/gtc/constants.hpp>
 
+#include "components/probe_shape.h"
 #include "content/mesh/mesh_build.h"
 
 namespace pliant {
@@ -9,12 +10,18 @@ namespace {
 
 constexpr std::uint32_t kAround = 16, kRings = 6;  // vertices around the axis; rings in each half from pole to equator
 
-// A capsule along +Y from `from` to `from + length`; a sphere if length is 0.
-void add_capsule(dvec3 from, double radius, double length, Primitive& out) {
+void add_part(const ProbePart& part, double radius, Primitive& out) {
   const auto first = static_cast<std::uint32_t>(out.position.size());
+  const double length = glm::length(part.to - part.from);
+  dmat3 frame(1.0);  // its second column is the axis
+  if (const dvec3 axis = part.to - part.from; axis.x != 0.0 || axis.z != 0.0 || axis.y < 0.0) {
+    frame[1] = normalize(axis);
+    frame[0] = normalize(cross(frame[1], std::abs(frame[1].x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 0, 1)));
+    frame[2] = cross(frame[0], frame[1]);
+  }
   const auto add = [&](double polar, double around, double along) {
     const dvec3 way(std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around));
-    out.position.emplace_back(from + dvec3(0, along, 0) + radius * way);
+    out.position.emplace_back(part.from + frame * (dvec3(0, along, 0) + radius * way));
   };
   // From the upper pole down; a capsule has two equators.
   const std::uint32_t rings = 2 * kRings - 1 + (length > 0.0 ? 1u : 0u);
@@ -43,10 +50,7 @@ void add_capsule(dvec3 from, double radius, double length, Primitive& out) {
 Result<Mesh> probe_shell(const Probe& probe) {
   const double radius = probe.radius > 0.0 ? probe.radius : kPointShell;
   Primitive surface;
-  if (probe.points.empty())
-    add_capsule(dvec3(0), radius, probe.length, surface);
-  else
-    for (const vec3& point : probe.points) add_capsule(dvec3(point), radius, 0.0, surface);
+  for (const ProbePart& part : probe_parts(probe)) add_part(part, radius, surface);
   Result<BuiltMesh> built = build_mesh("probe", {&surface, 1}, mat4(1.0f));
   if (!built) return built.error();
   return std::move(built->mesh);

@@ -1,4 +1,4 @@
-// A probe's surface mesh for contact with soft and rigid bodies: a sphere or a capsule at every tip.
+// A probe's surface mesh for contact with soft and rigid bodies: its spheres and capsules (components/probe_shape.h).
 #pragma once
 
 #include "components/mesh.h"

@@ -83,13 +83,13 @@ Status Scene::add_handle(const std::string& body, const HandleParameters& parame
   for (LevelNode& node : level_->nodes) {
     if (node.name != body) continue;
     if (!node.soft_body && !node.rigid_body)
-      return Error{"handle of `" + body + "`", "it is neither a soft nor a rigid body; only those are held"};
+      return Error{"handle of `" + body + "`", "it is neither a soft nor a rigid body", "only those are held"};
     node.handle = made_of<Handle6>(parameters);
     node.handle->device = body;
     node.device = made_of<HapticDevice>(device);
     return Done{};
   }
-  return Error{"handle of `" + body + "`", "the scene has no body of that name; add it first"};
+  return Error{"handle of `" + body + "`", "the scene has no body of that name", "add it first"};
 }
 
 void Scene::add_probe(const std::string& name, const ProbeParameters& parameters, const DeviceParameters& device,

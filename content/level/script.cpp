@@ -1,5 +1,7 @@
 #include "content/level/script.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 
@@ -54,38 +56,36 @@ Result<Path> parse_script(std::string_view text, const std::string& where) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::string_view line = take_line(text);
-    const auto error = [&](const std::string& what) {
-      const char* cure = what.find("; ") == std::string::npos ? "; correct the line" : "";
-      return Error{where + ":" + std::to_string(number), what + cure};
+    const auto error = [&](const std::string& what, const std::string& cure) {
+      return Error{where + ":" + std::to_string(number), what, cure, "script.row"};
     };
     if (line.empty() || line.front() == '#') continue;
     if (columns == 0) {
       const std::string names = without_blanks(line);
       columns = names == kPositions ? 4 : names == kPoses ? 8 : 0;
       if (columns == 0)
-        return error("the header is not `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz`; begin the script with one");
+        return error("the header is not `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz`", "begin the script with one");
       continue;
     }
     double v[8] = {0, 0, 0, 0, 1, 0, 0, 0};
     if (!parse_row(line, v, columns))
-      return error(columns == 4
-                       ? "this row is not four finite numbers between commas; write time_s,x,y,z"
-                       : "this row is not eight finite numbers between commas; write time_s,x,y,z,qw,qx,qy,qz");
+      return error(fmt::format("this row is not {} finite numbers between commas", columns == 4 ? "four" : "eight"),
+                   fmt::format("write {}", columns == 4 ? kPositions : kPoses));
     if (!path.rows.empty() && !(v[0] > path.rows.back().time))
-      return error("time does not grow from the row before; sort the rows and remove doubles");
+      return error("time does not grow from the row before", "sort the rows and remove doubles");
     const dquat rotation(v[4], v[5], v[6], v[7]);
     const double norm = std::hypot(std::hypot(v[4], v[5]), std::hypot(v[6], v[7]));
     if (!(norm > 1e-6) || !std::isfinite(norm))
-      return error("the quaternion has no length; write 1,0,0,0 for no rotation");
+      return error("the quaternion has no length", "write 1,0,0,0 for no rotation");
     if (path.rows.size() >= most(limits::kScriptRows)) {
       const double rows = static_cast<double>(path.rows.size() + 1);
-      return Error{where, "has " + beyond(limits::kScriptRows, rows, "split the script or sample it more coarsely")};
+      return error_at(where, beyond("has", limits::kScriptRows, rows, "split the script or sample it more coarsely"));
     }
     path.rows.push_back({v[0], {v[1], v[2], v[3]}, rotation * (1.0 / norm)});
   }
   path.turns = columns == 8;
   if (path.rows.empty())
-    return Error{where, "holds no rows; write a header `time_s,x,y,z` and at least one row below it"};
+    return Error{where, "holds no rows", "write a header `time_s,x,y,z` and at least one row below it"};
   return path;
 }
 
@@ -103,9 +103,8 @@ Result<const Path*> ScriptLibrary::read(const std::filesystem::path& file, bool 
   if (!script) return script.error();
   if (is_new) rows_ += static_cast<double>(script->rows.size());
   if (copied) rows_ += static_cast<double>(script->rows.size());
-  if (const std::string over = LevelBudget::ask(limits::kScriptRows, rows_, "sample the scripts more coarsely");
-      !over.empty())
-    return Error{file.string(), over};
+  if (const auto over = LevelBudget::ask(limits::kScriptRows, rows_, "sample the scripts more coarsely"))
+    return error_at(file.string(), *over);
   return &*script;
 }
 

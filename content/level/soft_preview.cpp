@@ -42,9 +42,8 @@ Result<SoftPreview> preview_soft_body(const BuiltMesh& surface, const SoftBody& 
   preview.volume = total_volume(tets);
   preview.wall = tets.report.wall;
   preview.step_ms = step_ms(preview.tetrahedra, machine_slowness());
-  preview.findings = std::move(tets.report.findings);
-  if (std::string doubt = locking_doubt(body, preview.tetrahedra); !doubt.empty())
-    preview.findings.push_back(std::move(doubt));
+  preview.notes = std::move(tets.report.notes);
+  if (std::optional<Note> doubt = locking_doubt(body, preview.tetrahedra)) preview.notes.push_back(*doubt);
   put_in_order(tets, tissue->group);
   preview.edges = edges_of(tets.tets);
   preview.nodes = tets.nodes;

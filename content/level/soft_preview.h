@@ -16,10 +16,10 @@ struct SoftPreview {
   std::uint32_t parts = 0;                // kept
   std::uint32_t parts_lost = 0;           // dropped as too small (tet_parts.h)
   TetQuality quality;
-  double volume = 0.0;   // [m3]
-  double wall = 0.0;     // [m] wall thickness; 0: not a thin wall
-  double step_ms = 0.0;  // [ms] estimated time of a soft step on this machine, with tool contact (step_cost.h)
-  std::vector<std::string> findings;  // as in inspect, without the body's name
+  double volume = 0.0;      // [m3]
+  double wall = 0.0;        // [m] wall thickness; 0: not a thin wall
+  double step_ms = 0.0;     // [ms] estimated time of a soft step on this machine, with tool contact (step_cost.h)
+  std::vector<Note> notes;  // as in inspect, without the body's name
 
   TetMesh body;  // without embedding; nodes in the order free, handle, pinned
 

@@ -16,7 +16,7 @@ namespace {
 
 fs::path g_soft_store;
 
-constexpr std::uint64_t kBegin = 0x31746f6f66546c50, kEnd = ~kBegin;  // of a file
+constexpr std::uint64_t kBegin = 0x32746f6f66546c50, kEnd = ~kBegin;  // of a file
 
 // A structured binding names every member: who adds one to these is told here.
 void visit_members(auto& io, auto& of, const BuiltMesh*) {
@@ -45,8 +45,12 @@ void visit_members(auto& io, auto& of, const TetMesh*) {
   io(name, nodes, free_count, handle_count, tets, embedding, start, quality, report);
 }
 void visit_members(auto& io, auto& of, const TetReport*) {
-  auto& [cell, coarsest, wall, parts_dropped, volume_dropped, thin, least_thickness, thinnest, findings] = of;
-  io(cell, coarsest, wall, parts_dropped, volume_dropped, thin, least_thickness, thinnest, findings);
+  auto& [cell, coarsest, wall, parts_dropped, volume_dropped, thin, least_thickness, thinnest, notes, findings] = of;
+  io(cell, coarsest, wall, parts_dropped, volume_dropped, thin, least_thickness, thinnest, notes, findings);
+}
+void visit_members(auto& io, auto& of, const Note*) {
+  auto& [what, cure, code, about] = of;
+  io(what, cure, code, about);
 }
 void visit_members(auto& io, auto& of, const SoftParts*) {
   auto& [surface, tets, notes] = of;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "content/files/file_io.h"
+#include "content/level/node_error.h"
 #include "content/level/script.h"
 
 namespace pliant {
@@ -67,12 +68,12 @@ class MotionMaker {
     const LevelChannel* channel;
   };
 
-  Error at(std::size_t n, std::string what) const {
-    return {level_.path.filename().string() + ": node `" + level_.nodes[n].name + "`", std::move(what),
-            static_cast<std::int32_t>(n)};
+  Error at(std::size_t n, std::string what, std::string cure) const {
+    return node_error(level_, n, {"", std::move(what), std::move(cure), "level.motion"});
   }
-  void note(std::size_t n, const std::string& what) {
-    out_.notes.push_back("node `" + level_.nodes[n].name + "` " + what);
+  Error around(std::size_t n, const Error& error) const { return node_error_around(level_, n, error); }
+  void note(std::size_t n, const std::string& what, const std::string& cure = {}) {
+    out_.notes.push_back("node `" + level_.nodes[n].name + "` " + sentence_of(what, cure));
   }
 
   // Finds nodes that can be touched or have such a node below them; and whether anything is moved by contacts.
@@ -124,26 +125,29 @@ class MotionMaker {
       else
         twice = true;
     }
-    if (twice) note(n, "is moved by several animations: the first counts; name one in PLIANT_motion/animation");
+    if (twice) note(n, "is moved by several animations: the first counts", "name one in PLIANT_motion/animation");
     if (found) return Done{};
     if (!asked.animation.empty())
-      return at(n, "PLIANT_motion/animation names `" + asked.animation.substr(0, 100) +
-                       "`, which does not move this node; name an animation that does, or leave the key out");
+      return at(n,
+                "PLIANT_motion/animation names `" + asked.animation.substr(0, 100) + "`, which does not move this node",
+                "name an animation that does, or leave the key out");
     note(n, "has PLIANT_motion, but no animation moves it and it names no script");
     return Done{};
   }
 
   Status read_script(std::size_t n, const std::string& file, PrescribedMotion& motion) {
     const Result<std::filesystem::path> path = confined_path(folder_, file);
-    if (!path) return at(n, path.error().message());
+    if (!path) return around(n, path.error());
     const Result<const Path*> read = scripts_.read(*path, true);
-    if (!read) return at(n, read.error().message());
+    if (!read) return around(n, read.error());
     const Path* script = *read;
     for (const PathRow& row : script->rows) {
       const dvec3 far = glm::abs(row.position);
       if (row.time < 0.0 || row.time > kFarthestMove || std::max({far.x, far.y, far.z}) > kFarthestMove)
-        return at(n, fmt::format("is moved by {}, which has a time or place outside 0 to {:g} s and {:g} m; correct it",
-                                 file.substr(0, 100), kFarthestMove, kFarthestMove));
+        return at(n,
+                  fmt::format("is moved by {}, which has a time or place outside 0 to {:g} s and {:g} m",
+                              file.substr(0, 100), kFarthestMove, kFarthestMove),
+                  "correct it");
       motion.translation.times.push_back(row.time);
       motion.translation.values.emplace_back(row.position, 0.0);
       if (!script->turns) continue;
@@ -164,7 +168,7 @@ class MotionMaker {
     if (motion.rotation.empty() || is_even(above)) return Done{};
     constexpr const char* kUneven = "the nodes above it scale unevenly, so that turning it would change its shape";
     if (level_.nodes[n].motion && !level_.nodes[n].motion->script.empty())
-      return at(n, fmt::format("is turned by a script, but {}; apply their scale to the mesh", kUneven));
+      return at(n, fmt::format("is turned by a script, but {}", kUneven), "apply their scale to the mesh");
     motion.rotation = {};
     note(n, fmt::format("is not turned by its animation: {}", kUneven));
     return Done{};
@@ -173,18 +177,15 @@ class MotionMaker {
   Status check_carried(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
     if (node.soft_body || node.rigid_body || node.handle)
-      return at(
-          n,
-          "is a soft or rigid body under a node that an animation or a script moves, which is not supported; hang "
-          "it elsewhere, or set PLIANT_motion/speed of that node to 0");
+      return at(n, "is a soft or rigid body under a node that an animation or a script moves, which is not supported",
+                "hang it elsewhere, or set PLIANT_motion/speed of that node to 0");
     if (node.deformable && something_is_pushed_)
-      return at(n,
-                "is moved by an animation or a script in a level with soft or rigid bodies, which is not supported; "
+      return at(n, "is moved by an animation or a script in a level with soft or rigid bodies, which is not supported",
                 "leave those out, or set PLIANT_motion/speed of the node to 0");
     if (node.deformable) {
       const dmat4& m = out_.world[n];
       if (length(dvec3(m[0])) == 0.0 || length(dvec3(m[1])) == 0.0)
-        return at(n, "moves with a scale of zero; give the node and its parents a scale other than 0");
+        return at(n, "moves with a scale of zero", "give the node and its parents a scale other than 0");
     }
     if ((node.camera || node.light || node.probe || node.device) && left_behind_.empty()) left_behind_ = node.name;
     return Done{};

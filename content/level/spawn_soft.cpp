@@ -41,9 +41,8 @@ Result<TetMesh> read_tets(const std::string& name, const std::string& file, cons
     for (Tet& tet : mesh.tets) std::swap(tet[2], tet[3]);
   for (const Tet& tet : mesh.tets)
     if (!(tet_volume(mesh.nodes, tet) > 0.0))
-      return Error{file,
-                   "has a tetrahedron without volume in the node's frame; give the node and its parents a scale "
-                   "other than 0"};
+      return Error{file, "has a tetrahedron without volume in the node's frame",
+                   "give the node and its parents a scale other than 0"};
   put_in_order(mesh, {});
   return mesh;
 }
@@ -67,13 +66,13 @@ Error in_crumbs(const TetMesh& tets, const SoftBody& body, const Mesh& surface) 
                                        1e2 * report.volume_dropped);
   if (report.wall > 0.0 && body.fill == Fill::kWall)
     return {"mesh `" + tets.name + "`",
-            what + fmt::format("a wall of {} is thinner than the cell of {}; fill the inside (\"fill\": \"solid\"), or "
-                               "give it a `thickness` of at least {}",
-                               length_text(std::max(report.wall, body.thickness)), cell,
-                               length_text(least_wall(surface, true)))};
-  return {"mesh `" + tets.name + "`", what +
-                                          fmt::format("it is thinner than the cell of {}; make `cell` smaller", cell) +
-                                          (body.fill == Fill::kWall ? ", or `thickness` larger" : "")};
+            what + fmt::format("a wall of {} is thinner than the cell of {}",
+                               length_text(std::max(report.wall, body.thickness)), cell),
+            fmt::format("fill the inside (\"fill\": \"solid\"), or give it a `thickness` of at least {}",
+                        length_text(least_wall(surface, true))),
+            kFillNote};
+  return {"mesh `" + tets.name + "`", what + fmt::format("it is thinner than the cell of {}", cell),
+          std::string("make `cell` smaller") + (body.fill == Fill::kWall ? ", or `thickness` larger" : "")};
 }
 
 // Cells within the author's box are at most 1.5 times as wide and 2.4 times as long as in its middle.
@@ -133,8 +132,8 @@ Result<FilledBody> fill_body(const BuiltMesh& surface, const SoftBody& body, con
 Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
                                const std::stop_token& stop) {
   if (!body.focus.empty() && !meet(body.focus, surface.mesh.box))
-    return Error{"PLIANT_soft_body/focus",
-                 "lies beside the tissue, which reaches from " + text_of(surface.mesh.box) + "; move its box"};
+    return Error{"PLIANT_soft_body/focus", "lies beside the tissue, which reaches from " + text_of(surface.mesh.box),
+                 "move its box"};
   return fill_body(surface, body, handle, focus_of(body, surface.mesh), stop);
 }
 
@@ -143,35 +142,42 @@ Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, c
   return fill_body(surface, body, handle, focus, stop);
 }
 
-std::string locking_doubt(const SoftBody& body, std::size_t tetrahedra) {
+std::optional<Note> locking_doubt(const SoftBody& body, std::size_t tetrahedra) {
   const double bound = tetrahedra < kManyTets ? kLockingPoisson : kLockingPoissonOfMany;
-  if (body.poisson < bound) return "";
-  return fmt::format(
-      "has a Poisson's ratio of {:g}: from {:g} on its {} tetrahedra lock, and it is over 10 % too stiff where it is "
-      "pressed in; lower `poisson`, to 0.45 for instance, or make `cell` smaller",
-      body.poisson, bound, tetrahedra);
+  if (body.poisson < bound) return std::nullopt;
+  return Note{fmt::format("has a Poisson's ratio of {:g}: from {:g} on its {} tetrahedra lock, and it is over 10 % too "
+                          "stiff where it is pressed in",
+                          body.poisson, bound, tetrahedra),
+              "lower `poisson`, to 0.45 for instance, or make `cell` smaller",
+              "tissue.locks",
+              {}};
 }
 
-std::string soft_fault(const LevelNode& node) {
+std::optional<Note> soft_fault(const LevelNode& node) {
+  const auto fault = [&](const char* code, const char* what, const char* cure) {
+    return Note{what, cure, code, node.name};
+  };
   if (node.soft_body && node.deformable)
-    return "has both PLIANT_soft_body and PLIANT_deformable; keep one, a node is a soft body or a deformable surface";
+    return fault("level.soft_and_deformable", "has both PLIANT_soft_body and PLIANT_deformable",
+                 "keep one, a node is a soft body or a deformable surface");
   if (node.soft_body && node.rigid_body)
-    return "has both PLIANT_soft_body and PLIANT_rigid_body; keep one, or mark the rigid part with PLIANT_handle";
+    return fault("level.soft_and_rigid", "has both PLIANT_soft_body and PLIANT_rigid_body",
+                 "keep one, or mark the rigid part with PLIANT_handle");
   if (node.rigid_body && node.deformable)
-    return "has both PLIANT_rigid_body and PLIANT_deformable; keep one, a deformable surface does not move";
+    return fault("level.rigid_and_deformable", "has both PLIANT_rigid_body and PLIANT_deformable",
+                 "keep one, a deformable surface does not move");
   if (node.handle && !node.soft_body && !node.rigid_body)
-    return "has PLIANT_handle but neither PLIANT_soft_body nor PLIANT_rigid_body; add what the handle holds, or remove "
-           "it";
+    return fault("level.handle_of_nothing", "has PLIANT_handle but neither PLIANT_soft_body nor PLIANT_rigid_body",
+                 "add what the handle holds, or remove it");
   if (node.handle && node.rigid_body && node.rigid_body->fixed)
-    return "has PLIANT_handle on a rigid body that is `fixed`; remove `fixed`, so that a hand can move it, or "
-           "remove "
-           "the handle";
+    return fault("level.handle_of_fixed", "has PLIANT_handle on a rigid body that is `fixed`",
+                 "remove `fixed`, so that a hand can move it, or remove the handle");
   if (node.soft_body && node.mesh < 0 && node.soft_body->mesh.empty())
-    return "has PLIANT_soft_body but neither a mesh nor a tetrahedra file; give the node a mesh, or name a file in "
-           "`mesh`";
+    return fault("level.no_mesh", "has PLIANT_soft_body but neither a mesh nor a tetrahedra file",
+                 "give the node a mesh, or name a file in `mesh`");
   if (node.rigid_body && node.mesh < 0)
-    return "has PLIANT_rigid_body but no mesh; give the node a mesh, or remove the extension";
-  return "";
+    return fault("level.no_mesh", "has PLIANT_rigid_body but no mesh", "give the node a mesh, or remove the extension");
+  return std::nullopt;
 }
 
 Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, const mat4& to_object,

@@ -22,10 +22,10 @@ struct SoftParts {
 inline constexpr double kLockingPoisson = 0.47, kLockingPoissonOfMany = 0.49;  // [1]
 inline constexpr std::size_t kManyTets = 8 * kUsualTets;
 // A sentence (without the body's name) if a body with so many tetrahedra locks; else "".
-std::string locking_doubt(const SoftBody& body, std::size_t tetrahedra);
+std::optional<Note> locking_doubt(const SoftBody& body, std::size_t tetrahedra);
 
 // Conflicting extensions of a node, as text that follows "node X"; "": none.
-std::string soft_fault(const LevelNode& node);
+std::optional<Note> soft_fault(const LevelNode& node);
 
 // Fills a surface with tetrahedra as the body specifies, without embedding. Groups the nodes (handle, pinned), drops
 // small parts (tet_parts.h), and fills TetReport. Errors: those of fill_surface and group_nodes, and if most of the

@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr float kLargest = 10.0f, kSmallest = 1e-3f;        // [m] diagonal beyond which the unit is probably wrong
+constexpr float kSmallest = 1e-3f;                          // [m] diagonal below which the unit is probably wrong
 constexpr double kSmallestUnit = 1e-9, kLargestUnit = 1e6;  // [m]
 constexpr std::pair<const char*, double> kUnits[] = {{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"in", 0.0254}};
 
@@ -25,9 +25,18 @@ Result<double> parse_unit(const std::string& text) {
   return Error{"--unit", "must be m, cm, mm, in, or metres for one unit such as 0.0254; got '" + text + "'"};
 }
 
-Status check_unit(const Level& level, double metres) {
-  if (metres == 1.0 || !level.has_pliant()) return Done{};
-  return Error{"--unit", "is for bare meshes; this level's PLIANT extensions name lengths in metres: scale its nodes"};
+Status check_unit(const Level& level, std::optional<double> metres) {
+  if (metres.value_or(1.0) == 1.0 || !level.has_pliant()) return Done{};
+  return Error{"--unit", "is for bare meshes",
+               "this level's PLIANT extensions name lengths in metres: scale its nodes"};
+}
+
+Status check_unit_said(const Level& level, std::optional<double> metres) {
+  if (metres || !level.unitless || level.has_pliant()) return Done{};
+  const float across = bounds(level).diagonal();
+  if (!(across > kRoom)) return Done{};
+  return Error{level.path.string(), fmt::format("is {:.3g} m across", across), "say its unit, e.g. `--unit mm`",
+               kUnitUnsaid};
 }
 
 void scale_roots(Level& level, double metres) {
@@ -65,13 +74,13 @@ Box bounds(const Level& level) {
 
 std::string unit_hint(const Box& box, bool bare) {
   const float diagonal = box.diagonal();
-  if (box.empty() || (diagonal <= kLargest && diagonal >= kSmallest)) return {};
+  if (box.empty() || (diagonal <= kRoom && diagonal >= kSmallest)) return {};
   if (!bare)
     return fmt::format(
         "its diagonal is {:.4g} m, unusual for metres; where the lengths of its PLIANT extensions are in metres, scale "
         "its nodes",
         diagonal);
-  if (diagonal > kLargest)
+  if (diagonal > kRoom)
     return fmt::format(
         "its diagonal is {:.4g} m, unusual for metres; if the file is in mm, use `pliant run FILE --unit mm`, or "
         "convert "

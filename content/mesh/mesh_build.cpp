@@ -58,8 +58,8 @@ Result<std::vector<float>> paint(const std::string& name, const PaintedAttribute
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!kPaintedRange.holds(static_cast<double>(values[i])))
         return Error{"mesh `" + name + "`",
-                     std::string(attribute.name) +
-                         " holds a factor that is negative or not a number; paint it again, from 0 up"};
+                     std::string(attribute.name) + " holds a factor that is negative or not a number",
+                     "paint it again, from 0 up"};
       const std::uint32_t v = welded.touch_vertex[gathered.first_vertex[n] + i];
       if (v == kNoVertex) continue;
       sum[v] += static_cast<double>(values[i]);
@@ -81,7 +81,7 @@ double mean_edge_length(const Mesh& mesh) {
 
 }  // namespace
 
-std::string winding_note(const MeshReport& report) {
+std::optional<Note> winding_note(const MeshReport& report) {
   std::string what;
   const auto add = [&](std::uint32_t count, const char* one, const char* many) {
     if (count != 0) what += fmt::format("{}{} {}", what.empty() ? "" : " and ", count, count == 1 ? one : many);
@@ -89,20 +89,23 @@ std::string winding_note(const MeshReport& report) {
   add(report.turned_triangles, "triangle wound against its neighbours", "triangles wound against their neighbours");
   add(report.turned_parts, "part that was inside out", "parts that were inside out");
   const bool one = report.turned_triangles + report.turned_parts == 1;
-  return what.empty() ? what
-                      : what + (one ? " is" : " are") + " turned over; `pliant convert --reorder` writes it mended";
+  if (what.empty()) return std::nullopt;
+  return Note{
+      what + (one ? " is" : " are") + " turned over", "`pliant convert --reorder` writes it mended", "mesh.turned", {}};
 }
 
-std::string winding_doubt(const MeshReport& report) {
+std::optional<Note> winding_doubt(const MeshReport& report) {
   std::string what;
   const auto add = [&](std::uint32_t count, const char* one, const char* many) {
     if (count != 0) what += fmt::format("{}{} {}", what.empty() ? "" : ", and ", count, count == 1 ? one : many);
   };
   add(report.unorientable_parts, "part has one side only", "parts have one side only");
   add(report.undecided_parts, "part may be inside out", "parts may be inside out");
-  return what.empty()
-             ? what
-             : what + ": the orientation is ambiguous; if forces point inwards, flip the winding and export again";
+  if (what.empty()) return std::nullopt;
+  return Note{what + ": the orientation is ambiguous",
+              "if forces point inwards, flip the winding and export again",
+              "mesh.winding",
+              {}};
 }
 
 namespace {
@@ -220,8 +223,8 @@ Result<TouchMesh> build_touch_mesh(const std::string& name, std::span<const Prim
 
   touch.welded = weld(touch.gathered, touch.report);
   if (touch.welded.triangle.empty())
-    return Error{"mesh `" + name + "`",
-                 "no triangle with an area is left; give it a surface, or remove the mesh from its node"};
+    return Error{"mesh `" + name + "`", "no triangle with an area is left",
+                 "give it a surface, or remove the mesh from its node"};
   lay_out(touch.welded, mesh);
   if (stops()) return stopped;
   touch.corners = corners_of(mesh);

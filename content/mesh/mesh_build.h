@@ -32,10 +32,10 @@ struct MeshReport {
   bool made_normals = false, made_tangents = false;
 };
 
-// One sentence on turned triangles; empty: none.
-std::string winding_note(const MeshReport& report);
-// One sentence on triangles whose winding may be wrong but could not be decided.
-std::string winding_doubt(const MeshReport& report);
+// On turned triangles, if there are any.
+std::optional<Note> winding_note(const MeshReport& report);
+// On triangles whose winding may be wrong but could not be decided.
+std::optional<Note> winding_doubt(const MeshReport& report);
 
 struct BuiltMesh {
   Mesh mesh;

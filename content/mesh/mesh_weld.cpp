@@ -174,7 +174,7 @@ Result<Gathered> gather(const std::string& name, std::span<const Primitive> prim
     if (p.index.size() % 3 != 0) return malformed;
   }
   if (vertices > kMostVertices || triangles > kMostTriangles)
-    return Error{"mesh `" + name + "`", "more than 2^28 vertices or 2^29 triangles; split or simplify it"};
+    return Error{"mesh `" + name + "`", "more than 2^28 vertices or 2^29 triangles", "split or simplify it"};
 
   const dmat4 m(to_object);
   const bool mirrors = glm::determinant(dmat3(m)) < 0.0;
@@ -203,8 +203,8 @@ Result<Gathered> gather(const std::string& name, std::span<const Primitive> prim
   all.first_vertex.push_back(static_cast<std::uint32_t>(first));
   for (const vec3& p : all.position)
     if (!reasonable(p))
-      return Error{"mesh `" + name + "`",
-                   "a vertex position is not a finite number within 1e9 m; repair the file, or scale it down"};
+      return Error{"mesh `" + name + "`", "a vertex position is not a finite number within 1e9 m",
+                   "repair the file, or scale it down"};
   return all;
 }
 

@@ -82,11 +82,9 @@ Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, const L
 
 Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, const LatticeWish& wish, LongWork& progress) {
   const double cell = wish.cell;
-  const auto too_many = [&](const std::string& how_many) {
-    return Error{"mesh `" + surface.name + "`", fmt::format("a cell of {:.3g} m makes {}", cell, how_many)};
-  };
+  const std::string where = "mesh `" + surface.name + "`", makes = fmt::format("a cell of {:.3g} m makes", cell);
   const auto count = [&](const Limit& limit, double found) {
-    return too_many(beyond(limit, std::ceil(found), "choose a larger one"));
+    return error_at(where, beyond(makes, limit, std::ceil(found), "choose a larger one"));
   };
   const double nodes = LatticeGrid::node_count(region.box(), cell, wish.focus);
   if (nodes > static_cast<double>(most(limits::kLatticeNodes))) return count(limits::kLatticeNodes, nodes);
@@ -100,8 +98,8 @@ Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, const La
   Result<Stuffing> stuffing = stuff(surface, region, grid, most(limits::kTets), progress, wish.stop);
   if (!stuffing) return stuffing.error();
   if (stuffing->beyond)
-    return too_many(
-        fmt::format("more than {} tetrahedra; choose a larger one, or allow it with --limits 2", most(limits::kTets)));
+    return Error{where, fmt::format("{} more than {} tetrahedra", makes, most(limits::kTets)),
+                 "choose a larger one, or allow it with --limits 2", "limit.exceeded"};
   return Found{cell, std::move(*stuffing)};
 }
 
@@ -110,30 +108,31 @@ Error nothing_held(const Mesh& surface, const SurfaceShape& shape, const Lattice
   const std::string where = "mesh `" + surface.name + "`";
   const bool sheet = shape.kind == SurfaceKind::kSheet;
   if (sheet && wish.fill == Fill::kWall && wish.thickness > 0.0)
-    return {where, fmt::format("holds no tetrahedra: its layer of {} is thinner than the cell; make `thickness` larger "
-                               "or `cell` smaller",
-                               length_text(wish.thickness))};
+    return {where,
+            fmt::format("holds no tetrahedra: its layer of {} is thinner than the cell", length_text(wish.thickness)),
+            "make `thickness` larger or `cell` smaller"};
   if (shape.kind == SurfaceKind::kWall && wish.fill == Fill::kWall)
-    return {where,
-            fmt::format("holds no tetrahedra: a wall of {} is thinner than any usual cell; fill the inside (\"fill\": "
-                        "\"solid\"), or give it a `thickness` of at least {}",
-                        length_text(shape.thickness), length_text(least_wall(surface, true)))};
+    return {
+        where,
+        fmt::format("holds no tetrahedra: a wall of {} is thinner than any usual cell", length_text(shape.thickness)),
+        fmt::format("fill the inside (\"fill\": \"solid\"), or give it a `thickness` of at least {}",
+                    length_text(least_wall(surface, true))),
+        kFillNote};
   if (sheet)
-    return {where,
-            "holds no tetrahedra: it is an open surface that encloses nothing; close it, or give it a thickness "
-            "(\"fill\": \"wall\", \"thickness\" in metres)"};
-  return {where,
-          "holds no tetrahedra: it encloses nothing, or is thinner than the cell; close it, or make `cell` smaller"};
+    return {where, "holds no tetrahedra: it is an open surface that encloses nothing",
+            "close it, or give it a thickness (\"fill\": \"wall\", \"thickness\" in metres)"};
+  return {where, "holds no tetrahedra: it encloses nothing, or is thinner than the cell",
+          "close it, or make `cell` smaller"};
 }
 
 }  // namespace
 
 Result<TetMesh> fill_surface(const Mesh& surface, const LatticeWish& wish) {
   if (!(wish.cell >= 0.0) || !std::isfinite(wish.cell))
-    return Error{"mesh `" + surface.name + "`",
-                 "its cell is not a length; give it in metres, or 0 for one sized from the bounds"};
+    return Error{"mesh `" + surface.name + "`", "its cell is not a length",
+                 "give it in metres, or 0 for one sized from the bounds"};
   if (!(wish.thickness >= 0.0) || !std::isfinite(wish.thickness))
-    return Error{"mesh `" + surface.name + "`", "its thickness is not a length; give it in metres"};
+    return Error{"mesh `" + surface.name + "`", "its thickness is not a length", "give it in metres"};
   LongWork progress;
   const SurfaceShape shape = measure_shape(surface);
   const Inside inside(surface);

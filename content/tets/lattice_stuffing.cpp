@@ -51,7 +51,7 @@ class Stuffer {
  private:
   void report() { progress_.say("filling `" + name_ + "` with tetrahedra"); }
 
-  Error stopped() const { return {"mesh `" + name_ + "`", "its filling was stopped; nothing is wrong with it"}; }
+  Error stopped() const { return {"mesh `" + name_ + "`", "its filling was stopped", "nothing is wrong with it"}; }
 
   // The outermost nodes stay outside: the grid extends two cells beyond the surface.
   Status find_sides() {

@@ -35,10 +35,10 @@ Result<TetFile> clean(RawTets raw, const std::string& name) {
     if (n > 0) out.notes.push_back(count(n, one, many));
   };
   if (raw.tets.size() > most(limits::kTets))
-    return Error{name, "holds " + beyond(limits::kTets, static_cast<double>(raw.tets.size()), "make a coarser mesh")};
+    return error_at(name, beyond("holds", limits::kTets, static_cast<double>(raw.tets.size()), "make a coarser mesh"));
   for (const dvec3& p : raw.nodes)
     if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthestNode))
-      return Error{name, "has a node that is not a finite number within 1e9 m; repair it, or scale it down"};
+      return Error{name, "has a node that is not a finite number within 1e9 m", "repair it, or scale it down"};
 
   std::size_t flat = 0, turned = 0;
   out.tets.reserve(raw.tets.size());
@@ -55,9 +55,9 @@ Result<TetFile> clean(RawTets raw, const std::string& name) {
     out.tets.push_back(t);
   }
   if (out.tets.empty())
-    return Error{name, raw.tets.empty()
-                           ? "holds no tetrahedra; fill the mesh with first-order tetrahedra and save again"
-                           : "holds only tetrahedra without volume; repair the mesh"};
+    return raw.tets.empty()
+               ? Error{name, "holds no tetrahedra", "fill the mesh with first-order tetrahedra and save again"}
+               : Error{name, "holds only tetrahedra without volume", "repair the mesh"};
 
   constexpr std::uint32_t kUnused = 0xffffffffu;
   std::vector<std::uint32_t> number(raw.nodes.size(), kUnused);

@@ -1,5 +1,8 @@
 #include "content/tets/tet_file.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 namespace pliant {
@@ -14,66 +17,36 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-// The file with the same name and the other extension, in the same letter case.
-fs::path partner(fs::path path, const char* lower, const char* upper) {
-  const std::string extension = path.extension().string();
-  const bool is_upper = extension.size() > 1 && std::isupper(static_cast<unsigned char>(extension[1]));
-  return path.replace_extension(is_upper ? upper : lower);
-}
-
-template <Result<TetFile> (*parse)(std::span<const std::uint8_t>, const std::string&)>
-Result<TetFile> read_one(const fs::path& path, const fs::path&) {
-  Result<Bytes> bytes = read_file(path, limits::kTetFile);
-  if (!bytes) return bytes.error();
-  return parse(*bytes, path.string());
-}
-
-// TetGen writes two files; either may be given.
-Result<TetFile> read_tetgen(const fs::path& path, const fs::path& within) {
-  const bool is_node = lower_extension(path) == ".node";
-  Result<Bytes> bytes = read_file(path, limits::kTetFile);
-  if (!bytes) return bytes.error();
-  const fs::path beside = tetgen_partner(path);
-  if (!within.empty()) {
-    std::error_code error;
-    const fs::path name = fs::relative(beside.parent_path(), within, error) / beside.filename();
-    if (const Result<fs::path> confined = confined_file(within, name); !confined) return confined.error();
-  }
-  Result<Bytes> other = read_file(beside, limits::kTetFile);
-  if (!other) return other.error();
-  const std::string stem = fs::path(path).replace_extension().string();
-  return is_node ? parse_tetgen(*bytes, *other, stem) : parse_tetgen(*other, *bytes, stem);
-}
-
-// To add a format: write a parser and add a line here. `within`: see load_tets.
-struct Format {
-  const char* extension;
-  Result<TetFile> (*read)(const fs::path& path, const fs::path& within);
-};
-constexpr Format kFormats[] = {
-    {".msh", read_one<parse_msh>},  // Gmsh 2 and 4
-    {".vtk", read_one<parse_vtk>},  // legacy VTK
-    {".node", read_tetgen},
-    {".ele", read_tetgen},
-};
-
-const Format* format_of(const fs::path& path) {
+const TetFormat* format_of(const fs::path& path) {
   const std::string extension = lower_extension(path);
-  for (const Format& format : kFormats)
-    if (extension == format.extension) return &format;
+  for (const TetFormat& format : tet_formats())
+    if (std::count(format.endings.begin(), format.endings.end(), extension)) return &format;
   return nullptr;
 }
 
 }  // namespace
 
+const std::vector<TetFormat>& tet_formats() {
+#define PLIANT_FORMAT(word, name, ...) TetFormat{name, {__VA_ARGS__}, read_##word},
+  static const std::vector<TetFormat> formats{PLIANT_TET_FORMATS(PLIANT_FORMAT)};
+#undef PLIANT_FORMAT
+  return formats;
+}
+
+std::vector<std::string> tet_endings() {
+  std::vector<std::string> all;
+  for (const TetFormat& format : tet_formats()) all.insert(all.end(), format.endings.begin(), format.endings.end());
+  return all;
+}
+
 bool is_tet_file(const fs::path& path) {
   return format_of(path) != nullptr;
 }
 
-fs::path tetgen_partner(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".node") return partner(path, ".ele", ".ELE");
-  return extension == ".ele" ? partner(path, ".node", ".NODE") : fs::path();
+Result<TetFile> read_parsed(const fs::path& path, TetParser parse) {
+  Result<Bytes> bytes = read_file(path, limits::kTetFile);
+  if (!bytes) return bytes.error();
+  return parse(*bytes, path.string());
 }
 
 Result<TetFile> load_named_tets(const fs::path& folder, const std::string& name) {
@@ -83,10 +56,9 @@ Result<TetFile> load_named_tets(const fs::path& folder, const std::string& name)
 }
 
 Result<TetFile> load_tets(const fs::path& path, const fs::path& within) {
-  if (const Format* format = format_of(path)) return format->read(path, within);
-  std::string known;
-  for (const Format& format : kFormats) known += (known.empty() ? "" : ", ") + std::string(format.extension);
-  return Error{path.string(), "is no tetrahedra file that is read; formats are: " + known};
+  if (const TetFormat* format = format_of(path)) return format->read(path, within);
+  return Error{path.string(), "is no tetrahedra file that is read",
+               fmt::format("formats are: {}", fmt::join(tet_endings(), ", "))};
 }
 
 }  // namespace pliant

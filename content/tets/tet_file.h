@@ -1,4 +1,4 @@
-// Tetrahedra from files: Gmsh .msh (2.2 and 4.1), legacy VTK .vtk, TetGen .node and .ele. ASCII and binary.
+// Tetrahedra from files, ASCII and binary. To add a format, write read_<word> in a file of its own and a line below.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,28 @@ struct TetFile {
   std::vector<std::string> notes;  // on skipped, turned or dropped elements
 };
 
-bool is_tet_file(const std::filesystem::path& path);  // by its extension
+// FORMAT(word, name, endings...): read_<word> in content/tets/tet_<word>.cpp.
+#define PLIANT_TET_FORMATS(FORMAT)             \
+  FORMAT(msh, "Gmsh 2.2 and 4.1", ".msh")      \
+  FORMAT(vtk, "legacy VTK", ".vtk")            \
+  FORMAT(tetgen, "TetGen", ".node", ".ele")
+
+#define PLIANT_FORMAT(word, ...) \
+  Result<TetFile> read_##word(const std::filesystem::path& path, const std::filesystem::path& within);
+PLIANT_TET_FORMATS(PLIANT_FORMAT)
+#undef PLIANT_FORMAT
+
+struct TetFormat {
+  std::string name;
+  std::vector<std::string> endings;  // in lower case, with their dot
+  Result<TetFile> (*read)(const std::filesystem::path& path, const std::filesystem::path& within);  // as load_tets
+};
+const std::vector<TetFormat>& tet_formats();
+std::vector<std::string> tet_endings();               // of all formats
+bool is_tet_file(const std::filesystem::path& path);  // by its ending
+// Reads a whole file and parses it; for formats of one file.
+using TetParser = Result<TetFile> (*)(std::span<const std::uint8_t> bytes, const std::string& name);
+Result<TetFile> read_parsed(const std::filesystem::path& path, TetParser parse);
 // The other file of TetGen's pair; empty for other formats.
 std::filesystem::path tetgen_partner(const std::filesystem::path& path);
 

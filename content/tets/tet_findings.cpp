@@ -32,33 +32,32 @@ double least_wall(const Mesh& surface, bool doubled) {
 }
 
 void report_wall(const SurfaceShape& shape, Fill fill, double thickness, TetReport& report) {
+  const auto note = [&](std::string what, std::string cure = {}) {
+    report.notes.push_back({std::move(what), std::move(cure), kFillNote, {}});
+  };
   if (shape.kind == SurfaceKind::kSheet) {
-    report.findings.push_back(
-        fill == Fill::kWall
-            ? fmt::format("is an open surface; tissue of {} lies behind it", length_text(thickness))
-            : "is an open surface: what it half encloses is filled; close it, or give it a thickness (\"fill\": "
-              "\"wall\", \"thickness\" in metres)");
+    if (fill == Fill::kWall)
+      note("is an open surface", fmt::format("tissue of {} lies behind it", length_text(thickness)));
+    else
+      note("is an open surface: what it half encloses is filled",
+           "close it, or give it a thickness (\"fill\": \"wall\", \"thickness\" in metres)");
     return;
   }
   if (shape.kind == SurfaceKind::kWall) {
     report.wall = shape.thickness;
     const std::string wall = "is a wall of " + length_text(shape.thickness);
     if (fill == Fill::kSolid)
-      report.findings.push_back(wall +
-                                ", its inside is filled (\"fill\": \"solid\") and its inner sheet left out; to keep it "
-                                "hollow, give it thickness "
-                                "(\"fill\": \"wall\", \"thickness\" in metres)");
+      note(wall + ", its inside is filled (\"fill\": \"solid\") and its inner sheet left out",
+           "to keep it hollow, give it thickness (\"fill\": \"wall\", \"thickness\" in metres)");
     else if (thickness > shape.thickness)
-      report.findings.push_back(wall + ", made " + length_text(thickness) + " thick inwards");
+      report.notes.push_back({wall + ", made " + length_text(thickness) + " thick inwards", {}, "tissue.wall", {}});
     else
-      report.findings.push_back(wall +
-                                ", filled as it is; fill the inside (\"fill\": \"solid\"), or give it a larger "
-                                "`thickness`, where that is too thin to hold");
+      note(wall + ", filled as it is",
+           "fill the inside (\"fill\": \"solid\"), or give it a larger `thickness`, where that is too thin to hold");
     return;
   }
   if (fill == Fill::kWall && !(thickness > 0.0))
-    report.findings.push_back(
-        "is no thin wall, so \"fill\": \"wall\" changes nothing; give it a `thickness`, or leave `fill` out");
+    note("is no thin wall, so \"fill\": \"wall\" changes nothing", "give it a `thickness`, or leave `fill` out");
 }
 
 void report_thin_places(const SurfaceShape& shape, const FillRegion& region, const LatticeWish& wish, TetMesh& mesh) {
@@ -80,23 +79,31 @@ void report_thin_places(const SurfaceShape& shape, const FillRegion& region, con
   const double width = width_at(at->place), cell = least / kHeldCells / width;
   const double tets = wish.focus ? static_cast<double>(mesh.tets.size()) * std::pow(report.cell / cell, 3)
                                  : kTetsPerCell * total_volume(mesh) / (cell * cell * cell);
-  report.findings.push_back(fmt::format(
-      "is thin over {:.0f} % of its surface, {} at ({:.3g}, {:.3g}, {:.3g}) m, for a cell of {}: it bends there as "
-      "single elements do, or crumples; a `cell` of {:.2g} m holds it, with some {:.0f} tetrahedra",
-      1e2 * report.thin, length_text(least), at->place.x, at->place.y, at->place.z, length_text(report.cell * width),
-      cell, tets));
+  report.notes.push_back(
+      {fmt::format("is thin over {:.0f} % of its surface, {} at ({:.3g}, {:.3g}, {:.3g}) m, for a cell of {}: it bends "
+                   "there as single elements do, or crumples",
+                   1e2 * report.thin, length_text(least), at->place.x, at->place.y, at->place.z,
+                   length_text(report.cell * width)),
+       fmt::format("a `cell` of {:.2g} m holds it, with some {:.0f} tetrahedra", cell, tets),
+       "tissue.thin",
+       {}});
 }
 
 void report_parts(std::uint32_t kept, std::uint32_t of_surface, TetReport& report) {
   if (report.parts_dropped > 0)
-    report.findings.push_back(fmt::format(
-        "lost {} part{} too small to keep ({:.2g} % of its tissue); the surface there rides on what is nearest",
-        report.parts_dropped, report.parts_dropped == 1 ? "" : "s", 1e2 * report.volume_dropped));
+    report.notes.push_back(
+        {fmt::format("lost {} part{} too small to keep ({:.2g} % of its tissue)", report.parts_dropped,
+                     report.parts_dropped == 1 ? "" : "s", 1e2 * report.volume_dropped),
+         "the surface there rides on what is nearest",
+         "tissue.parts_lost",
+         {}});
   if (kept > of_surface)
-    report.findings.push_back(
-        fmt::format("its tetrahedra fall into {} parts where its surface has {}: what joins them is thinner than the "
-                    "cell; make `cell` smaller",
-                    kept, of_surface));
+    report.notes.push_back({fmt::format("its tetrahedra fall into {} parts where its surface has {}: what joins them "
+                                        "is thinner than the cell",
+                                        kept, of_surface),
+                            "make `cell` smaller",
+                            "tissue.falls_apart",
+                            {}});
 }
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Findings for the user about tetrahedra that fill a surface: TetReport::findings.
+// Notes for the user about tetrahedra that fill a surface: TetReport::notes.
 #pragma once
 
 #include <string>
@@ -8,6 +8,9 @@
 #include "content/tets/lattice.h"
 
 namespace pliant {
+
+// Code of notes and errors that another `fill` cures.
+inline constexpr const char* kFillNote = "tissue.fill";
 
 // "0.93 mm", "12 cm", "1.4 m".
 std::string length_text(double metres);

@@ -65,23 +65,19 @@ Result<std::vector<NodeGroup>> group_nodes(const std::vector<dvec3>& nodes, cons
   const std::string extent = "the tissue reaches from " + text_of(surface.mesh.box);
   if (!body.pinned.empty() || is_painted(surface.pinned)) {
     if (!claim(nodes, surface, body.pinned, surface.pinned, NodeGroup::kPinned, group))
-      return Error{"PLIANT_soft_body/pinned",
-                   "holds no node of the tetrahedra; " + (body.pinned.empty() ? "paint _PINNED over more than a cell"
-                                                                              : "move or widen its box: " + extent)};
+      return Error{"PLIANT_soft_body/pinned", "holds no node of the tetrahedra",
+                   (body.pinned.empty() ? "paint _PINNED over more than a cell" : "move or widen its box: " + extent)};
   }
   if (handle) {
     if (handle->box.empty() && !is_painted(surface.handle))
-      return Error{"PLIANT_handle", "defines no rigid part; give it a `box`, or paint _HANDLE with 1 on the mesh"};
+      return Error{"PLIANT_handle", "defines no rigid part", "give it a `box`, or paint _HANDLE with 1 on the mesh"};
     if (!claim(nodes, surface, handle->box, surface.handle, NodeGroup::kHandle, group))
-      return Error{"PLIANT_handle/box",
-                   "holds no node of the tetrahedra; " +
-                       (handle->box.empty() ? "paint _HANDLE over more than a cell" : "move or widen it: " + extent)};
+      return Error{"PLIANT_handle/box", "holds no node of the tetrahedra",
+                   (handle->box.empty() ? "paint _HANDLE over more than a cell" : "move or widen it: " + extent)};
   }
   if (std::find(group.begin(), group.end(), NodeGroup::kFree) == group.end())
-    return Error{
-        "PLIANT_soft_body",
-        "has no free node: every node is pinned or on the handle; make `pinned` or the handle's box smaller, or use "
-        "PLIANT_rigid_body"};
+    return Error{"PLIANT_soft_body", "has no free node: every node is pinned or on the handle",
+                 "make `pinned` or the handle's box smaller, or use PLIANT_rigid_body"};
   return group;
 }
 

@@ -37,17 +37,17 @@ class Msh {
     if (Status s = format(); !s) return s.error();
     std::string_view word;
     while (text_.word(word)) {
-      if (word.size() < 2 || word[0] != '$') return text_.fault("has text between its sections; the file is damaged");
+      if (word.size() < 2 || word[0] != '$') return text_.fault("has text between its sections", "the file is damaged");
       const std::string section(word.substr(1, 60));
       end_line();
       Status status = Done{};
       if (section == "Nodes") status = is_four_ ? nodes_4() : nodes_2();
       if (section == "Elements") status = is_four_ ? elements_4() : elements_2();
       if (!status) return status.error();
-      if (!text_.skip_past("$End" + section)) return text_.fault("ends inside $" + section + "; it was cut short");
+      if (!text_.skip_past("$End" + section)) return text_.fault("ends inside $" + section, "it was cut short");
     }
-    if (raw_.nodes.empty()) return Error{name_, "has no $Nodes; save the mesh again"};
-    if (!has_elements_) return Error{name_, "has no $Elements; save the mesh again, with its volume elements"};
+    if (raw_.nodes.empty()) return Error{name_, "has no $Nodes", "save the mesh again"};
+    if (!has_elements_) return Error{name_, "has no $Elements", "save the mesh again, with its volume elements"};
     return clean(std::move(raw_), name_);
   }
 
@@ -58,23 +58,23 @@ class Msh {
     double version = 0.0;
     if (!text_.word(word) || word != "$MeshFormat" || !text_.number(version) || !text_.integer(binary) ||
         !text_.integer(size) || binary < 0 || binary > 1)
-      return text_.fault("is not a Gmsh file; it begins with $MeshFormat, version, kind and size");
+      return text_.fault("is not a Gmsh file", "it begins with $MeshFormat, version, kind and size");
     is_four_ = version == 4.1;
     if (!is_four_ && !(version >= 2.0 && version < 3.0))
-      return text_.fault(fmt::format("is of version {}; save it as 4.1 or 2.2", version));
+      return text_.fault(fmt::format("is of version {}", version), "save it as 4.1 or 2.2");
     if (size != 8 && !(is_four_ && size == 4))
-      return text_.fault(fmt::format("has numbers of {} bytes; save it with 8", size));
+      return text_.fault(fmt::format("has numbers of {} bytes", size), "save it with 8");
     wide_ = size == 8;
     end_line();
     if (binary == 1) {
       text_.set_binary(true, false);
       std::int32_t one = 0;
       if (!text_.raw(one) || (one != 1 && one != 0x01000000))
-        return text_.fault("does not say its byte order; save it again");
+        return text_.fault("does not say its byte order", "save it again");
       text_.set_binary(true, one != 1);
     }
     return text_.skip_past("$EndMeshFormat") ? Status(Done{})
-                                             : text_.fault("ends inside $MeshFormat; it was cut short");
+                                             : text_.fault("ends inside $MeshFormat", "it was cut short");
   }
 
   // Binary values begin after the end of the header line.
@@ -105,7 +105,7 @@ class Msh {
   bool point(dvec3& p) { return coordinate(p.x) && coordinate(p.y) && coordinate(p.z); }
 
   Status begin_nodes(std::uint64_t count) {
-    if (!raw_.nodes.empty()) return text_.fault("has $Nodes twice; save the mesh again");
+    if (!raw_.nodes.empty()) return text_.fault("has $Nodes twice", "save the mesh again");
     // In either encoding a node takes at least eight bytes.
     if (count > std::min<std::uint64_t>(most(limits::kTetFileNodes), text_.left() / 8 + 1))
       return text_.fault(
@@ -119,13 +119,13 @@ class Msh {
     std::sort(tags_.begin(), tags_.end(), [](const Tag& a, const Tag& b) { return a.tag < b.tag; });
     for (std::size_t i = 1; i < tags_.size(); ++i)
       if (tags_[i].tag == tags_[i - 1].tag)
-        return text_.fault(fmt::format("has two nodes of tag {}; save the mesh again", tags_[i].tag));
+        return text_.fault(fmt::format("has two nodes of tag {}", tags_[i].tag), "save the mesh again");
     return Done{};
   }
 
   Status nodes_2() {
     std::int64_t count = 0;
-    if (!text_.integer(count) || count < 0) return text_.fault("has $Nodes without a count; the file is damaged");
+    if (!text_.integer(count) || count < 0) return text_.fault("has $Nodes without a count", "the file is damaged");
     if (Status s = begin_nodes(static_cast<std::uint64_t>(count)); !s) return s;
     if (text_.binary()) end_line();
     for (std::int64_t i = 0; i < count; ++i) {
@@ -141,7 +141,7 @@ class Msh {
   Status nodes_4() {
     std::uint64_t blocks = 0, count = 0, least = 0, largest = 0;
     if (!size(blocks) || !size(count) || !size(least) || !size(largest))
-      return text_.fault("has $Nodes without its counts; the file is damaged");
+      return text_.fault("has $Nodes without its counts", "the file is damaged");
     if (Status s = begin_nodes(count); !s) return s;
     for (std::uint64_t b = 0; b < blocks; ++b) {
       std::int64_t dimension = 0, entity = 0, parametric = 0;
@@ -170,16 +170,16 @@ class Msh {
   }
 
   Error bad_node(std::uint64_t number) const {
-    return text_.fault(
-        fmt::format("node {} is not a tag and three finite coordinates; the file is damaged", number + 1));
+    return text_.fault(fmt::format("node {} is not a tag and three finite coordinates", number + 1),
+                       "the file is damaged");
   }
   Error bad_element(std::uint64_t number) const {
-    return text_.fault(fmt::format("element {} is cut short or damaged; save the mesh again", number + 1));
+    return text_.fault(fmt::format("element {} is cut short or damaged", number + 1), "save the mesh again");
   }
 
   // Elements take at least two bytes in ASCII; a block's claimed size is checked against the remaining bytes.
   Status begin_elements(std::uint64_t count) {
-    if (raw_.nodes.empty()) return text_.fault("has $Elements before $Nodes; save the mesh again");
+    if (raw_.nodes.empty()) return text_.fault("has $Elements before $Nodes", "save the mesh again");
     if (count > std::min<std::uint64_t>(most(limits::kTetFileEntries), text_.left() / 2 + 1))
       return text_.fault(
           fmt::format("claims {} elements, more than it holds or than {}", count, most(limits::kTetFileEntries)));
@@ -213,7 +213,7 @@ class Msh {
   // An unknown type: in ASCII its line is skipped; in binary its size is unknown.
   Status skip_unknown(std::int64_t type) {
     if (text_.binary())
-      return text_.fault(fmt::format("has elements of unknown type {}; save only the volume's tetrahedra", type));
+      return text_.fault(fmt::format("has elements of unknown type {}", type), "save only the volume's tetrahedra");
     end_line();
     ++raw_.other_cells;
     return Done{};
@@ -221,7 +221,7 @@ class Msh {
 
   Status elements_2() {
     std::int64_t count = 0;
-    if (!text_.integer(count) || count < 0) return text_.fault("has $Elements without a count; the file is damaged");
+    if (!text_.integer(count) || count < 0) return text_.fault("has $Elements without a count", "the file is damaged");
     if (Status s = begin_elements(static_cast<std::uint64_t>(count)); !s) return s;
     if (text_.binary()) end_line();
     const auto read_tag = [&](std::uint64_t& tag) {
@@ -255,7 +255,7 @@ class Msh {
   Status elements_4() {
     std::uint64_t blocks = 0, count = 0, least = 0, largest = 0, read = 0;
     if (!size(blocks) || !size(count) || !size(least) || !size(largest))
-      return text_.fault("has $Elements without its counts; the file is damaged");
+      return text_.fault("has $Elements without its counts", "the file is damaged");
     if (Status s = begin_elements(count); !s) return s;
     for (std::uint64_t b = 0; b < blocks; ++b) {
       std::int64_t dimension = 0, entity = 0, type = 0;
@@ -288,6 +288,10 @@ class Msh {
 
 Result<TetFile> parse_msh(std::span<const std::uint8_t> bytes, const std::string& name) {
   return Msh(bytes, name).read();
+}
+
+Result<TetFile> read_msh(const std::filesystem::path& path, const std::filesystem::path&) {
+  return read_parsed(path, parse_msh);
 }
 
 }  // namespace pliant

@@ -77,11 +77,10 @@ bool TetText::skip_past(std::string_view mark) {
   return true;
 }
 
-Error TetText::fault(const std::string& fault) const {
-  const std::string what = fault.find("; ") == std::string::npos ? fault + "; save the mesh again" : fault;
-  if (binary_) return {fmt::format("{} at byte {}", name_, at_), what};
+Error TetText::fault(const std::string& what, const std::string& cure) const {
+  if (binary_) return {fmt::format("{} at byte {}", name_, at_), what, cure, "tets.file"};
   const std::string_view before = text().substr(0, taken_);
-  return {fmt::format("{}:{}", name_, 1 + std::count(before.begin(), before.end(), '\n')), what};
+  return {fmt::format("{}:{}", name_, 1 + std::count(before.begin(), before.end(), '\n')), what, cure, "tets.file"};
 }
 
 }  // namespace pliant

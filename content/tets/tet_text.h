@@ -45,7 +45,8 @@ class TetText {
   bool skip(std::uint64_t bytes);
   bool skip_past(std::string_view mark);  // after the next occurrence; false: none
 
-  Error fault(const std::string& what) const;  // at the last word or line, or this byte
+  // At the last word or line, or this byte.
+  Error fault(const std::string& what, const std::string& cure = "save the mesh again") const;
 
  private:
   std::string_view text() const { return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()}; }

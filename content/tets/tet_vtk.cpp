@@ -51,13 +51,12 @@ class Vtk {
       else if (word == "METADATA")
         skip_metadata();
       else
-        return text_.fault("has an unknown section `" + std::string(word.substr(0, 40)) +
-                           "`; save it as a legacy "
-                           "unstructured grid");
+        return text_.fault("has an unknown section `" + std::string(word.substr(0, 40)) + "`",
+                           "save it as a legacy unstructured grid");
       if (!status) return status.error();
     }
     if (raw_.nodes.empty() || cells_ == 0 || types_.empty())
-      return text_.fault("ends before POINTS, CELLS and CELL_TYPES; it was cut short, or holds no cells");
+      return text_.fault("ends before POINTS, CELLS and CELL_TYPES", "it was cut short, or holds no cells");
     return collect();
   }
 
@@ -66,14 +65,14 @@ class Vtk {
     std::string_view first, title, format, word;
     if (!text_.line(first) || first.substr(0, 22) != "# vtk DataFile Version" || !text_.line(title) ||
         !text_.word(format) || (format != "ASCII" && format != "BINARY"))
-      return text_.fault(
-          "is not a legacy VTK file; it begins with `# vtk DataFile Version`, a title, and ASCII or BINARY");
+      return text_.fault("is not a legacy VTK file",
+                         "it begins with `# vtk DataFile Version`, a title, and ASCII or BINARY");
     double version = 0.0;
     if (!to_number(first.substr(std::min<std::size_t>(23, first.size())), version) || version < 1.0 || version >= 6.0)
-      return text_.fault("has an unknown version; save it as version 2 to 5");
+      return text_.fault("has an unknown version", "save it as version 2 to 5");
     is_five_ = version >= 5.0;
     if (!text_.word(word) || word != "DATASET" || !text_.word(word) || word != "UNSTRUCTURED_GRID")
-      return text_.fault("does not hold an unstructured grid; save the tetrahedra as DATASET UNSTRUCTURED_GRID");
+      return text_.fault("does not hold an unstructured grid", "save the tetrahedra as DATASET UNSTRUCTURED_GRID");
     if (format == "BINARY") text_.set_binary(true, std::endian::native == std::endian::little);
     return Done{};
   }
@@ -121,17 +120,17 @@ class Vtk {
   Status points() {
     std::int64_t size = 0;
     std::string_view type_name;
-    if (!raw_.nodes.empty()) return text_.fault("has POINTS twice; save it again");
+    if (!raw_.nodes.empty()) return text_.fault("has POINTS twice", "save it again");
     if (!count(size) || static_cast<std::size_t>(size) > most(limits::kTetFileNodes) || !text_.word(type_name))
       return text_.fault(fmt::format("claims more POINTS than the file holds or than {}", most(limits::kTetFileNodes)));
     const DataType* type = find_type(type_name);
-    if (!type) return text_.fault("has POINTS of an unknown type; save them as double");
+    if (!type) return text_.fault("has POINTS of an unknown type", "save them as double");
     end_header();
     for (std::int64_t i = 0; i < size; ++i) {
       dvec3 p;
       for (int c = 0; c < 3; ++c)
         if (!coordinate(p[c], *type))
-          return text_.fault(fmt::format("point {} of {} is not three finite numbers; the file is damaged", i, size));
+          return text_.fault(fmt::format("point {} of {} is not three finite numbers", i, size), "the file is damaged");
       raw_.nodes.push_back(p);
     }
     return Done{};
@@ -151,12 +150,12 @@ class Vtk {
   // Both encodings are converted to offsets_ (one more than cells) into connectivity_.
   Status cells() {
     std::int64_t first = 0, second = 0;
-    if (cells_ != 0) return text_.fault("has CELLS twice; save it again");
+    if (cells_ != 0) return text_.fault("has CELLS twice", "save it again");
     if (!count(first) || !count(second)) return text_.fault("claims more CELLS than the file holds, or than are read");
     end_header();
     if (is_five_) return offset_cells(first, second);
     const auto cut_short = [&](std::int64_t c) {
-      return text_.fault(fmt::format("cell {} of {} is cut short; the file is damaged", c, first));
+      return text_.fault(fmt::format("cell {} of {} is cut short", c, first), "the file is damaged");
     };
     offsets_ = {0};
     for (std::int64_t c = 0; c < first; ++c) {
@@ -179,7 +178,7 @@ class Vtk {
     if (Status s = named_list("CONNECTIVITY", connectivity, connectivity_); !s) return s;
     for (std::size_t i = 0; i < offsets_.size(); ++i)
       if (offsets_[i] < (i == 0 ? 0 : offsets_[i - 1]) || offsets_[i] > connectivity)
-        return text_.fault(fmt::format("offset {} leads out of CONNECTIVITY; the file is damaged", i));
+        return text_.fault(fmt::format("offset {} leads out of CONNECTIVITY", i), "the file is damaged");
     cells_ = offsets_.empty() ? 0 : offsets_.size() - 1;
     return Done{};
   }
@@ -188,14 +187,14 @@ class Vtk {
     const DataType* type = nullptr;
     if (text_.word(word) && word == name && text_.word(type_name)) type = find_type(type_name);
     if (!type || type->kind == 'f')
-      return text_.fault(fmt::format("has no {} of whole numbers; the file is damaged", name));
+      return text_.fault(fmt::format("has no {} of whole numbers", name), "the file is damaged");
     end_header();
     return list(size, *type, out, name);
   }
 
   Status types() {
     std::int64_t size = 0;
-    if (!types_.empty()) return text_.fault("has CELL_TYPES twice; save it again");
+    if (!types_.empty()) return text_.fault("has CELL_TYPES twice", "save it again");
     if (!count(size)) return text_.fault("claims more CELL_TYPES than the file holds");
     end_header();
     return list(size, kTypes[2], types_, "cell type");
@@ -209,7 +208,7 @@ class Vtk {
     for (std::int64_t a = 0; a < arrays; ++a) {
       std::int64_t components = 0, tuples = 0;
       if (!text_.word(name) || !count(components) || !count(tuples) || !text_.word(type_name) || !find_type(type_name))
-        return text_.fault("has a FIELD array that is not read; remove field data and save again");
+        return text_.fault("has a FIELD array that is not read", "remove field data and save again");
       end_header();
       const auto values = static_cast<std::uint64_t>(components) * static_cast<std::uint64_t>(tuples);
       bool skipped = values <= text_.left();
@@ -232,7 +231,7 @@ class Vtk {
 
   Result<TetFile> collect() {
     if (types_.size() != cells_)
-      return text_.fault(fmt::format("has {} CELLS but {} CELL_TYPES; the file is damaged", cells_, types_.size()));
+      return text_.fault(fmt::format("has {} CELLS but {} CELL_TYPES", cells_, types_.size()), "the file is damaged");
     for (std::size_t c = 0; c < cells_; ++c) {
       const std::int64_t type = types_[c];
       const auto begin = static_cast<std::size_t>(offsets_[c]),
@@ -243,14 +242,14 @@ class Vtk {
         continue;
       }
       if (size < 4 || (type == kTetra && size != 4) || (type == kQuadraticTetra && size != 10))
-        return Error{name_, fmt::format("cell {} is a tetrahedron of {} nodes; the file is damaged", c, size)};
+        return Error{name_, fmt::format("cell {} is a tetrahedron of {} nodes", c, size), "the file is damaged"};
       if (higher && size > 4) ++raw_.second_order;
       Tet tet;
       for (std::size_t i = 0; i < 4; ++i) {
         const std::int64_t node = connectivity_[begin + i];
         if (node < 0 || static_cast<std::size_t>(node) >= raw_.nodes.size())
-          return Error{name_,
-                       fmt::format("cell {} names point {} of {}; the file is damaged", c, node, raw_.nodes.size())};
+          return Error{name_, fmt::format("cell {} names point {} of {}", c, node, raw_.nodes.size()),
+                       "the file is damaged"};
         tet[i] = static_cast<std::uint32_t>(node);
       }
       raw_.tets.push_back(tet);
@@ -270,6 +269,10 @@ class Vtk {
 
 Result<TetFile> parse_vtk(std::span<const std::uint8_t> bytes, const std::string& name) {
   return Vtk(bytes, name).read();
+}
+
+Result<TetFile> read_vtk(const std::filesystem::path& path, const std::filesystem::path&) {
+  return read_parsed(path, parse_vtk);
 }
 
 }  // namespace pliant

@@ -26,11 +26,12 @@ Result<DeviceWords> parse_device_words(const std::string& driver, const std::str
     const std::string part = text.substr(at + 1, next == std::string::npos ? next : next - at - 1);
     const std::size_t equals = part.find('=');
     if (equals == std::string::npos)
-      return Error{where, fmt::format("`{}` is not KEY=VALUE; keys are {}", part, fmt::join(keys, ", "))};
+      return Error{where, fmt::format("`{}` is not KEY=VALUE", part),
+                   fmt::format("keys are {}", fmt::join(keys, ", "))};
     const std::string key = part.substr(0, equals);
     if (std::none_of(keys.begin(), keys.end(), [&](const char* known) { return key == known; }))
-      return Error{where, fmt::format("unknown key '{}'; keys are {}", key, fmt::join(keys, ", "))};
-    if (!parsed.text(key, "").empty()) return Error{where, fmt::format("'{}' is given twice; give it once", key)};
+      return Error{where, fmt::format("unknown key '{}'", key), fmt::format("keys are {}", fmt::join(keys, ", "))};
+    if (!parsed.text(key, "").empty()) return Error{where, fmt::format("'{}' is given twice", key), "give it once"};
     parsed.words.emplace_back(key, part.substr(equals + 1));
     at = next;
   }

@@ -212,8 +212,8 @@ Result<std::unique_ptr<PacketPort>> Falcon::connect(const std::vector<std::uint8
   for (int i = 0; i < kTries && !running && !firmware.empty(); ++i) running = load(**port, firmware) && runs();
   if (running) return port;
   if (!firmware.empty())
-    return Error{"falcon", "does not take its firmware in " + std::to_string(kTries) +
-                               " tries; take its power off for a moment, and see that the file is the Falcon's"};
+    return Error{"falcon", "does not take its firmware in " + std::to_string(kTries) + " tries",
+                 "take its power off for a moment, and see that the file is the Falcon's"};
   return Error{"falcon", "its firmware is not loaded"};
 }
 
@@ -226,14 +226,14 @@ Status Falcon::open(const std::string& id) {
     file.read(reinterpret_cast<char*>(firmware_.data()), static_cast<std::streamsize>(firmware_.size()));
     firmware_.resize(static_cast<std::size_t>(file.gcount()));
     if (firmware_.size() > kMostFirmware || firmware_.empty())
-      return Error{path, "is no firmware of a Falcon, which has up to a megabyte; give the maker's file"};
+      return Error{path, "is no firmware of a Falcon, which has up to a megabyte", "give the maker's file"};
   } else if (!id.empty()) {
-    return Error{path, "cannot be read; give the maker's firmware file of the Falcon as `falcon:FILE`"};
+    return Error{path, "cannot be read", "give the maker's firmware file of the Falcon as `falcon:FILE`"};
   }
   auto port = connect(firmware_);
   if (!port && firmware_.empty() && port.error().where == "falcon")
-    return Error{"falcon", "its firmware is not loaded, and " + path +
-                               " is not there; put the maker's firmware file there, or give it as `falcon:FILE`"};
+    return Error{"falcon", "its firmware is not loaded, and " + path + " is not there",
+                 "put the maker's firmware file there, or give it as `falcon:FILE`"};
   if (!port) return port.error();
   port_ = std::move(*port);
   thread_.start([this] { run(); });

@@ -89,23 +89,23 @@ pliant::Status ForceDimension::open(const std::string& id) {
   if (!id.empty())
     if (const auto [at, fault] = std::from_chars(id.data(), end, index);
         fault != std::errc() || at != end || index < 0 || index > 63)
-      return Error{where, "is no number of a device; it must be 0 to 63, see `pliant devices`"};
+      return Error{where, "is no number of a device", "it must be 0 to 63, see `pliant devices`"};
   auto library = load();
   if (!library) return library.error();
   const int count = (*library)->count();
   if (index >= count)
-    return Error{where, "is not there, the library finds " + std::to_string(std::max(count, 0)) +
-                            "; plug it in, switch it on, and see that its udev rule is installed"};
+    return Error{where, "is not there, the library finds " + std::to_string(std::max(count, 0)),
+                 "plug it in, switch it on, and see that its udev rule is installed"};
   index_ = static_cast<signed char>(index);
   const int device = (*library)->open(index_);
   if (device < 0 || device > 127)
-    return Error{where, "cannot be opened; end the program that uses it, and see that its udev rule is installed"};
+    return Error{where, "cannot be opened", "end the program that uses it, and see that its udev rule is installed"};
   device_ = static_cast<signed char>(device);
   int status[kStatuses] = {};
   if ((*library)->status(status, device_) >= 0 && status[kReset] != 0) {
     (*library)->close(device_);
     device_ = -1;
-    return Error{where, "is not calibrated; run Force Dimension's HapticInit once after each power-up"};
+    return Error{where, "is not calibrated", "run Force Dimension's HapticInit once after each power-up"};
   }
   library_ = std::move(*library);
   can_ = figures_of(library_->type(device_));

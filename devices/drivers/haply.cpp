@@ -70,8 +70,8 @@ const json* entry(const json& message, const char* kind, const std::string& want
 Result<std::unique_ptr<PacketPort>> open_service(const std::string&) {
   auto port = WebSocketPort::connect("localhost", kPort, 2.0, kLongestMessage);
   if (!port)
-    return Error{"haply", "the Inverse Service is not there (" + port.error().message() +
-                              "); install Haply's Inverse Service or Hub and start it"};
+    return Error{"haply", "the Inverse Service is not there (" + port.error().message() + ")",
+                 "install Haply's Inverse Service or Hub and start it"};
   return std::unique_ptr<PacketPort>(std::move(*port));
 }
 
@@ -147,8 +147,10 @@ Status Haply::open(const std::string& id) {
   const auto state = parse_haply({reinterpret_cast<const char*>(bytes.data()), *got}, id);
   if (!state) return state.error();
   if (state->device.empty())
-    return Error{"haply", id.empty() ? std::string("the Inverse Service has no Inverse3; plug it in and switch it on")
-                                     : "the Inverse Service has no Inverse3 called `" + id + "`; see `pliant devices`"};
+    return id.empty()
+               ? Error{"haply", "the Inverse Service has no Inverse3", "plug it in and switch it on", "device.missing"}
+               : Error{"haply", "the Inverse Service has no Inverse3 called `" + id + "`", "see `pliant devices`",
+                       "device.missing"};
   wanted_ = state->device;
   has_grip_ = state->has_grip;
   port_ = std::move(*port);
@@ -232,7 +234,7 @@ std::vector<DeviceInfo> list_haply() {
   }
   const auto state = parse_haply({reinterpret_cast<const char*>(bytes.data()), *got}, "");
   if (!state)
-    info.missing = state.error().what;
+    info.missing = state.error().sentence();
   else if (state->device.empty())
     info.missing = "the Inverse Service has no Inverse3; plug it in and switch it on";
   else

@@ -61,14 +61,14 @@ Status NetworkDevice::open(const std::string& id) {
   if (device_ != 0) return Done{};
   port_.reset();
   if (busy_[0] != 0)
-    return Error{shown(id), "is in use by " +
-                                (busy_[0] == '?' ? "another engine" : std::string("the engine at ") + busy_.data()) +
-                                "; end that one first"};
+    return Error{shown(id),
+                 "is in use by " + (busy_[0] == '?' ? "another engine" : std::string("the engine at ") + busy_.data()),
+                 "end that one first"};
   if (const std::string frames = describe(counts_); !frames.empty())
-    return Error{shown(id), "answers with frames that cannot be used (" + frames + "); " + cure_for(counts_)};
-  return Error{shown(id), key_ ? "does not answer to this key; start the device, and give it the same key"
-                               : "does not answer; start the device, give its own PORT or ADDRESS:PORT, and its key if "
-                                 "it has one (,key=FILE)"};
+    return Error{shown(id), "answers with frames that cannot be used (" + frames + ")", cure_for(counts_)};
+  if (key_) return Error{shown(id), "does not answer to this key", "start the device, and give it the same key"};
+  return Error{shown(id), "does not answer",
+               "start the device, give its own PORT or ADDRESS:PORT, and its key if it has one (,key=FILE)"};
 }
 
 void NetworkDevice::send(NetworkFrame& frame, double now) {

@@ -40,8 +40,8 @@ void finish_hash(const std::array<std::uint8_t, 112>& state, std::span<const std
 Result<FrameKey> checked_key(const std::string& where, std::string secret) {
   while (!secret.empty() && (secret.back() == '\n' || secret.back() == '\r')) secret.pop_back();
   if (secret.size() < FrameKey::kShortest || secret.size() > FrameKey::kLongest)
-    return Error{where, "holds a key of " + std::to_string(secret.size()) +
-                            " bytes, and a key has 16 to 4096; make one with `openssl rand -hex 32`"};
+    return Error{where, "holds a key of " + std::to_string(secret.size()) + " bytes, and a key has 16 to 4096",
+                 "make one with `openssl rand -hex 32`"};
   FrameKey key({reinterpret_cast<const std::uint8_t*>(secret.data()), secret.size()});
   OPENSSL_cleanse(secret.data(), secret.size());
   return key;
@@ -62,15 +62,15 @@ FrameKey::FrameKey(std::span<const std::uint8_t> secret) {
 Result<FrameKey> FrameKey::from_file(const std::string& path) {
   const std::string where = "key file `" + path + "`";
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) return Error{where, std::string("cannot be read (") + std::strerror(errno) + "); give another FILE"};
+  if (file < 0) return Error{where, std::string("cannot be read (") + std::strerror(errno) + ")", "give another FILE"};
   struct stat about {};
   const bool regular = ::fstat(file, &about) == 0 && S_ISREG(about.st_mode);
   std::string secret(kLongest + 2, '\0');
   const ssize_t got = regular ? ::read(file, secret.data(), secret.size()) : -1;
   ::close(file);
-  if (!regular) return Error{where, "is no file; give one that holds the key alone"};
+  if (!regular) return Error{where, "is no file", "give one that holds the key alone"};
   if ((about.st_mode & (S_IRWXO | S_IWGRP)) != 0)
-    return Error{where, "may be read or written by others, so that it keeps no secret; run `chmod 600` on it"};
+    return Error{where, "may be read or written by others, so that it keeps no secret", "run `chmod 600` on it"};
   secret.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
   return checked_key(where, std::move(secret));
 }
@@ -79,7 +79,7 @@ Result<FrameKey> FrameKey::from_environment(const std::string& name) {
   const std::string where = "variable `" + name + "`";
   const char* const value = std::getenv(name.c_str());
   if (!value)
-    return Error{where, "is not set, and is to hold the key of the network device; export it, or use key=FILE"};
+    return Error{where, "is not set, and is to hold the key of the network device", "export it, or use key=FILE"};
   return checked_key(where, value);
 }
 
@@ -103,8 +103,8 @@ Result<KeyedAddress> parse_keyed_address(const std::string& id) {
   const Option option = option_of(std::string_view(id).substr(comma + 1));
   const bool file = option.key == "key", environment = option.key == "key-env";
   if ((!file && !environment) || option.value.empty())
-    return Error{"network:" + out.address,
-                 "behind the address may stand ,key=FILE or ,key-env=NAME; a key itself is never given there"};
+    return Error{"network:" + out.address, "behind the address may stand ,key=FILE or ,key-env=NAME",
+                 "a key itself is never given there"};
   auto key = file ? FrameKey::from_file(option.value) : FrameKey::from_environment(option.value);
   if (!key) return key.error();
   out.key = std::move(*key);

@@ -56,10 +56,10 @@ class Polhem final : public Driver {
       if (wanted == config.name) config_ = &config;
     const std::string where = "device `polhem:" + id + "`";
     if (!config_)
-      return Error{where, fmt::format("{}; say polhem:{}?mechanism=NAME with NAME one of {}",
-                                      wanted.empty() ? "the device cannot say which build it is"
-                                                     : "unknown mechanism '" + wanted + "'",
-                                      words->id, mechanisms())};
+      return Error{where,
+                   fmt::format("{}", wanted.empty() ? "the device cannot say which build it is"
+                                                    : "unknown mechanism '" + wanted + "'"),
+                   fmt::format("say polhem:{}?mechanism=NAME with NAME one of {}", words->id, mechanisms())};
     const Result<std::string> home = choice_of("polhem", *words, "home", kHomes);
     if (!home) return home.error();
     Result<std::unique_ptr<PacketPort>> port = opener_(words->id);
@@ -76,7 +76,7 @@ class Polhem final : public Driver {
     here_ = *home == "here";
     by_button_ = *home == "button";
     drive(dvec3(0));  // the first report starts the device
-    if (gone_) return Error{where, "does not take a report; plug it in again"};
+    if (gone_) return Error{where, "does not take a report", "plug it in again"};
     return Done{};
   }
   DeviceCapabilities capabilities() const override { return what_it_can(config_ ? *config_ : kPolhemConfigs[0]); }

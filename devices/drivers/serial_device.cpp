@@ -25,7 +25,7 @@ Result<std::unique_ptr<PacketPort>> open_line(const std::string& id) {
     const char* end = id.data() + id.size();
     const auto [stop, fault] = std::from_chars(id.data() + at + 1, end, baud);
     if (fault != std::errc() || stop != end)
-      return Error{"serial `" + id + "`", "has no speed after '@'; give one such as 115200"};
+      return Error{"serial `" + id + "`", "has no speed after '@'", "give one such as 115200"};
   }
   auto port = SerialPort::open(id.substr(0, at), baud);
   if (!port) return port.error();
@@ -63,15 +63,15 @@ Result<SerialIdentity> SerialDevice::ask(PacketPort& port, const std::function<b
         if (auto who = parse_serial_identity(line)) return std::move(*who);
     }
   }
-  return Error{
-      "serial `" + id_ + "`",
-      "does not answer as a device of Pliant; see docs/devices/protocols.md for its lines, and check its speed"};
+  return Error{"serial `" + id_ + "`", "does not answer as a device of Pliant",
+               "see docs/devices/protocols.md for its lines, and check its speed"};
 }
 
 Status SerialDevice::open(const std::string& id) {
   close();
   id_ = id;
-  if (id.empty()) return Error{"serial", "needs its line; give one such as serial:/dev/ttyACM0, see `pliant devices`"};
+  if (id.empty())
+    return Error{"serial", "needs its line", "give one such as serial:/dev/ttyACM0, see `pliant devices`"};
   auto port = opener_(id);
   if (!port) return port.error();
   auto who = ask(**port, [] { return false; });

@@ -144,7 +144,7 @@ Result<SpaceMouseLayout> spacemouse_layout(std::span<const std::uint8_t> descrip
     if (field.page == 9 && field.bits == 1 && layout.buttons.size() < 32) layout.buttons.push_back(field);
   }
   if (std::find(seen.begin(), seen.end(), false) != seen.end())
-    return Error{"spacemouse", "its report descriptor does not hold six axes; it cannot be used as one"};
+    return Error{"spacemouse", "its report descriptor does not hold six axes", "it cannot be used as one"};
   return layout;
 }
 

@@ -101,8 +101,8 @@ Status Touch::open(const std::string& id) {
     library_.reset();
     char code[16];
     std::snprintf(code, sizeof code, "0x%x", fault.code);
-    return Error{where, std::string("cannot be opened (error ") + code +
-                            " of libHD); set it up with the maker's program, and give the name used there"};
+    return Error{where, std::string("cannot be opened (error ") + code + " of libHD)",
+                 "set it up with the maker's program, and give the name used there"};
   }
   double force = 0.0;
   library_->get_doubles(kMaxForce, &force);
@@ -122,7 +122,7 @@ Status Touch::open(const std::string& id) {
   library_->start();
   if (const auto fault = library_->fault(); fault.code != 0) {
     close();
-    return Error{where, "its scheduler does not start; end the program that uses it"};
+    return Error{where, "its scheduler does not start", "end the program that uses it"};
   }
   return Done{};
 }
@@ -186,7 +186,7 @@ void Touch::write(const DeviceWrench& wrench) {
 
 Status Touch::run(std::function<void()> tick) {
   if (!library_) return Error{"touch", "has no loop before it is opened"};
-  if (has_tick_) return Error{"touch", "its loop has a tick already; close it first"};
+  if (has_tick_) return Error{"touch", "its loop has a tick already", "close it first"};
   tick_ = std::move(tick);
   has_tick_.store(true, std::memory_order_release);
   return Done{};

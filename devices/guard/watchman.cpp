@@ -102,11 +102,11 @@ Status Watchman::start(const SafeLine& line, double waits) {
     return Error{"guard process", "the driver names no line to write on"};
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
-    return Error{"guard process", std::string("no socket pair (") + std::strerror(errno) + "); raise ulimit -n"};
+    return Error{"guard process", std::string("no socket pair (") + std::strerror(errno) + ")", "raise ulimit -n"};
   const pid_t child = ::fork();
   if (child < 0) {
     ::close(ends[0]), ::close(ends[1]);
-    return Error{"guard process", std::string("no process (") + std::strerror(errno) + "); raise ulimit -u"};
+    return Error{"guard process", std::string("no process (") + std::strerror(errno) + ")", "raise ulimit -u"};
   }
   if (child == 0) {
     ::close(ends[1]);

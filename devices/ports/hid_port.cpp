@@ -92,9 +92,9 @@ class HidPort final : public PacketPort {
   }
 
  private:
-  Error gone() const { return Error{path_, "the device is gone; plug it in again"}; }
+  Error gone() const { return Error{path_, "the device is gone", "plug it in again"}; }
   Error refused(std::uint8_t number) const {
-    return Error{path_, fmt::format("refuses feature report {}; plug the device in again", number)};
+    return Error{path_, fmt::format("refuses feature report {}", number), "plug the device in again"};
   }
 
   // Extra descriptor for a guard process, because hidapi does not expose its own.
@@ -155,8 +155,8 @@ Result<std::unique_ptr<PacketPort>> open_hid(std::span<const HidMatch> matches, 
   }
   if (!chosen && id.empty() && !all.empty()) chosen = &all.front();
   if (!chosen)
-    return Error{id.empty() ? "device" : "device `" + id + "`",
-                 ids.empty() ? "none is there; plug it in and switch it on" : "is not there; there are: " + ids};
+    return Error{id.empty() ? "device" : "device `" + id + "`", ids.empty() ? "none is there" : "is not there",
+                 ids.empty() ? "plug it in and switch it on" : "there are: " + ids, "device.missing"};
   if (!chosen->missing.empty()) return Error{chosen->name, chosen->missing};
   const std::lock_guard lock(hidapi_mutex());
   Handle in(hid_open_path(chosen->path.c_str())), out(hid_open_path(chosen->path.c_str()));

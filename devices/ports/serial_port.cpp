@@ -41,27 +41,25 @@ speed_t speed_of(int baud) {
 Result<std::unique_ptr<SerialPort>> SerialPort::open(const std::string& path, int baud) {
   const speed_t speed = speed_of(baud);
   if (speed == B0)
-    return Error{path,
-                 std::to_string(baud) +
-                     " is no speed; it must be one of 9600, 115200, 230400, 460800, 921600, 1000000, 2000000, 4000000"};
+    return Error{path, std::to_string(baud) + " is no speed",
+                 "it must be one of 9600, 115200, 230400, 460800, 921600, 1000000, 2000000, 4000000"};
   const int file = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) {
     const int fault = errno;
     if (fault == EACCES || fault == EPERM)
-      return Error{path,
-                   "may not be opened by this user; install the udev rule 70-pliant.rules and plug it in again, or "
-                   "join the group dialout"};
-    if (fault == ENOENT) return Error{path, "is not there; plug the device in, and see `pliant devices`"};
+      return Error{path, "may not be opened by this user",
+                   "install the udev rule 70-pliant.rules and plug it in again, or join the group dialout"};
+    if (fault == ENOENT) return Error{path, "is not there", "plug the device in, and see `pliant devices`"};
     return Error{path, std::string("cannot be opened: ") + std::strerror(fault)};
   }
   std::unique_ptr<SerialPort> port(new SerialPort(file, path));
   termios line{};
-  if (tcgetattr(file, &line) != 0) return Error{path, "is no serial line; give one such as /dev/ttyACM0"};
+  if (tcgetattr(file, &line) != 0) return Error{path, "is no serial line", "give one such as /dev/ttyACM0"};
   cfmakeraw(&line);
   line.c_cflag = (line.c_cflag & ~static_cast<tcflag_t>(CSTOPB | CRTSCTS)) | CLOCAL | CREAD;
   line.c_cc[VMIN] = line.c_cc[VTIME] = 0;
   if (cfsetspeed(&line, speed) != 0 || tcsetattr(file, TCSANOW, &line) != 0)
-    return Error{path, "does not take " + std::to_string(baud) + " baud; give another speed"};
+    return Error{path, "does not take " + std::to_string(baud) + " baud", "give another speed"};
   tcflush(file, TCIOFLUSH);
   return port;
 }
@@ -92,7 +90,7 @@ Result<std::size_t> SerialPort::receive(std::span<std::uint8_t> into, double sec
   const ssize_t got = ::read(file_, into.data(), into.size());
   if (got > 0) return static_cast<std::size_t>(got);
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) return std::size_t{0};
-  return Error{path_, "is gone; it was unplugged"};
+  return Error{path_, "is gone", "it was unplugged"};
 }
 
 }  // namespace pliant

@@ -17,7 +17,7 @@ Result<SharedLibrary> SharedLibrary::open(const std::vector<std::string>& names,
     if (reason.find("No such file") == std::string::npos) why = " (" + reason + ")";
     tried += (tried.empty() ? "" : ", ") + name;
   }
-  return Error{tried, "is not installed or cannot be loaded" + why + "; " + cure};
+  return Error{tried, "is not installed or cannot be loaded" + why, cure};
 }
 
 SharedLibrary::~SharedLibrary() {
@@ -30,7 +30,7 @@ void* SharedLibrary::address(const char* symbol) const {
 
 Status SharedLibrary::complete() const {
   if (missing_.empty()) return Done{};
-  return Error{name_, "has no function `" + missing_ + "`; install a newer version of it"};
+  return Error{name_, "has no function `" + missing_ + "`", "install a newer version of it"};
 }
 
 }  // namespace pliant

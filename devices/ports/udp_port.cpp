@@ -48,8 +48,8 @@ Result<int> make_socket(const UdpAddress& address, bool passive, sockaddr_storag
   hints.ai_flags = passive ? AI_PASSIVE | AI_NUMERICSERV : AI_NUMERICSERV;
   addrinfo* list = nullptr;
   if (const int failed = getaddrinfo(address.host.c_str(), address.port.c_str(), &hints, &list); failed != 0)
-    return Error{shown(address), std::string("cannot be resolved (") + gai_strerror(failed) +
-                                     "); give an ADDRESS:PORT of this network"};
+    return Error{shown(address), std::string("cannot be resolved (") + gai_strerror(failed) + ")",
+                 "give an ADDRESS:PORT of this network"};
   const int made = socket(list->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   std::memcpy(&found, list->ai_addr, list->ai_addrlen);
   size = list->ai_addrlen;
@@ -75,7 +75,8 @@ Result<UdpAddress> parse_udp_address(const std::string& text) {
   const char* end = address.port.data() + address.port.size();
   const auto [stop, fault] = std::from_chars(address.port.data(), end, number);
   if (fault != std::errc() || stop != end || number < 0 || number > 65535 || address.host.empty())
-    return Error{"'" + text + "'", "is no address; write PORT, ADDRESS:PORT or [IPV6]:PORT, such as 192.168.1.7:17716"};
+    return Error{"'" + text + "'", "is no address",
+                 "write PORT, ADDRESS:PORT or [IPV6]:PORT, such as 192.168.1.7:17716"};
   return address;
 }
 
@@ -109,8 +110,8 @@ Result<std::unique_ptr<UdpPort>> UdpPort::listen(const UdpAddress& own) {
   if (!socket) return socket.error();
   std::unique_ptr<UdpPort> port(new UdpPort(*socket, shown(own)));
   if (bind(*socket, address.raw(), address.size) != 0)
-    return Error{shown(own), std::string("cannot be listened on (") + std::strerror(errno) +
-                                 "); give another PORT, or end the program that holds it"};
+    return Error{shown(own), std::string("cannot be listened on (") + std::strerror(errno) + ")",
+                 "give another PORT, or end the program that holds it"};
   return port;
 }
 

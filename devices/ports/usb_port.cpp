@@ -62,7 +62,7 @@ Result<std::unique_ptr<UsbPort>> UsbPort::open(const UsbAddress& address) {
   handles->address = address;
   if (libusb_init(&handles->context) != 0) {
     handles->context = nullptr;
-    return Error{handles->name(), "libusb could not begin; is /dev/bus/usb there?"};
+    return Error{handles->name(), "libusb could not begin", "is /dev/bus/usb there?"};
   }
   int fault = LIBUSB_ERROR_NO_DEVICE;
   visit(handles->context, address.vendor, address.product, [&](int number, libusb_device* device) {
@@ -71,12 +71,12 @@ Result<std::unique_ptr<UsbPort>> UsbPort::open(const UsbAddress& address) {
     return true;
   });
   if (fault == LIBUSB_ERROR_ACCESS)
-    return Error{handles->name(),
-                 "may not be opened by this user; install the udev rule 70-pliant.rules and plug it in again"};
-  if (fault != 0) return Error{handles->name(), "is not there; plug it in and switch it on"};
+    return Error{handles->name(), "may not be opened by this user",
+                 "install the udev rule 70-pliant.rules and plug it in again"};
+  if (fault != 0) return Error{handles->name(), "is not there", "plug it in and switch it on"};
   libusb_set_auto_detach_kernel_driver(handles->device, 1);
   if (libusb_claim_interface(handles->device, 0) != 0)
-    return Error{handles->name(), "is in use; end the program that uses it"};
+    return Error{handles->name(), "is in use", "end the program that uses it"};
   return std::unique_ptr<UsbPort>(new UsbPort(std::move(handles)));
 }
 

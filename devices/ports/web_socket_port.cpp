@@ -131,7 +131,7 @@ Result<std::unique_ptr<WebSocketPort>> WebSocketPort::connect(const std::string&
   ::sigaction(SIGPIPE, nullptr, &pipe);
   line->context = lws_create_context(&info);
   ::sigaction(SIGPIPE, &pipe, nullptr);
-  if (!line->context) return Error{line->name, "libwebsockets could not begin; is memory or are files exhausted?"};
+  if (!line->context) return Error{line->name, "libwebsockets could not begin", "is memory or are files exhausted?"};
   lws_client_connect_info to{};
   to.context = line->context;
   to.address = to.host = to.origin = host.c_str();

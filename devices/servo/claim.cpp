@@ -86,7 +86,7 @@ Status DeviceClaim::add(const std::string& identity, const std::string& device) 
   const std::string where = "device `" + device + "`";
   const std::lock_guard hold(claims_mutex());
   if (claims().contains(identity))
-    return Error{where, "moves another effector already; call Session::release() for that one first"};
+    return Error{where, "moves another effector already", "call Session::release() for that one first"};
   const LockAddress lock(lock_name(identity));
   const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const bool free = socket >= 0 && ::bind(socket, lock.raw(), lock.size) == 0 && ::listen(socket, 8) == 0;
@@ -94,10 +94,11 @@ Status DeviceClaim::add(const std::string& identity, const std::string& device) 
     const int fault = errno;
     if (socket >= 0) ::close(socket);
     if (socket >= 0 && fault == EADDRINUSE)
-      return Error{where, "is held by another program" + holder(lock) + "; end that one first"};
-    return Error{where, fmt::format("is not opened, because it cannot be known whether another program has it ({}); "
-                                    "raise ulimit -n",
-                                    std::strerror(fault))};
+      return Error{where, "is held by another program" + holder(lock), "end that one first"};
+    return Error{where,
+                 fmt::format("is not opened, because it cannot be known whether another program has it ({})",
+                             std::strerror(fault)),
+                 "raise ulimit -n"};
   }
   claims().insert(identity);
   held_.push_back({identity, socket});

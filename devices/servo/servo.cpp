@@ -44,7 +44,7 @@ Servo::~Servo() {
 }
 
 Status Servo::open(const std::string& id) {
-  if (open_) return Error{"servo", "is open already; close it first"};
+  if (open_) return Error{"servo", "is open already", "close it first"};
   if (Status opened = inner_->open(id); !opened) return opened;
   adopt();
   return Done{};
@@ -127,9 +127,10 @@ void Servo::close() {
 
 Status Servo::can_advance() const {
   if (can_.loop == DeviceLoop::kOurs) return Done{};
-  return Error{"device", can_.loop == DeviceLoop::kReply
-                             ? "answers in its own time and cannot run in lockstep; call Session::start()"
-                             : "is run by its maker's library and cannot run in lockstep; call Session::start()"};
+  return Error{"device",
+               can_.loop == DeviceLoop::kReply ? "answers in its own time and cannot run in lockstep"
+                                               : "is run by its maker's library and cannot run in lockstep",
+               "call Session::start()", "device.realtime"};
 }
 
 void Servo::advance(double time) {
@@ -290,7 +291,7 @@ const DeviceReport& Servo::report() {
 }
 
 Status Servo::start() {
-  if (!open_) return Error{"servo", "is not open; call open() first"};
+  if (!open_) return Error{"servo", "is not open", "call open() first"};
   if (running_) return Done{};
   looked_ = false;
   guard_ = Guard(can_, parameters_);  // another clock: previous state is invalid

@@ -42,11 +42,12 @@ Result<SimulatedOptions> parse_simulated(const std::string& id) {
   bool first = true;
   for (const std::string& part : split(id, ',')) {
     const Option option = option_of(part);
-    const auto wrong = [&](const std::string& what) { return Error{where, what}; };
+    const auto wrong = [&](const std::string& what, const std::string& cure = {}) { return Error{where, what, cure}; };
     if (option.key.empty()) {
       const DeviceProfile* profile = first ? find_device_profile(option.value) : nullptr;
       if (!profile)
-        return wrong(fmt::format("unknown profile '{}'; profiles are: {}", option.value, device_profile_names()));
+        return wrong(fmt::format("unknown profile '{}'", option.value),
+                     fmt::format("profiles are: {}", device_profile_names()));
       options.profile = *profile;
     } else if (option.key == "hand") {
       const HandImpedance* hand = find_hand_impedance(option.value);
@@ -82,7 +83,7 @@ Result<SimulatedOptions> parse_simulated(const std::string& id) {
         names += std::string(", ") + key.name;
         if (option.key == key.name) known = &key;
       }
-      if (!known) return wrong(fmt::format("unknown key '{}'; keys are {}", option.key, names));
+      if (!known) return wrong(fmt::format("unknown key '{}'", option.key), fmt::format("keys are {}", names));
       const std::optional<double> value = known->read(option.value);
       if (!value || *value < known->least || *value > known->most)
         return wrong(fmt::format("{} must be {}; got '{}'", option.key, known->what, option.value));
@@ -92,11 +93,11 @@ Result<SimulatedOptions> parse_simulated(const std::string& id) {
   }
   const DeviceProfile& profile = options.profile;
   if (profile.lag > 0.0 && profile.lag < kShortest)
-    return Error{where, "lag must be 0 or at least 10us, or simulating it takes too long; give 0"};
+    return Error{where, "lag must be 0 or at least 10us, or simulating it takes too long", "give 0"};
   if (profile.damping * kShortest > profile.mass)
-    return Error{where, "mass over damping is below 10us, and simulating it takes too long; give more mass"};
+    return Error{where, "mass over damping is below 10us, and simulating it takes too long", "give more mass"};
   if (profile.max_torque > 0.0 && !(profile.inertia > 0.0))
-    return Error{where, "this profile turns no motors about its axes; leave max_torque out, or take sigma.7"};
+    return Error{where, "this profile turns no motors about its axes", "leave max_torque out, or take sigma.7"};
   return options;
 }
 

@@ -54,7 +54,7 @@ using Maker = Result<Driven> (*)(Driven, Words&, std::vector<std::string>&);
 
 Result<Driven> checked(Words& words, Driven made) {
   if (words.wrong) return *words.wrong;
-  if (!words.keys.empty()) return Error{words.where, "unknown key '" + words.keys.begin()->first + "'; leave it out"};
+  if (!words.keys.empty()) return Error{words.where, "unknown key '" + words.keys.begin()->first + "'", "leave it out"};
   return made;
 }
 
@@ -64,7 +64,7 @@ std::uint64_t seed_of(Words& words) {
 }
 
 Result<Driven> make_record(Driven inner, Words& words, std::vector<std::string>&) {
-  if (words.value.empty()) return Error{words.where, "must name a file; write record=FILE"};
+  if (words.value.empty()) return Error{words.where, "must name a file", "write record=FILE"};
   const double seconds = words.key("seconds", seconds_of, 1e-3, Record::kMost, 60.0, "must be a time up to 3600");
   return checked(words, std::make_unique<Record>(std::move(inner), words.value, seconds));
 }
@@ -83,7 +83,7 @@ Result<Driven> make_delay(Driven inner, Words& words, std::vector<std::string>&)
   const char* what = delay.samples ? "samples, at most 100000" : "a time up to 10s, as 5ms, or a number of samples";
   if (const auto written = words.keys.find("written");
       written != words.keys.end() && plain_number(written->second).has_value() != delay.samples)
-    return Error{words.where, "says one delay in samples and one in seconds; give both in the same unit"};
+    return Error{words.where, "says one delay in samples and one in seconds", "give both in the same unit"};
   delay.sensed = words.first(seconds_of, 0.0, most, what);
   delay.written = words.key("written", seconds_of, 0.0, most, 0.0, std::string("must be ") + what);
   return checked(words, std::make_unique<Delay>(std::move(inner), delay));
@@ -157,8 +157,8 @@ Result<DeviceChain> wrap(std::unique_ptr<Driver> driver, const std::string& word
   DeviceChain chain{std::move(driver), {}, {}};
   const std::vector<std::string> parts = split(words, '|');
   if (parts.size() > kMostWrappers)
-    return Error{"wrappers",
-                 fmt::format("are {}, and a device has at most {}; leave some out", parts.size(), kMostWrappers)};
+    return Error{"wrappers", fmt::format("are {}, and a device has at most {}", parts.size(), kMostWrappers),
+                 "leave some out"};
   for (const std::string& part : parts) {
     Words one;
     bool first = true;
@@ -175,7 +175,7 @@ Result<DeviceChain> wrap(std::unique_ptr<Driver> driver, const std::string& word
     if (maker == makers().end()) {
       std::string names;
       for (const auto& [name, ignored] : makers()) names += (names.empty() ? "" : ", ") + name;
-      return Error{one.where, "is no WRAPPER=VALUE; wrappers are: " + names};
+      return Error{one.where, "is no WRAPPER=VALUE", "wrappers are: " + names};
     }
     auto made = maker->second(std::move(chain.driver), one, chain.notes);
     if (!made) return made.error();

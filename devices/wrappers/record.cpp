@@ -30,7 +30,7 @@ Status Record::take_file() {
   place_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
   const auto refused = [this](const std::string& why) {
     if (place_ >= 0) ::close(std::exchange(place_, -1));
-    return Error{file_, why + "; give the name of a new file"};
+    return Error{file_, why, "give the name of a new file"};
   };
   if (place_ < 0) return refused(std::string("cannot be written: ") + std::strerror(errno));
   struct stat there = {};
@@ -97,7 +97,7 @@ void Record::finish() noexcept {
                              lost_ > 0 ? fmt::format("{} samples; {} more did not fit", rows_.size(), lost_)
                                        : fmt::format("{} samples", rows_.size()));
       if (written_ && std::rename(aside.c_str(), file_.c_str()) != 0)
-        written_ = Error{aside, std::string("cannot be put in place: ") + std::strerror(errno) + "; check the folder"};
+        written_ = Error{aside, std::string("cannot be put in place: ") + std::strerror(errno), "check the folder"};
       if (written_) return void(::close(std::exchange(place_, -1)));
       ::unlink(aside.c_str());
       log_sentence(LogLevel::kWarning, written_.error().message());

@@ -8,6 +8,8 @@
 
 #include "content/files/exr.h"
 #include "content/level/script.h"
+#include "content/openable.h"
+#include "content/tets/tet_file.h"
 #include "editor/app/app.h"
 #include "editor/app/files.h"
 #include "editor/app/path_editing.h"
@@ -29,10 +31,8 @@ Dropped kind_of(const fs::path& file) {
   const auto any_of = [&](std::initializer_list<const char*> all) {
     return std::any_of(all.begin(), all.end(), [&](const char* each) { return ending == each; });
   };
-  if (any_of({".msh", ".vtk", ".mesh", ".node", ".ele"})) return Dropped::kTetrahedra;
-  if (any_of({".glb", ".gltf", ".obj", ".stl", ".ply", ".off", ".fbx", ".dae", ".3mf", ".3ds", ".x3d", ".wrl", ".blend",
-              ".amf", ".lwo", ".ac", ".dxf"}))
-    return Dropped::kOpens;
+  if (is_tet_file(file)) return Dropped::kTetrahedra;
+  if (has_ending(file, openable_endings())) return Dropped::kOpens;
   if (ending == ".exr") return Dropped::kPanorama;
   if (ending == ".csv") return Dropped::kScript;
   if (any_of({".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga", ".tif", ".tiff", ".gif", ".hdr", ".ktx2"}))

@@ -84,10 +84,8 @@ std::optional<QuickFix> fix_of_device(const State& state, const DocumentNode& no
   std::vector<std::string> devices;
   for (const auto& each : state.nodes)
     if (each->node.device) devices.push_back(each->node.name);
-  const std::string meant = suggestion(named, devices);
-  for (const std::string& name : devices)
-    if (!meant.empty() && meant == suggestion(name, {name}))
-      return with("Use the device " + name, node.id, it.probe ? "probe" : "handle", "device", name);
+  if (const std::string meant = nearest(named, devices); !meant.empty())
+    return with("Use the device " + meant, node.id, it.probe ? "probe" : "handle", "device", meant);
   return QuickFix{"Add a device, moved by the mouse",
                   [id = node.id](const State& s, NodeId&) { return with_device(s, id); }};
 }
@@ -104,23 +102,18 @@ std::optional<QuickFix> fix_of(const State& state, const DocumentNode* node, con
   }
   const LevelNode& it = node->node;
   const NodeId id = node->id;
-  const auto says = [&](const char* text) { return finding.message.find(text) != std::string::npos; };
-  if (says("PLIANT_soft_body and PLIANT_deformable") && it.soft_body && it.deformable)
+  const auto is = [&](const char* code) { return finding.code == code; };
+  if ((is("level.soft_and_deformable") || is("level.rigid_and_deformable")) && it.deformable)
     return without("Remove the deformable surface", id, "deformable");
-  if (says("PLIANT_soft_body and PLIANT_rigid_body") && it.soft_body && it.rigid_body)
-    return without("Remove the rigid body", id, "rigid_body");
-  if (says("PLIANT_rigid_body and PLIANT_deformable") && it.rigid_body && it.deformable)
-    return without("Remove the deformable surface", id, "deformable");
-  if (it.handle && !it.soft_body && !it.rigid_body && says("PLIANT_handle"))
-    return without("Remove the handle", id, "handle");
-  if (it.handle && it.rigid_body && it.rigid_body->fixed && says("`fixed`"))
-    return with("Let it move", id, "rigid_body", "fixed", false);
-  if (it.soft_body && says("`carries`")) return with("Take them along", id, "soft_body", "carries", "inside");
-  if (it.soft_body && it.soft_body->under_gravity != UnderGravity::kModelled && says("`under_gravity` `modelled`"))
+  if (is("level.soft_and_rigid")) return without("Remove the rigid body", id, "rigid_body");
+  if (is("level.handle_of_nothing")) return without("Remove the handle", id, "handle");
+  if (is("level.handle_of_fixed")) return with("Let it move", id, "rigid_body", "fixed", false);
+  if (is("tissue.leaves_behind")) return with("Take them along", id, "soft_body", "carries", "inside");
+  if (is("tissue.gravity") && it.soft_body && it.soft_body->under_gravity != UnderGravity::kModelled)
     return with("Keep its shape under gravity", id, "soft_body", "under_gravity", "modelled");
-  if (it.probe && says("nothing moves it"))
+  if (is("level.unmoved_probe"))
     return QuickFix{"Add a device, moved by the mouse", [id](const State& s, NodeId&) { return with_device(s, id); }};
-  if (finding.severity == Severity::kError && says("which is no node"))
+  if (is("level.unknown_device"))
     if (std::optional<QuickFix> fix = fix_of_device(state, *node)) return fix;
   if (has_key && finding.severity == Severity::kNote && !value_of_key(state, id, extension, key).is_null())
     return QuickFix{"Reset " + key, [id, extension, key](const State& s, NodeId&) {
@@ -162,9 +155,11 @@ Findings find_in_state(const State& state, const std::filesystem::path& file, co
   level.path = file.empty() ? folder / "untitled" : file;
   leave_out_scripts(level, state.scripts, DriverKind::kMouse);  // moved by anything
   if (!level.has_pliant())
-    return {{Severity::kNote, "",
-             "nothing can be touched yet: select a mesh and add a deformable surface or a soft "
-             "body in the inspector"}};
+    return {{Severity::kNote,
+             "",
+             "nothing can be touched yet: select a mesh and add a deformable surface or a soft body in the inspector",
+             {},
+             "level.nothing_touchable"}};
   const auto prepare = [stop](World& world) -> Status {
     for (const auto prepare_system : {prepare_touch, prepare_tools, prepare_soft}) {
       if (stop && *stop) break;

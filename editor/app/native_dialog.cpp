@@ -11,6 +11,8 @@
 #include <sstream>
 #include <vector>
 
+#include "content/openable.h"
+
 extern char** environ;
 
 namespace pliant {
@@ -33,9 +35,9 @@ std::vector<std::string> command_of(const FileWish& wish) {
     std::vector<std::string> command{"zenity", "--file-selection", "--title=" + wish.title, "--filename=" + start};
     if (wish.save) command.push_back("--save");
     if (!wish.save) {
-      command.push_back(
-          "--file-filter=Levels and meshes | *.glb *.gltf *.obj *.stl *.ply *.off *.msh *.vtk *.mesh *.fbx "
-          "*.dae");
+      std::string filter = "--file-filter=Levels and meshes |";
+      for (const std::string& ending : openable_endings()) filter += " *" + ending;
+      command.push_back(filter);
       command.push_back("--file-filter=All files | *");
     }
     return command;

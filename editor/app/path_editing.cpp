@@ -4,6 +4,7 @@
 
 #include "components/haptic_device.h"
 #include "components/kinematic.h"
+#include "components/probe_shape.h"
 #include "content/author/object_frame.h"
 #include "editor/viewport/frames.h"
 
@@ -113,13 +114,16 @@ std::optional<PathTip> tip_of(const State& state, NodeId device) {
   if (it->node.probe) {
     const Probe& probe = *it->node.probe;
     tip.radius = probe.radius;
-    if (!probe.points.empty()) {
-      const std::vector<dvec3> points(probe.points.begin(), probe.points.end());
-      tip.place = *std::min_element(points.begin(), points.end(),
-                                    [&](const dvec3& a, const dvec3& b) { return dot(a, up) < dot(b, up); });
+    const std::vector<ProbePart> parts = probe_parts(probe);
+    const auto capsule = std::find_if(parts.begin(), parts.end(), [](const ProbePart& p) { return !p.is_sphere(); });
+    if (capsule != parts.end()) {
+      tip.place = capsule->from;
+      tip.axis = normalize(capsule->to - capsule->from);
+    } else if (parts.size() > 1 || parts.front().from != dvec3(0)) {
+      tip.place = std::min_element(parts.begin(), parts.end(), [&](const ProbePart& a, const ProbePart& b) {
+                    return dot(a.from, up) < dot(b.from, up);
+                  })->from;
       tip.axis = up;
-    } else if (probe.length > 0.0) {
-      tip.axis = {0, 1, 0};
     }
   } else if (it->node.mesh >= 0) {
     std::vector<dvec3> points;

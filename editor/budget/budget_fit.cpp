@@ -168,10 +168,10 @@ bool BudgetFits::in_use(const State& state, NodeId id) const {
 bool BudgetFits::use(Editor& editor, NodeId id) {
   const auto it = fits_.find(id);
   if (it == fits_.end() || !it->second.choices || stale(editor.state(), id)) return false;
-  std::string what = "Use the model";
+  std::string models;
   for (const ModelChoice& choice : *it->second.choices)
-    what += (what.ends_with("model") ? " " : "; ") + choice.tried[choice.chosen].label;
-  if (!editor.apply(what, with_said(editor.state(), id, it->second.keys))) return false;
+    models += (models.empty() ? "" : "; ") + choice.tried[choice.chosen].label;
+  if (!editor.apply("Use the model " + models, with_said(editor.state(), id, it->second.keys))) return false;
   it->second.used = fit_subject(editor.state(), id);
   return true;
 }

@@ -136,7 +136,7 @@ Scripts Document::unsaved_scripts() const {
 }
 
 Status Document::save() {
-  if (file_.empty()) return Error{"save", "the level has no file yet; use Save as"};
+  if (file_.empty()) return Error{"save", "the level has no file yet", "use Save as"};
   return save_as(file_);
 }
 
@@ -155,7 +155,7 @@ Status Document::save_copy(const fs::path& file) const {
 }
 
 Status Document::revert() {
-  if (file_.empty()) return Error{"revert", "the level has no file yet; undo instead"};
+  if (file_.empty()) return Error{"revert", "the level has no file yet", "undo instead"};
   const FileStamp stamp = stamp_of(file_);
   Result<Level> level = load_level(file_);
   if (!level) return level.error();

@@ -40,7 +40,7 @@ Result<const Key*> find_both(const std::string& extension, const std::string& ke
   const Extension* const of = find_extension(extension);
   if (!of) return Error{extension, "is no component"};
   const Key* const found = find_key(*of, key);
-  if (!found) return Error{extension, unknown_key(*of, key)};
+  if (!found) return error_at(extension, unknown_key(*of, key));
   return found;
 }
 
@@ -119,19 +119,19 @@ Result<State> with_value(const State& state, NodeIds ids, const std::string& ext
   const Result<const Key*> found = find_both(extension, key);
   if (!found) return found.error();
   const Extension& of = *find_extension(extension);
-  if (const std::string wrong = check_value(**found, value); !wrong.empty()) return Error{key, wrong};
+  if (const std::optional<Note> wrong = check_value(**found, value)) return error_at(key, *wrong);
   if ((*found)->type == KeyType::kNode)
     if (const std::string name = value.get<std::string>(); !name.empty()) {
       const DocumentNode* const named = state.find(name);
       if (!named || !named->node.device)
-        return Error{key, "names '" + name +
-                              (named ? "', which has no haptic device; add one to it first" : "', which is not there")};
+        return Error{key, "names '" + name + (named ? "', which has no haptic device" : "', which is not there"),
+                     named ? "add one to it first" : "", "level.unknown_device"};
     }
   if (of.on_scene) {
     Level scene = scene_of(state);
     if (!of.present(&scene)) of.add(&scene);
     (*found)->set(&scene, value);
-    if (const std::string clash = of.settle(&scene); !clash.empty()) return Error{key, clash};
+    if (const std::optional<Note> clash = of.settle(&scene)) return error_at(key, *clash);
     State next = state;
     next.environment = scene.environment;
     next.simulation = scene.simulation;
@@ -142,7 +142,7 @@ Result<State> with_value(const State& state, NodeIds ids, const std::string& ext
     // Stiffness and Young's modulus exclude each other: the last one set wins.
     if (extension == "deformable" && key == "stiffness") node.deformable->young = 0.0;
     (*found)->set(&node, value);
-    if (const std::string clash = of.settle(&node); !clash.empty()) return Error{node.name, clash};
+    if (const std::optional<Note> clash = of.settle(&node)) return error_at(node.name, *clash);
     return true;
   });
 }

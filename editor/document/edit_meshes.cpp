@@ -39,9 +39,9 @@ Result<State> with_script(const State& state, NodeId id, const std::string& file
   std::optional<NodeChange> change = changing(state, id);
   if (!change) return kNoSuchNode;
   LevelNode& node = change->node->node;
-  if (!node.device) return Error{node.name, "has no haptic device; add one first"};
+  if (!node.device) return Error{node.name, "has no haptic device", "add one first"};
   if (file.empty() || file.find('/') != std::string::npos)
-    return Error{file, "is no name for a script; it lies beside the level, without a folder"};
+    return Error{file, "is no name for a script", "it lies beside the level, without a folder"};
   node.device->driver = keys.keys.empty() ? DriverKind::kNull : DriverKind::kScript;
   node.device->file = keys.keys.empty() ? "" : file;
   if (keys.keys.empty())

@@ -140,8 +140,8 @@ Result<State> renamed(const State& state, NodeId id, const std::string& name) {
   if (const auto fault = fault_of_name(name)) return Error{"rename", *fault};
   const DocumentNode* const other = state.find(name);
   if (other && other->id != id)
-    return Error{"rename",
-                 "another node is called '" + name + "'; nodes are referred to by their names, choose another"};
+    return Error{"rename", "another node is called '" + name + "'",
+                 "nodes are referred to by their names, choose another"};
   std::optional<NodeChange> change = changing(state, id);
   if (!change) return kNoSuchNode;
   const std::string before = change->node->node.name;
@@ -188,7 +188,7 @@ Result<State> pasted(const State& state, const State& from, NodeIds ids, NodeId 
                      std::vector<NodeId>* ids_out) {
   if (parent != kNoNode && !state.find(parent)) return kNoSuchNode;
   const std::vector<NodeId> tops = topmost(from, ids);
-  if (tops.empty()) return Error{"paste", "there is nothing to paste; copy a node first"};
+  if (tops.empty()) return Error{"paste", "there is nothing to paste", "copy a node first"};
   // A mesh that this document already has is shared; others are added.
   State next = state;
   std::map<std::int32_t, std::int32_t> mesh_of;

@@ -50,8 +50,10 @@ Result<std::vector<std::string>> bring_named_files(const State& state, const fs:
     if (fs::exists(target, failed)) continue;
     fs::create_directories(target.parent_path(), failed);
     if (!fs::copy_file(*source, target, failed))
-      return Error{target.string(), "could not be copied from " + source->string() + " (" + failed.message() +
-                                        "), and the level names it; copy it by hand"};
+      return Error{
+          target.string(),
+          "could not be copied from " + source->string() + " (" + failed.message() + "), and the level names it",
+          "copy it by hand"};
     brought.push_back(name);
   }
   return brought;

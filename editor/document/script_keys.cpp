@@ -240,10 +240,11 @@ Result<std::string> text_of_keys(const ScriptKeys& script, const std::string& na
                         k.anchor.x, k.anchor.y, k.anchor.z, k.normal.x, k.normal.y, k.normal.z, k.height);
   std::string text = head + rows;
   if (text.size() > most(limits::kScriptFile))
-    return Error{name, "is not written, as no run would read it: it " +
-                           beyond(limits::kScriptFile, static_cast<double>(text.size()), "make the path shorter")};
+    return error_at(name, beyond("is not written, as no run would read it: it", limits::kScriptFile,
+                                 static_cast<double>(text.size()), "make the path shorter"));
   if (const Result<Path> again = parse_script(text, name); !again)
-    return Error{again.error().where, "is not written, as no run would read it: " + again.error().what};
+    return Error{again.error().where, "is not written, as no run would read it: " + again.error().what,
+                 again.error().cure, again.error().code};
   return text;
 }
 

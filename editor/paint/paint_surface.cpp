@@ -23,8 +23,8 @@ bool flattens(const dmat3& frame) {
 
 Result<PaintSurface> PaintSurface::make(const LevelMesh& mesh, const dmat3& frame, const std::atomic<bool>* stop) {
   if (flattens(frame))
-    return Error{"mesh `" + mesh.name + "`",
-                 "its node's scale makes it flat; give it a scale other than 0 on each axis"};
+    return Error{"mesh `" + mesh.name + "`", "its node's scale makes it flat",
+                 "give it a scale other than 0 on each axis"};
   Result<TouchMesh> touch = build_touch_mesh(mesh.name, mesh.primitives, mat4(dmat4(frame)), {}, stop);
   if (!touch) return touch.error();
   const auto stops = [&] { return stop != nullptr && stop->load(std::memory_order_relaxed); };

@@ -72,7 +72,7 @@ class FindingsPanel : public Panel {
     const float wide = ImGui::GetContentRegionAvail().x, column = ui::px(84);
     const float fix_wide = found.fix ? ImGui::CalcTextSize(found.fix->label.c_str()).x + ui::px(2 * ui::kPad) : 0.0f;
     const std::string text =
-        (node ? printable(node->node.name) + " " : std::string()) + printable(found.finding.message);
+        (node ? printable(node->node.name) + " " : std::string()) + printable(found.finding.message());
     const float wrap = std::max(wide - column - fix_wide - ui::px(ui::kWide), ui::px(120));
     const float high = std::max(ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap).y, ImGui::GetFrameHeight());
     if (ImGui::Selectable("##row", node && editor.is_selected(node->id), ImGuiSelectableFlags_AllowItemOverlap,

@@ -11,6 +11,7 @@
 #include "content/keys/extensions.h"
 #include "content/keys/stated.h"
 #include "content/level/soft_preview.h"
+#include "content/tets/tet_findings.h"
 #include "editor/app/app.h"
 #include "editor/panels/panels.h"
 #include "editor/viewport/solid_view.h"
@@ -206,10 +207,10 @@ class SoftPanel : public Panel {
     if (ui::button("Automatic", "About 2,000 tetrahedra"))
       editor.apply("Cell", with_value(editor.state(), ids, "soft_body", "cell", 0.0));
     ask(editor, node);
-    if (!trouble_.empty()) {
+    if (trouble_) {
       ImGui::TextColored(ui::palette().bad, "Cannot be tissue as it is");
-      ui::dim(trouble_.c_str());
-      offer(editor, node, trouble_);
+      ui::dim(trouble_->message().c_str());
+      offer(editor, node, trouble_->code);
     }
     // The rows are always shown, even without values, so that the widgets below do not move.
     const bool filling = editor.jobs.running("preview");
@@ -230,11 +231,11 @@ class SoftPanel : public Panel {
     figure("A step takes about",
            known(fmt::format("{:.1f} of {:.1f} ms", p.step_ms, 1e3 * editor.state().simulation.soft_step)), slow);
     if (slow) ui::dim("Slower than real time on this machine; a coarser cell is faster.");
-    for (const std::string& finding : p.findings) {
+    for (const Note& found : p.notes) {
       ImGui::TextColored(ui::palette().warning, "Note");
       ImGui::SameLine();
-      ui::dim(finding.c_str());
-      offer(editor, node, finding);
+      ui::dim(found.message().c_str());
+      offer(editor, node, found.code);
     }
     bool carries = body.carries == Carries::kInside;
     if (ui::checkbox("Takes its parts along", carries, "Meshes inside of it that are only drawn go with its tissue"))
@@ -253,9 +254,9 @@ class SoftPanel : public Panel {
   }
 
   // Shows a button for a finding's remedy, if there is one.
-  void offer(Editor& editor, const DocumentNode& node, const std::string& sentence) {
+  void offer(Editor& editor, const DocumentNode& node, const std::string& code) {
     const NodeId ids[] = {node.id};
-    if (sentence.find("\"fill\"") == std::string::npos && sentence.find("fill") == std::string::npos) return;
+    if (code != kFillNote) return;
     const auto fill = [&](const char* label, const char* word, const char* hint) {
       if (ui::button(label, hint)) editor.apply(label, with_value(editor.state(), ids, "soft_body", "fill", word));
       ImGui::SameLine();
@@ -403,7 +404,7 @@ class SoftPanel : public Panel {
       }
       const std::string doubt = sag ? sag_doubt(*of.soft_body, *sag, unloaded ? &*unloaded : nullptr) : std::string();
       return [this, shared, frame, sag, unloaded, doubt](Editor&) {
-        trouble_.clear();
+        trouble_.reset();
         preview_.reset();
         sag_ = sag;
         unloaded_ = unloaded;
@@ -411,7 +412,7 @@ class SoftPanel : public Panel {
         if (*shared)
           preview_ = std::move(**shared);
         else
-          trouble_ = shared->error().message();
+          trouble_ = shared->error();
         to_object_ = frame.to_object;
         shown_ = true;
       };
@@ -492,7 +493,7 @@ class SoftPanel : public Panel {
   bool show_sag_ = false;
   std::optional<std::vector<PinAdvice>> advice_;
   NodeId advice_of_ = kNoNode;
-  std::string trouble_;
+  std::optional<Error> trouble_;
 };
 
 }  // namespace

@@ -316,7 +316,10 @@ void PlayRun::show(Inside& in) {
     Hash hash = in.journal->hash();
     hash_state(p.world, hash);
     in.hash = fmt::format("{:016x}", hash.value());
-    if (auto findings = in.session->findings()) in.findings = std::move(findings).value();
+    if (const auto found = in.session->findings()) {
+      in.findings.clear();
+      for (const Note& note : *found) in.findings.push_back(note.message());
+    }
   }
   const std::uint64_t tick = in.realtime && p.clock() ? p.clock()->now() + 1 : p.ticks;
   if (const double over = seconds_since(in.paced_ns); over > kPaceOver) {

@@ -49,7 +49,7 @@ std::string label_of(const Lattice& its, bool from_file, double step, SolverKind
 }
 
 Error unpressed(const LevelNode& node) {
-  return {node.name, "could not be pressed to measure an error; leave out `error`"};
+  return {node.name, "could not be pressed to measure an error", "leave out `error`"};
 }
 
 // State of one body's choice.
@@ -103,10 +103,11 @@ std::optional<Lattice> BodyChooser::lattice_within(double cell, std::size_t most
 }
 
 Error BodyChooser::too_large() const {
-  return {node_.name, fmt::format("has {} tetrahedra, more than can be pressed in seconds to measure an error, and a "
-                                  "coarser lattice cannot be made of it; leave out `error`, or {}",
-                                  lattices.front().its.tets.tets.size(),
-                                  from_file() ? "take a file with fewer" : "name a larger `cell`")};
+  return {node_.name,
+          fmt::format("has {} tetrahedra, more than can be pressed in seconds to measure an error, and a coarser "
+                      "lattice cannot be made of it",
+                      lattices.front().its.tets.tets.size()),
+          fmt::format("leave out `error`, or {}", from_file() ? "take a file with fewer" : "name a larger `cell`")};
 }
 
 Status BodyChooser::try_lattices() {
@@ -157,7 +158,7 @@ Status BodyChooser::try_lattices() {
     const double error = to_truth(difference(*answer, *truth, surface), tried->cell, finest->cell);
     lattices.push_back({error, std::move(*tried)});
   }
-  if (lattices.empty()) return Error{node_.name, "has no lattice whose error could be measured; leave out `error`"};
+  if (lattices.empty()) return Error{node_.name, "has no lattice whose error could be measured", "leave out `error`"};
   return Done{};
 }
 
@@ -194,7 +195,7 @@ Result<ModelChoice> choose_body(Level& level, std::size_t index, double& step, C
   std::vector<double> wanted(kStepsTried.begin(), kStepsTried.end());
   if (states_step(level)) wanted = {level.simulation.soft_step}, choice.kept.emplace_back("soft_step");
   if (!make_solver(body.solver, 1))
-    return Error{node.name, "its solver is not in this build, or its factory makes none; use `auto`"};
+    return Error{node.name, "its solver is not in this build, or its factory makes none", "use `auto`"};
 
   BodyChooser chooser(level, index, choice, progress);
   if (const Status tried = chooser.try_lattices(); !tried) return tried.error();

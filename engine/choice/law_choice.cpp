@@ -2,9 +2,11 @@
 // a layer bonded to a rigid base.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "content/keys/enum_words.h"
+#include "content/keys/extension_table.h"
 #include "content/keys/layer_sphere.h"
 #include "engine/choice/choice_parts.h"
 #include "engine/choice/press_bench.h"
@@ -19,22 +21,37 @@ constexpr double kDeepest = 0.25;       // [1] of the sphere's radius, and of th
 constexpr double kMostOfObject = 0.02;  // [1] of the object's diagonal
 constexpr double kMostStiffening = 12.0, kMostCubic = 100.0;  // [1] of the deepest press: alpha d, and k3 d^2 / k
 
+struct LawModel {
+  SpringLaw spring;
+  std::string key;        // of its constant; empty: it has none
+  double constant = 0.0;  // [1/m] or [N/m3]
+};
+
+double& constant_of(Deformable& its, const std::string& key) {
+  return key == "cubic" ? its.cubic : its.stiffening;
+}
+
+void set(Deformable& its, const LawModel& law) {
+  its.spring = law.spring;
+  if (!law.key.empty()) constant_of(its, law.key) = law.constant;
+}
+
 // Force of a law at a depth [m], over E*. [m2]
-double law_area(const Deformable& its, SpringLaw spring, double constant, double radius, double depth) {
+double law_area(const Deformable& its, const LawModel& law, double radius, double depth) {
   Deformable with = its;
-  with.spring = spring;
-  (spring == SpringLaw::kCubic ? with.cubic : with.stiffening) = constant;
+  set(with, law);
   const double z = -restoring_law(with).force(-depth);
   return 4.0 / 3.0 * std::sqrt(radius) * z * std::sqrt(std::max(0.0, z));
 }
 
 // The constant between 0 and `most` with the smallest force error, by golden section.
-double fitted(const Deformable& its, SpringLaw spring, double most, double radius, double deepest,
+double fitted(const Deformable& its, LawModel law, double most, double radius, double deepest,
               const LayerSphere& truth) {
   const auto off = [&](double constant) {
+    law.constant = constant;
     double sum = 0.0;
     for (int i = 1; i <= kLawDepths; ++i) {
-      const double d = deepest * i / kLawDepths, r = law_area(its, spring, constant, radius, d) - truth.force(d);
+      const double d = deepest * i / kLawDepths, r = law_area(its, law, radius, d) - truth.force(d);
       sum += r * r;
     }
     return sum;
@@ -48,27 +65,23 @@ double fitted(const Deformable& its, SpringLaw spring, double most, double radiu
   return 0.5 * (low + high);
 }
 
-struct LawModel {
-  SpringLaw spring;
-  double constant;  // [1/m] or [N/m3]
-};
-
 std::string label_of(const LawModel& law) {
   std::string label = fmt::format("spring {}", word_of(law.spring));
-  if (law.spring == SpringLaw::kExponential) label += fmt::format(", stiffening {:.4g} /m", law.constant);
-  if (law.spring == SpringLaw::kCubic) label += fmt::format(", cubic {:.4g} N/m3", law.constant);
+  if (!law.key.empty())
+    label +=
+        fmt::format(", {} {:.4g} {}", law.key, law.constant, find_key(*find_extension("deformable"), law.key)->unit);
   return label;
 }
 
-void set(Deformable& its, const LawModel& law) {
-  its.spring = law.spring;
-  if (law.spring == SpringLaw::kExponential) its.stiffening = law.constant;
-  if (law.spring == SpringLaw::kCubic) its.cubic = law.constant;
-}
-
-// The key of a law's constant; null if it has none.
-const char* constant_of(SpringLaw spring) {
-  return spring == SpringLaw::kExponential ? "stiffening" : spring == SpringLaw::kCubic ? "cubic" : nullptr;
+// The laws without a memory that read one constant at most.
+std::vector<LawModel> laws_to_choose() {
+  std::vector<LawModel> laws;
+  for (std::size_t i = 0; i < std::size(kSpringRows); ++i) {
+    const std::string keys = kSpringRows[i].reads;
+    if (kSpringRows[i].step != SpringStep::kArm && keys.find(' ') == std::string::npos)
+      laws.push_back({static_cast<SpringLaw>(i), keys});
+  }
+  return laws;
 }
 
 // The reason why there is no reference; empty if there is one.
@@ -103,14 +116,15 @@ Result<std::optional<ModelChoice>> choose_law(Level& level, std::size_t index, M
   const LayerSphere force(sphere, its.thickness, its.poisson, deepest);
   const SurfaceTruth truth(level, index, diagonal);
 
-  std::vector<LawModel> laws{{SpringLaw::kLinear, 0.0}};
-  const auto add = [&](SpringLaw spring, const char* key, double said, double most) {
-    if (states(node, "deformable", key)) choice.kept.emplace_back(key);
-    const bool kept = states(node, "deformable", key);
-    laws.push_back({spring, kept ? said : fitted(its, spring, most, sphere, deepest, force)});
-  };
-  add(SpringLaw::kExponential, "stiffening", its.stiffening, kMostStiffening / deepest);
-  add(SpringLaw::kCubic, "cubic", its.cubic, its.stiffness * kMostCubic / (deepest * deepest));
+  std::vector<LawModel> laws = laws_to_choose();
+  for (LawModel& law : laws) {
+    if (law.key.empty()) continue;
+    const bool kept = states(node, "deformable", law.key.c_str());
+    if (kept && std::count(choice.kept.begin(), choice.kept.end(), law.key) == 0) choice.kept.push_back(law.key);
+    const double most =
+        law.key == "cubic" ? its.stiffness * kMostCubic / (deepest * deepest) : kMostStiffening / deepest;
+    law.constant = kept ? constant_of(its, law.key) : fitted(its, law, most, sphere, deepest, force);
+  }
 
   std::vector<std::pair<ModelCandidate, LawModel>> tried;
   for (const LawModel& law : laws) {
@@ -128,7 +142,7 @@ Result<std::optional<ModelChoice>> choose_law(Level& level, std::size_t index, M
         ms += press.ms;
         count += 1.0;
       }
-    if (!(size > 0.0)) return Error{node.name, "could not be pressed to measure an error; leave out `error`"};
+    if (!(size > 0.0)) return Error{node.name, "could not be pressed to measure an error", "leave out `error`"};
     ModelCandidate candidate{label_of(law), std::sqrt(off / size)};
     candidate.vertices = surface.tried[surface.chosen].vertices;
     candidate.cost = kTickUs + 1e-3 * candidate.vertices * law_ns(law.spring);
@@ -141,8 +155,8 @@ Result<std::optional<ModelChoice>> choose_law(Level& level, std::size_t index, M
                           : std::string("on an elastic half-space (Hertz)")));
   const LawModel taken = take_cheapest(choice, tried);
   choice.keys.push_back({"deformable", "spring"});
-  if (const char* constant = constant_of(taken.spring); constant && !states(node, "deformable", constant))
-    choice.keys.push_back({"deformable", constant});
+  if (!taken.key.empty() && !states(node, "deformable", taken.key.c_str()))
+    choice.keys.push_back({"deformable", taken.key});
   set(*node.deformable, taken);
   return std::optional<ModelChoice>(std::move(choice));
 }

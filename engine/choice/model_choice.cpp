@@ -122,9 +122,9 @@ Result<std::vector<ModelChoice>> choose_models(Level& level) {
 
 Result<std::vector<ModelChoice>> choose_model(Level& level, std::size_t index, const ChoiceWatch& watch) {
   const LevelNode& node = level.nodes[index];
-  if (!node.in_scene) return Error{node.name, "is not in the scene that is shown; no model of it is chosen"};
+  if (!node.in_scene) return Error{node.name, "is not in the scene that is shown", "no model of it is chosen"};
   if (!has_surface_budget(node) && !has_body_budget(node))
-    return Error{node.name, "has no error budget; give its surface or soft body the key `error`"};
+    return Error{node.name, "has no error budget", "give its surface or soft body the key `error`"};
   ChoiceProgress progress(watch);
   std::vector<ModelChoice> all;
   try {
@@ -169,7 +169,7 @@ Status set_error_budget(Level& level, double budget) {
     if (node.soft_body) node.soft_body->error = budget, any = true;
   }
   if (any) return Done{};
-  return Error{"--error", "the level has neither a deformable surface nor a soft body; leave it out"};
+  return Error{"--error", "the level has neither a deformable surface nor a soft body", "leave it out"};
 }
 
 }  // namespace pliant

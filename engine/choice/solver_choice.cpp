@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/registered.h"
 #include "runtime/clock.h"
 #include "systems/soft/linear/block_cholesky.h"
 #include "systems/soft/linear/conjugate_gradient.h"
@@ -18,8 +19,6 @@ constexpr double kFlopNs = 0.08, kFrontNs = 1000.0;       // [ns] of a factorisa
 constexpr double kSolveNs = 0.75;                         // [ns] of a right-hand side, flops^(2/3)
 constexpr double kSetupNs = 500.0, kIterationNs = 100.0;  // [ns] per node
 constexpr double kDenseFlopNs = 0.07;
-// [1] factors on the times of `block-cholesky`: factorisation, right-hand side.
-constexpr double kEigen[2] = {3.0, 2.0}, kCholmod[2] = {3.5, 3.5};
 
 struct SystemSize {
   double nodes, flops;  // flops: of a block-cholesky factorisation
@@ -36,21 +35,19 @@ double iterative_ms(const SystemSize& s) {
 }
 
 double cost_ms(SolverKind kind, const SystemSize& s) {
+  const SolverRow& row = row_of(kind);
   const double n = 3 * s.nodes;
-  switch (kind) {
-    case SolverKind::kEigenCholesky:
-      return direct_ms(s, kEigen[0], kEigen[1]);
-    case SolverKind::kCholmod:
-      return direct_ms(s, kCholmod[0], kCholmod[1]);
-    case SolverKind::kConjugateGradient:
+  switch (row.cost) {
+    case SolverCost::kDirect:
+      return direct_ms(s, row.factorisation, row.column);
+    case SolverCost::kIterative:
       return iterative_ms(s);
-    case SolverKind::kDense:
+    case SolverCost::kDense:
       return 1e-6 * kDenseFlopNs * (n * n * n / 3 + 2 * kColumns * n * n);
-    case SolverKind::kAuto:
-      return std::min(direct_ms(s, 1, 1), iterative_ms(s));
-    default:
-      return direct_ms(s, 1, 1);  // no cost is known for a registered solver
+    case SolverCost::kBest:
+      break;
   }
+  return std::min(direct_ms(s, 1, 1), iterative_ms(s));
 }
 
 }  // namespace

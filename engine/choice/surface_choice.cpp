@@ -36,7 +36,7 @@ OpenKeys open_keys(const LevelNode& node, const SurfaceTruth& truth) {
   const auto said = [&](const char* key) { return states(node, "deformable", key); };
   const Deformable& its = *node.deformable;
   OpenKeys open;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(kLastShape); ++i) open.shapes.push_back(static_cast<Shape>(i));
+  for (std::size_t i = 0; i < std::size(kShapeRows); ++i) open.shapes.push_back(static_cast<Shape>(i));
   if (said("shape") || said("volume"))
     open.shapes = {its.shape};
   else if (said("contact_radius"))
@@ -128,7 +128,7 @@ Result<ModelChoice> choose_surface(Level& level, std::size_t index, ChoiceProgre
   double diagonal = 0.0;
   for (auto [entity, its] : usual->registry.view<const Deformable>())
     diagonal = static_cast<double>(usual->meshes[its.mesh].box.diagonal());
-  if (!(diagonal > 0.0)) return Error{node.name, "has an error budget but no surface to press; leave out `error`"};
+  if (!(diagonal > 0.0)) return Error{node.name, "has an error budget but no surface to press", "leave out `error`"};
   const SurfaceTruth truth(level, index, diagonal);
   for (const char* key : {"shape", "volume", "distance", "spring", "response", "reach", "contact_radius"})
     if (states(node, "deformable", key)) choice.kept.emplace_back(key);
@@ -156,7 +156,7 @@ Result<ModelChoice> choose_surface(Level& level, std::size_t index, ChoiceProgre
       }
     }
   }
-  if (tried.empty()) return Error{node.name, "could not be pressed to measure an error; leave out `error`"};
+  if (tried.empty()) return Error{node.name, "could not be pressed to measure an error", "leave out `error`"};
   const SurfaceModel taken = take_cheapest(choice, tried);
   remark(taken.bulge, truth, choice);
   for (const ChoosableKey& key : choosable_keys(level, index))

@@ -2,7 +2,7 @@
 // Costs are counted with these constants, so that a choice is the same on every machine.
 #pragma once
 
-#include "pliant/parameters.h"
+#include "components/registered.h"
 
 namespace pliant {
 
@@ -11,16 +11,12 @@ inline constexpr double kMarchNs = 150.0;  // [ns] per vertex whose distance alo
 
 // [ns] The volume shape has to sum its coefficient first.
 inline double shape_ns(Shape shape) {
-  constexpr double kNs[] = {2.6, 3.1, 2.3, 1.0, 2.1, 2.9};
-  const auto i = static_cast<std::size_t>(shape);
-  return i < std::size(kNs) ? kNs[i] : 20.0;
+  return row_of(shape).ns;
 }
 
 // [ns] Cost of the free surface's motion.
 inline double law_ns(SpringLaw law) {
-  constexpr double kNs[] = {2.3, 12.5, 39.0, 2.7};
-  const auto i = static_cast<std::size_t>(law);
-  return i < std::size(kNs) ? kNs[i] : 40.0;
+  return row_of(law).ns;
 }
 
 }  // namespace pliant

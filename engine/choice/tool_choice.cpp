@@ -49,7 +49,7 @@ Result<std::optional<ModelChoice>> choose_tool(Level& level, std::size_t index, 
   if (!truth) return truth.error();
   double most = 0.0;
   for (const Vector6& each : truth->wrench) most = std::max(most, (each - truth->wrench[0]).head<3>().norm());
-  if (!(most > 0.0)) return Error{node.name, "could not be pressed to measure its force; leave out `error`"};
+  if (!(most > 0.0)) return Error{node.name, "could not be pressed to measure its force", "leave out `error`"};
   std::vector<ToolForce> forces{ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts};
   if (states(node, "handle", "force")) {
     choice.kept.emplace_back("force");

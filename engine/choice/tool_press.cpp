@@ -110,7 +110,7 @@ Result<ToolPress> ToolPress::make(const Level& level, std::size_t node) {
   if (!bare) return bare.error();
   if (const Status ready = prepare_all(*bare); !ready) return ready.error();
   if (!bare->soft || bare->tools->tools.empty())
-    return Error{level.nodes[node].name, "could not be held to measure its force; leave out `error`"};
+    return Error{level.nodes[node].name, "could not be held to measure its force", "leave out `error`"};
   const PressFrame f = frame_of(level.simulation.gravity);
   double low = -std::numeric_limits<double>::max();
   Box box;

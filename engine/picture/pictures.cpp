@@ -21,7 +21,7 @@ Status check(const PictureView& view, int width, int height) {
     return Error{"Pictures", "the view must be finite, and its yfov between 0.01 and 3.1"};
   const dvec3 along = view.target - view.eye;
   if (!(length(cross(along, view.up)) > 1e-9 * length(along) * length(view.up)))
-    return Error{"Pictures", "the view has no direction; eye and target must differ, and up must not be along them"};
+    return Error{"Pictures", "the view has no direction", "eye and target must differ, and up must not be along them"};
   return Done{};
 }
 
@@ -42,7 +42,7 @@ struct Pictures::Parts {
     session->view.soft_seen = {};
   }
   Status ready() {
-    if (run.expired()) return Error{"Pictures", "its session has been restarted or has ended; make Pictures anew"};
+    if (run.expired()) return Error{"Pictures", "its session has been restarted or has ended", "make Pictures anew"};
     if (context) context->make_current();
     session->look();
     return Done{};
@@ -54,8 +54,8 @@ struct Pictures::Parts {
 Status Pictures::Parts::may_make(const Session& session) {
   const Session::Parts& of = *session.parts_;
   if (Status s = of.stand_still("Pictures"); !s) return s;
-  if (of.ended) return Error{"Pictures", std::string(of.ended) + "; call Session::restart() first"};
-  if (of.view.seen) return Error{"Pictures", "the session has Pictures already; let them go first"};
+  if (of.ended) return Error{"Pictures", std::string(of.ended), "call Session::restart() first"};
+  if (of.view.seen) return Error{"Pictures", "the session has Pictures already", "let them go first"};
   return Done{};
 }
 

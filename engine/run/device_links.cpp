@@ -62,8 +62,8 @@ void DeviceLinks::begin(World& world, Held opened, dvec3 middle, std::vector<std
   device.status = DeviceStatus::kLost;
   opened.link.begin(device, device.rotation, middle);
   begin_anew(world, opened.hand);
-  if (std::string sentence = stiffness_note(world, opened.hand, opened.name); !sentence.empty())
-    notes.push_back(std::move(sentence));
+  if (const std::optional<Note> stiff = stiffness_note(world, opened.hand, opened.name))
+    notes.push_back(stiff->message());
   if (!opened.link.note().empty()) notes.push_back(fmt::format("`{}`: {}", opened.name, opened.link.note()));
   links_.push_back(std::move(opened));
 }
@@ -97,8 +97,8 @@ Status DeviceLinks::open(World& world, SimulatedHands& held, bool windowed, cons
     for (const std::string& sentence : chosen->notes) notes.push_back(fmt::format("`{}`: {}", name, sentence));
     if (chosen->id.empty()) {
       if (!windowed)
-        return Error{"probe `" + name + "`",
-                     "the mouse would move it, and needs a window; set DISPLAY, or plug in a device"};
+        return Error{"probe `" + name + "`", "the mouse would move it, and needs a window",
+                     "set DISPLAY, or plug in a device"};
       device.driver = DriverKind::kMouse;
       continue;
     }
@@ -205,34 +205,35 @@ bool DeviceLinks::never_ready(Entity hand) {
 namespace {
 
 // Findings for a device that could not be used.
-void find_unused(const std::string& name, const DeviceReport& report, std::vector<std::string>& all) {
+void find_unused(const std::string& name, const DeviceReport& report, std::vector<Note>& all) {
+  const std::string who = "device of `" + name + "`: ";
+  const auto add = [&](const char* code, const std::string& what, const std::string& cure) {
+    all.push_back({who + what, cure, code, name});
+  };
   const std::uint64_t samples = report.figures.samples, not_ready = report.dropped.not_ready;
   if (const std::string frames = describe(report.dropped); !frames.empty())
-    all.push_back(
-        fmt::format("device of `{}`: not everything that it sent could be used, but {} frames or lines were "
-                    "dropped: {}; {}",
-                    name, report.dropped.dropped(), frames, cure_for(report.dropped)));
+    add("device.frames",
+        fmt::format("not everything that it sent could be used, but {} frames or lines were dropped: {}",
+                    report.dropped.dropped(), frames),
+        cure_for(report.dropped));
   if (samples > 0 && not_ready == samples)
-    all.push_back(
-        fmt::format("device of `{}`: it was not ready for the whole run ({} samples, and each says that its "
-                    "state is not known); calibrate or home it, release its emergency stop, let it cool",
-                    name, samples));
+    add("device.not_ready",
+        fmt::format("it was not ready for the whole run ({} samples, and each says that its state is not known)",
+                    samples),
+        "calibrate or home it, release its emergency stop, let it cool");
   else if (not_ready > 0)
-    all.push_back(fmt::format("device of `{}`: {} of {} samples say that it is not ready; nothing was felt meanwhile",
-                              name, not_ready, samples));
+    add("device.not_ready", fmt::format("{} of {} samples say that it is not ready", not_ready, samples),
+        "nothing was felt meanwhile");
   if (samples == 0 && report.figures.periods > 0)
-    all.push_back(
-        fmt::format("device of `{}`: no sample came in the whole run; check that it is switched on and sends "
-                    "where it is",
-                    name));
+    add("device.silent", "no sample came in the whole run", "check that it is switched on and sends where it is");
 }
 
 }  // namespace
 
-std::vector<std::string> DeviceLinks::findings() {
-  std::vector<std::string> all;
+std::vector<Note> DeviceLinks::findings() {
+  std::vector<Note> all;
   for (Held& held : links_) {
-    if (std::string late = held.link.late_note(held.name); !late.empty()) all.push_back(std::move(late));
+    if (std::optional<Note> late = held.link.late_note(held.name)) all.push_back(std::move(*late));
     const DeviceReport& report = held.link.report();
     if (!held.simulated) find_unused(held.name, report, all);
     std::uint64_t worse = 0;
@@ -245,15 +246,18 @@ std::vector<std::string> DeviceLinks::findings() {
       ++worse;
       last = describe(one);
     }
-    if (worse == 1) all.push_back(fmt::format("device of `{}`: {}", held.name, last));
-    if (worse > 1)
-      all.push_back(
-          fmt::format("device of `{}`: its force was taken away {} times, the last time: {}", held.name, worse, last));
+    const std::string who = "device of `" + held.name + "`: ";
+    if (worse > 0)
+      all.push_back({worse == 1
+                         ? who + last
+                         : fmt::format("{}its force was taken away {} times, the last time: {}", who, worse, last),
+                     {},
+                     "device.lost",
+                     held.name});
     if (report.figures.missed > 0)
-      all.push_back(
-          fmt::format("device of `{}`: {} of {} periods of its servo began late ({:.0f} us at most); close other "
-                      "programs, or grant SCHED_FIFO (`ulimit -r`)",
-                      held.name, report.figures.missed, report.figures.periods, report.figures.period_max));
+      all.push_back({fmt::format("{}{} of {} periods of its servo began late ({:.0f} us at most)", who,
+                                 report.figures.missed, report.figures.periods, report.figures.period_max),
+                     "close other programs, or grant SCHED_FIFO (`ulimit -r`)", "device.servo_late", held.name});
   }
   return all;
 }

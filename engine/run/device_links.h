@@ -42,7 +42,7 @@ class DeviceLinks {
   // True if no sample of the device was ready: other findings about its probe are then irrelevant.
   bool never_ready(Entity hand);
   // Per device, transitions that the user should know of.
-  std::vector<std::string> findings();
+  std::vector<Note> findings();
 
  private:
   struct Held {

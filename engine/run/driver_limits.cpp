@@ -86,7 +86,7 @@ Status apply_driver_settings(World& world, const std::vector<std::string>& setti
       key.put(*device, parts->value);
       known = true;
     }
-    if (!known) return Error{"`" + setting + "`", "is no limit of a driver of this scene; record it again"};
+    if (!known) return Error{"`" + setting + "`", "is no limit of a driver of this scene", "record it again"};
   }
   return Done{};
 }

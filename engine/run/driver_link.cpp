@@ -164,14 +164,14 @@ void DriverLink::write(World& world, Entity effector, Entity entity, Tick tick) 
   if (!felt) device.force_sent = device.torque_sent = dvec3(0);
 }
 
-std::string DriverLink::late_note(const std::string& name) const {
-  if (late_ == 0) return {};
-  return fmt::format(
-      "device of `{}`: {} times more than {:.0f} ms went by between two ticks ({:.0f} ms at most), and a device lets "
-      "go "
-      "of a force that is not renewed by then: there nothing was felt; run in real time (without --lockstep, or with "
-      "Session::start()), or have less in the scene",
-      name, late_, 1e3 * kForceHolds, 1e3 * longest_);
+std::optional<Note> DriverLink::late_note(const std::string& name) const {
+  if (late_ == 0) return std::nullopt;
+  return Note{
+      fmt::format("device of `{}`: {} times more than {:.0f} ms went by between two ticks ({:.0f} ms at most), and a "
+                  "device lets go of a force that is not renewed by then: there nothing was felt",
+                  name, late_, 1e3 * kForceHolds, 1e3 * longest_),
+      "run in real time (without --lockstep, or with Session::start()), or have less in the scene", "device.late",
+      name};
 }
 
 void DriverLink::idle() {

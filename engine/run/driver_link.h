@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "components/world.h"
@@ -51,7 +52,7 @@ class DriverLink {
   // If the device's guard withholds the force, the device's force_sent is zero afterwards.
   void write(World& world, Entity effector, Entity device, Tick tick);
   // Note after a run: a device drops a force that is not renewed in time. One sentence, or empty.
-  std::string late_note(const std::string& name) const;
+  std::optional<Note> late_note(const std::string& name) const;
   void idle();  // called instead of both while a loop is paused
   void zero() noexcept;
 

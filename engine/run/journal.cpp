@@ -42,7 +42,7 @@ void Journal::note_tool(Hand& hand, Tick tick, TickRow& row) {
       row.reading.object = bodies_->touches_most(tool.entity);
   }
   row.late = tool.ticks_late > hand.late;
-  row.stale = tool.placed && tick.time - model.time > kStaleSteps * model.soft_step;
+  row.stale = tool.placed() && tick.time - model.time > kStaleSteps * model.soft_step;
   hand.late = tool.ticks_late;
 }
 

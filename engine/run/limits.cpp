@@ -25,39 +25,46 @@ struct Quantity {
   const char* smaller;  // threshold below which the gate opens
 };
 
-std::string sentence(SafetyLimit limit, const LimitCount& count, const std::string& who, const Quantity& q) {
+Note note_of(SafetyLimit limit, const LimitCount& count, const std::string& who, const Quantity& q) {
   const std::string ticks = fmt::format("{} tick{}", count.ticks, count.ticks == 1 ? "" : "s");
   const std::string percent = fmt::format("{:.3g} %", 100 * count.largest_share);
+  Note note;
+  note.code = fmt::format("{}.{}", q.name, key_of(limit));
   switch (limit) {
     case SafetyLimit::kClipped:
-      return fmt::format(
-          "{}: the {} was clipped at {} {:g} {} in {} (at most {} less than the law says); raise {} where the device "
-          "can render it",
-          who, q.name, q.limit, q.largest, q.unit, ticks, percent, q.limit);
+      note.what = fmt::format("{}: the {} was clipped at {} {:g} {} in {} (at most {} less than the law says)", who,
+                              q.name, q.limit, q.largest, q.unit, ticks, percent);
+      note.cure = fmt::format("raise {} where the device can render it", q.limit);
+      return note;
     case SafetyLimit::kWithheld:
-      return fmt::format(
+      note.what = fmt::format(
           "{}: the {} was damped in {} (by at most {} of what the law says), because the hand would have got more "
-          "energy than it gave; raise the rate, or refine and smooth the mesh where it is touched",
+          "energy than it gave",
           who, q.name, ticks, percent);
+      note.cure = "raise the rate, or refine and smooth the mesh where it is touched";
+      return note;
     case SafetyLimit::kGated:
-      return fmt::format(
-          "{}: no {} was sent in {}: the safety gate opens once less than {} is computed; start outside the object",
-          who, q.name, ticks, q.smaller);
+      note.what = fmt::format("{}: no {} was sent in {}: the safety gate opens once less than {} is computed", who,
+                              q.name, ticks, q.smaller);
+      note.cure = "start outside the object";
+      return note;
     case SafetyLimit::kSlewed:
-      return fmt::format(
-          "{}: the {} changed faster than max_slew {:g} {}/s{} let it in {} (off by at most {}); move slower, or raise "
-          "max_slew where the device can render it",
-          who, q.name, q.slew, q.unit, q.stiffness > 0 ? fmt::format(" and max_stiffness {:g} N/m", q.stiffness) : "",
-          ticks, percent);
+      note.what = fmt::format(
+          "{}: the {} changed faster than max_slew {:g} {}/s{} let it in {} (off by at most {})", who, q.name, q.slew,
+          q.unit, q.stiffness > 0 ? fmt::format(" and max_stiffness {:g} N/m", q.stiffness) : "", ticks, percent);
+      note.cure = "move slower, or raise max_slew where the device can render it";
+      return note;
   }
   UNREACHABLE();
 }
 
-void explain(const SafetyTally& tally, const std::string& who, const Quantity& quantity,
-             std::vector<std::string>& sentences) {
-  for (std::size_t i = 0; i < kSafetyLimits; ++i)
-    if (tally.counts[i].ticks > 0)
-      sentences.push_back(sentence(static_cast<SafetyLimit>(i), tally.counts[i], who, quantity));
+void explain(const SafetyTally& tally, const std::string& who, const std::string& name, const Quantity& quantity,
+             std::vector<Note>& notes) {
+  for (std::size_t i = 0; i < kSafetyLimits; ++i) {
+    if (tally.counts[i].ticks == 0) continue;
+    notes.push_back(note_of(static_cast<SafetyLimit>(i), tally.counts[i], who, quantity));
+    notes.back().of = name;
+  }
 }
 
 }  // namespace
@@ -76,22 +83,22 @@ HandSafety find_safety(const World& world, Entity hand) {
   return {};
 }
 
-std::vector<std::string> explain_limits(const World& world, Entity hand, const std::string& name) {
-  std::vector<std::string> sentences;
+std::vector<Note> explain_limits(const World& world, Entity hand, const std::string& name) {
+  std::vector<Note> notes;
   const HandSafety safety = find_safety(world, hand);
   const HapticDevice* device = find_device(world, hand);
-  if (!safety.force || !device) return sentences;
+  if (!safety.force || !device) return notes;
   const SafetyLimits force = force_limits(*device);
   const std::string who = (safety.torque ? "tool `" : "probe `") + name + "`";
-  explain(safety.force->tally, who,
-          {"force", "max_force", "N", force.force, force.slew, force.stiffness / force.scale, "0.2 N"}, sentences);
-  if (std::string softened = softened_note(world, hand, name, safety.force->least_share); !softened.empty())
-    sentences.push_back(std::move(softened));
-  if (!safety.torque) return sentences;
+  explain(safety.force->tally, who, name,
+          {"force", "max_force", "N", force.force, force.slew, force.stiffness / force.scale, "0.2 N"}, notes);
+  if (std::optional<Note> softened = softened_note(world, hand, name, safety.force->least_share))
+    notes.push_back(std::move(*softened));
+  if (!safety.torque) return notes;
   const SafetyLimits torque = torque_limits(*device, world.registry.get<Handle6>(hand));
-  explain(safety.torque->tally, who, {"torque", "max_torque", "N m", torque.force, torque.slew, 0.0, "0.2 N m"},
-          sentences);
-  return sentences;
+  explain(safety.torque->tally, who, name, {"torque", "max_torque", "N m", torque.force, torque.slew, 0.0, "0.2 N m"},
+          notes);
+  return notes;
 }
 
 const char* key_of(SafetyLimit limit) {

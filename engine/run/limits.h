@@ -18,9 +18,9 @@ struct HandSafety {
 };
 HandSafety find_safety(const World& world, Entity hand);
 
-// One sentence per limit that acted, with its frequency, its largest value and the remedy. Valid when the clock has
-// stopped.
-std::vector<std::string> explain_limits(const World& world, Entity hand, const std::string& name);
+// A note per limit that acted, with its frequency, its largest value and the remedy: "force.clipped",
+// "torque.withheld", ... Valid when the clock has stopped.
+std::vector<Note> explain_limits(const World& world, Entity hand, const std::string& name);
 
 // "clipped", "withheld", "gated", "slewed": keys of report.json.
 const char* key_of(SafetyLimit limit);

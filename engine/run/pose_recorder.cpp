@@ -103,8 +103,8 @@ Status PoseRecorder::finish() {
   drain();
   if (Status written = sink_->finish(); !written) return written;
   if (rows_.lost() > 0)
-    return Error{"recording",
-                 fmt::format("{} poses were lost because writing fell behind; use a faster disk", rows_.lost())};
+    return Error{"recording", fmt::format("{} poses were lost because writing fell behind", rows_.lost()),
+                 "use a faster disk"};
   return Done{};
 }
 

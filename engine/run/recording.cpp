@@ -76,7 +76,7 @@ bool sound(const RecordedPose& pose) {
 }
 
 Error too_short(const std::string& name) {
-  return {name, "ends too early or is damaged; record it again"};
+  return {name, "ends too early or is damaged", "record it again"};
 }
 
 Status read_poses(const std::string& name, HashingReader& in, std::uint32_t probes, std::uint64_t index,
@@ -92,8 +92,8 @@ Status read_poses(const std::string& name, HashingReader& in, std::uint32_t prob
     pose.felt = state != 2;
     if (!in.ok) return too_short(name);
     if (!sound(pose))
-      return Error{name, "has a pose at tick " + std::to_string(index) +
-                             " that is not finite or not a unit quaternion; record it again"};
+      return Error{name, "has a pose at tick " + std::to_string(index) + " that is not finite or not a unit quaternion",
+                   "record it again"};
     recording.poses.push_back(pose);
   }
   return Done{};
@@ -114,8 +114,10 @@ Status read_event(const std::string& name, HashingReader& in, Recording& recordi
   if (!in.ok) return too_short(name);
   const bool in_order = recording.events.empty() || recording.events.back().tick <= event.tick;
   if (kind < 1 || kind > static_cast<std::uint8_t>(kLastEvent) || !finite || !in_order)
-    return Error{name, "has an event before tick " + std::to_string(event.tick) +
-                           " that is of no known kind, not finite or out of order; record it again"};
+    return Error{name,
+                 "has an event before tick " + std::to_string(event.tick) +
+                     " that is of no known kind, not finite or out of order",
+                 "record it again"};
   event.kind = static_cast<EventKind>(kind);
   recording.events.push_back(std::move(event));
   return Done{};
@@ -134,12 +136,12 @@ Status read_records(const std::string& name, HashingReader& in, std::uint32_t pr
     const auto index = in.get<std::uint64_t>();
     if (!in.ok) return too_short(name);
     if (!recording.ticks.empty() && index <= recording.ticks.back())
-      return Error{name, "has ticks out of order; record it again"};
+      return Error{name, "has ticks out of order", "record it again"};
     if (const Status read = read_poses(name, in, probes, index, recording); !read) return read;
   }
   const std::uint64_t expected = in.hash.value();
   if (static_cast<Reader&>(in).get<std::uint64_t>() != expected || in.at != in.bytes.size()) return too_short(name);
-  if (recording.ticks.empty()) return Error{name, "holds no tick; record it again"};
+  if (recording.ticks.empty()) return Error{name, "holds no tick", "record it again"};
   return Done{};
 }
 
@@ -147,12 +149,12 @@ Status read_records(const std::string& name, HashingReader& in, std::uint32_t pr
 
 Result<Recording> parse_recording(const std::string& name, const std::string& bytes) {
   if (bytes.size() < sizeof kMagic || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
-    return Error{name, "is not a recording; give a file that --record wrote"};
+    return Error{name, "is not a recording", "give a file that --record wrote"};
   HashingReader in{{bytes, sizeof kMagic}};
   const std::uint32_t version = in.get<std::uint32_t>();
   if (version < 1 || version > kVersion)
-    return Error{name, "has format version " + std::to_string(version) + ", this is " + std::to_string(kVersion) +
-                           "; record it again"};
+    return Error{name, "has format version " + std::to_string(version) + ", this is " + std::to_string(kVersion),
+                 "record it again"};
 
   const Error short_file = too_short(name);
   Recording recording;
@@ -180,13 +182,13 @@ Result<Recording> parse_recording(const std::string& name, const std::string& by
   const std::size_t body = bytes.size() - in.at - sizeof(std::uint64_t);
   if (body % tick_bytes != 0) return short_file;
   const std::size_t ticks = body / tick_bytes;
-  if (ticks == 0) return Error{name, "holds no tick; record it again"};
+  if (ticks == 0) return Error{name, "holds no tick", "record it again"};
   recording.ticks.reserve(ticks);
   recording.poses.reserve(ticks * probes);
   for (std::size_t t = 0; t < ticks; ++t) {
     const std::uint64_t index = in.get<std::uint64_t>();
     if (!recording.ticks.empty() && index <= recording.ticks.back())
-      return Error{name, "has ticks out of order; record it again"};
+      return Error{name, "has ticks out of order", "record it again"};
     if (const Status read = read_poses(name, in, probes, index, recording); !read) return read.error();
   }
   const std::uint64_t expected = in.hash.value();
@@ -203,21 +205,21 @@ Result<Recording> read_recording(const fs::path& file) {
 Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const RecordingHeader& header, bool replace) {
   for (const std::string& setting : header.settings)
     if (setting.size() > kMaxName || header.settings.size() > kMaxSettings)
-      return Error{file.string(), "has no room for the settings; write them into the level instead"};
+      return Error{file.string(), "has no room for the settings", "write them into the level instead"};
   std::error_code ignored;
-  if (fs::is_directory(file, ignored)) return Error{file.string(), "is a folder; name a file in it"};
+  if (fs::is_directory(file, ignored)) return Error{file.string(), "is a folder", "name a file in it"};
   if (fs::exists(file, ignored)) {
-    if (!replace) return Error{file.string(), "is there already; name another, or replace it with --force"};
+    if (!replace) return Error{file.string(), "is there already", "name another, or replace it with --force"};
     if (!fs::is_regular_file(file, ignored))
-      return Error{file.string(), "is not a regular file; name another"};  // opening a pipe would block
+      return Error{file.string(), "is not a regular file", "name another"};  // opening a pipe would block
     char magic[sizeof kMagic] = {};
     std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
     if (std::memcmp(magic, kMagic, sizeof kMagic) != 0)
-      return Error{file.string(), "is no recording, so it is not replaced; name another, or move it away"};
+      return Error{file.string(), "is no recording, so it is not replaced", "name another, or move it away"};
   }
   const FolderLock lock(file.parent_path());  // until our file starts with a recording's header
   if (remove_abandoned(file, std::string_view(kMagic, sizeof kMagic)))
-    return Error{file.string(), "is being recorded into by another run; give each its own file"};
+    return Error{file.string(), "is being recorded into by another run", "give each its own file"};
   RecordingWriter writer;
   writer.file_ = file;
   writer.replace_ = replace;
@@ -228,7 +230,7 @@ Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const Reco
     writer.aside_ += ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(writers++);
   } while (fs::symlink_status(writer.aside_, ignored).type() != fs::file_type::not_found);
   auto out = GrowingFile::create(writer.aside_);
-  if (!out) return Error{file.string(), out.error().what};
+  if (!out) return out.error().at(file.string());
   writer.out_.emplace(std::move(out).value());
   writer.record_.assign(kMagic, sizeof kMagic);
   writer.put(kVersion);
@@ -242,7 +244,7 @@ Result<RecordingWriter> RecordingWriter::create(const fs::path& file, const Reco
   writer.add_record();
   writer.out_->flush();
   writer.hashes_ = {writer.hash_.value()};
-  if (const auto& failure = writer.failure()) return Error{file.string(), failure->what};
+  if (const auto& failure = writer.failure()) return failure->at(file.string());
   return writer;
 }
 
@@ -304,7 +306,7 @@ Status RecordingWriter::finish() {
     std::error_code ignored;
     fs::remove(aside_, ignored);
     if (const Status closed = out_->close(); !closed) return closed;
-    return Error{file_.string(), "is not written, because no tick was recorded; run for longer"};
+    return Error{file_.string(), "is not written, because no tick was recorded", "run for longer"};
   }
   const auto bytes_of = [](const std::uint64_t& hash) {
     std::string bytes(1, static_cast<char>(kEnd));
@@ -321,7 +323,8 @@ Status RecordingWriter::finish() {
     // The space of one record is used for the end marker.
     const std::size_t kept = std::min(out_->kept_since_flush(), hashes_.size() - 1), dropped = kept > 0 ? 1 : 0;
     whole = out_->end_instead(out_->kept_since_flush() - kept + dropped, bytes_of(hashes_[kept - dropped]));
-    failure = Error{file_.string(), failure->what + (whole ? " (it has what was recorded until then)" : "")};
+    failure = failure->at(file_.string());
+    if (whole) failure->what += " (it has what was recorded until then)";
   }
   if (const Status closed = out_->close(); !closed && !failure) failure = closed.error();
   std::error_code ignored;
@@ -334,12 +337,12 @@ Status RecordingWriter::finish() {
   for (int n = 2; error == EEXIST; ++n) error = move_file(aside_, place = numbered(file_, n), false);
   if (error != 0) {
     fs::remove(aside_, ignored);
-    return Error{file_.string(), "cannot be put in place: " + why_not_written(error)};
+    return not_written(file_.string(), "cannot be put in place", error);
   }
   if (failure) return *failure;
   if (place != file_)
-    return Error{file_.string(),
-                 "was created by another program during the run; the recording was saved as " + place.string()};
+    return Error{file_.string(), "was created by another program during the run",
+                 "the recording was saved as " + place.string()};
   return Done{};
 }
 

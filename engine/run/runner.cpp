@@ -45,8 +45,8 @@ Status Runner::start(std::uint64_t ticks) {
   } catch (const std::exception& thrown) {
     clock_.reset();
     halt();
-    return Error{"clocks", std::string("no thread could be started (") + thrown.what() +
-                               "); end other programs or raise the limit (ulimit -u)"};
+    return Error{"clocks", std::string("no thread could be started (") + thrown.what() + ")",
+                 "end other programs or raise the limit (ulimit -u)"};
   }
   return Done{};
 }

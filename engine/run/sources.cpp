@@ -60,44 +60,48 @@ Result<ProbeSource> parse_source(const std::string& argument) {
   const std::size_t equals = argument.find('=');
   const std::string where = "--probe " + argument;
   if (equals == std::string::npos || equals == 0)
-    return Error{where, "is not NAME=SOURCE; write, say, --probe finger=orbit"};
+    return Error{where, "is not NAME=SOURCE", "write, say, --probe finger=orbit"};
   ProbeSource source{argument.substr(0, equals), DriverKind::kOrbit, {}};
-  const std::string what = argument.substr(equals + 1);
-  if (what == "orbit") return source;
-  if (what.starts_with("script:") && what.size() > 7) {
+  const std::string words = argument.substr(equals + 1);
+  const std::size_t colon = std::min(words.find(':'), words.size());
+  const std::string kind = words.substr(0, colon), rest = words.substr(std::min(colon + 1, words.size()));
+  const bool alone = colon == words.size();
+  if (kind == "orbit" && alone) return source;
+  if (kind == "script" && !rest.empty()) {
     source.driver = DriverKind::kScript;
-    source.file = what.substr(7);
+    source.file = rest;
     return source;
   }
-  if (what == "mouse") {
+  if (kind == "mouse" && alone) {
     source.driver = DriverKind::kMouse;
     return source;
   }
-  if (what.starts_with("device:") && what.size() > 7) {
+  if (kind == "device" && !rest.empty()) {
     source.driver = DriverKind::kExternal;
-    source.device = what.substr(7);
+    source.device = rest;
     return source;
   }
-  if (what == "hand" || what.starts_with("hand:")) {
+  if (kind == "hand") {
     source.held = true;
-    source.words = what == "hand" ? std::string() : what.substr(5);
-    const HandWords words = hand_words(source.words);
-    source.file = words.file;
-    if (!words.file.empty()) source.driver = DriverKind::kScript;
-    if (auto options = parse_simulated(words.device); !options) return Error{where, options.error().message()};
+    source.words = rest;
+    const HandWords hand = hand_words(source.words);
+    source.file = hand.file;
+    if (!hand.file.empty()) source.driver = DriverKind::kScript;
+    if (const auto options = parse_simulated(hand.device); !options) {
+      const Error& why = options.error();
+      return Error{where, why.where + ": " + why.what, why.cure};
+    }
     return source;
   }
-  return Error{where,
-               "unknown source '" + what +
-                   "'; sources are: script:FILE.csv, orbit, hand[:FILE.csv], mouse, device:ID (`pliant devices` lists "
-                   "them)"};
+  return Error{where, "unknown source '" + words + "'",
+               "sources are: script:FILE.csv, orbit, hand[:FILE.csv], mouse, device:ID (`pliant devices` lists them)"};
 }
 
 Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const std::string& name = sources[i].name;
     for (std::size_t j = 0; j < i; ++j)
-      if (sources[j].name == name) return Error{"--probe " + name, "is given twice; give each probe one source"};
+      if (sources[j].name == name) return Error{"--probe " + name, "is given twice", "give each probe one source"};
     bool taken = false, is_probe = false;
     for (const LevelNode& node : level.nodes) {
       if (node.name != name) continue;
@@ -106,8 +110,8 @@ Status add_probes(Level& level, const std::vector<ProbeSource>& sources) {
     }
     if (is_probe) continue;
     if (taken)
-      return Error{"--probe " + name,
-                   "the level has a node of that name that is neither probe nor tool; choose another name"};
+      return Error{"--probe " + name, "the level has a node of that name that is neither probe nor tool",
+                   "choose another name"};
     LevelNode node;
     node.name = name;
     node.probe.emplace();
@@ -126,7 +130,7 @@ Status apply_sources(World& world, const std::vector<ProbeSource>& sources) {
   for (const ProbeSource& source : sources) {
     const Entity hand = find_hand(world, source.name);
     if (hand == kNoEntity)
-      return Error{"--probe " + source.name, "the level has no such probe or tool; check the name"};
+      return Error{"--probe " + source.name, "the level has no such probe or tool", "check the name"};
     Handle<Path> path;
     if (source.driver == DriverKind::kScript) {
       auto script = load_script(source.file);

@@ -10,6 +10,8 @@
 namespace pliant {
 namespace {
 
+constexpr const char* kLessStiff = "give less stiffness, or take a stiffer or faster device";
+
 // [N/m] per metre of the world, and its owner: the largest stiffness that this effector can feel, without vertex
 // factors and depth.
 std::pair<double, std::string> stiffest_for(const World& world, Entity effector, const std::string& name) {
@@ -33,25 +35,25 @@ double share_by_keys(const HapticDevice& device, double stiffness) {
 
 }  // namespace
 
-std::string stiffness_note(const World& world, Entity effector, const std::string& name) {
+std::optional<Note> stiffness_note(const World& world, Entity effector, const std::string& name) {
   const HapticDevice& device = world.registry.get<HapticDevice>(device_of(world, effector));
   const auto [stiffness, its] = stiffest_for(world, effector, name);
   const double share = share_by_keys(device, stiffness);
-  if (share == 1.0) return {};
-  return fmt::format(
-      "{} has {:g} N/m, and the device of `{}` renders at most {:.3g} N/m stably: there it gets {:.0f} % of the force; "
-      "give less stiffness, or take a stiffer or faster device",
-      its, stiffness, name, device.can.max_stiffness / device.workspace, 100.0 * share);
+  if (share == 1.0) return std::nullopt;
+  return Note{fmt::format("{} has {:g} N/m, and the device of `{}` renders at most {:.3g} N/m stably: there it gets "
+                          "{:.0f} % of the force",
+                          its, stiffness, name, device.can.max_stiffness / device.workspace, 100.0 * share),
+              kLessStiff, "device.softened", name};
 }
 
-std::string softened_note(const World& world, Entity effector, const std::string& name, double least) {
-  if (!(least < 0.99)) return {};
+std::optional<Note> softened_note(const World& world, Entity effector, const std::string& name, double least) {
+  if (!(least < 0.99)) return std::nullopt;
   const HapticDevice& device = world.registry.get<HapticDevice>(device_of(world, effector));
   const double most = device.can.max_stiffness / device.workspace;
-  return fmt::format(
-      "what `{}` touched was up to {:.3g} N/m stiff, and its device renders at most {:.3g} N/m stably: there it got "
-      "{:.0f} % of the force; give less stiffness, or take a stiffer or faster device",
-      name, most / least, most, 100.0 * least);
+  return Note{fmt::format("what `{}` touched was up to {:.3g} N/m stiff, and its device renders at most {:.3g} N/m "
+                          "stably: there it got {:.0f} % of the force",
+                          name, most / least, most, 100.0 * least),
+              kLessStiff, "device.softened", name};
 }
 
 }  // namespace pliant

@@ -21,13 +21,13 @@ Status check_mesh(const LevelMesh& mesh) {
          {p.normal.size(), p.tangent.size(), p.uv.size(), p.stiffness.size(), p.friction.size(), p.damping.size(),
           p.relaxation.size(), p.pinned.size(), p.handle.size()})
       if (size != 0 && size != count)
-        return Error{where,
-                     fmt::format("has {} positions and {} values beside them; give none or as many", count, size)};
+        return Error{where, fmt::format("has {} positions and {} values beside them", count, size),
+                     "give none or as many"};
     if (p.index.size() % 3 != 0)
-      return Error{where, "the number of indices is no multiple of three; give whole triangles"};
+      return Error{where, "the number of indices is no multiple of three", "give whole triangles"};
     for (const std::uint32_t i : p.index)
       if (i >= count)
-        return Error{where, fmt::format("index {} is beyond its {} positions; check the triangles", i, count)};
+        return Error{where, fmt::format("index {} is beyond its {} positions", i, count), "check the triangles"};
   }
   return Done{};
 }
@@ -35,9 +35,9 @@ Status check_mesh(const LevelMesh& mesh) {
 Status check_placement(const LevelNode& node) {
   const LocalTransform& at = node.local;
   if (!finite(at.translation) || !finite(at.scale) || at.scale.x * at.scale.y * at.scale.z == 0.0f)
-    return Error{"`" + node.name + "`", "its placement is not finite, or its scale is zero; check Placement"};
+    return Error{"`" + node.name + "`", "its placement is not finite, or its scale is zero", "check Placement"};
   if (!(std::abs(glm::length(at.rotation) - 1.0f) < 0.01f))
-    return Error{"`" + node.name + "`", "its rotation is not of unit length; normalise it"};
+    return Error{"`" + node.name + "`", "its rotation is not of unit length", "normalise it"};
   return Done{};
 }
 
@@ -48,10 +48,10 @@ Status check_keys(const std::string& name, const Extension& extension, void* own
     if (key.alias) continue;
     const Json value = key.get(owner);
     if (value.is_null()) continue;  // not set
-    if (const std::string fault = check_value(key, value); !fault.empty())
-      return Error{"`" + name + "`: " + key.name, fault};
+    if (const std::optional<Note> fault = check_value(key, value))
+      return error_at("`" + name + "`: " + key.name, *fault);
   }
-  if (const std::string fault = extension.settle(owner); !fault.empty()) return Error{"`" + name + "`", fault};
+  if (const std::optional<Note> fault = extension.settle(owner)) return error_at("`" + name + "`", *fault);
   return Done{};
 }
 

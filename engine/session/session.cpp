@@ -62,7 +62,7 @@ Status Session::move(const std::string& name, dvec3 position, dquat rotation) {
     return Error{"Session::move `" + name + "`", "the pose is not finite or its rotation is not of unit length"};
   if (effector->source != EffectorSource::kPose) {
     if (Status s = parts_->stand_still("Session::move"); !s)
-      return Error{"Session::move `" + name + "`", "it had no pose before start(); give it one first"};
+      return Error{"Session::move `" + name + "`", "it had no pose before start()", "give it one first"};
     if (Status s = parts_->give(*effector, EffectorSource::kPose); !s) return s;
   }
   effector->set = effector->prescribed->write() = {position, rotation / glm::length(rotation), effector->hold};
@@ -74,7 +74,7 @@ Status Session::follow(const std::string& name, Path path) {
   SessionEffector* const effector = parts_->find_effector(name);
   if (!effector) return parts_->unknown_effector(name);
   if (Status s = parts_->stand_still("Session::follow"); !s) return s;
-  if (path.rows.empty()) return Error{"Session::follow `" + name + "`", "the path has no rows; give it one at least"};
+  if (path.rows.empty()) return Error{"Session::follow `" + name + "`", "the path has no rows", "give it one at least"};
   double before = -std::numeric_limits<double>::infinity();
   for (PathRow& row : path.rows) {
     if (!all_finite(row.position) || !(row.time > before) || !std::isfinite(row.time))
@@ -85,7 +85,7 @@ Status Session::follow(const std::string& name, Path path) {
     else if (plausible_rotation(row.rotation))
       row.rotation /= glm::length(row.rotation);
     else
-      return Error{"Session::follow `" + name + "`", "a rotation is not of unit length; normalise it"};
+      return Error{"Session::follow `" + name + "`", "a rotation is not of unit length", "normalise it"};
   }
   Path kept = std::move(effector->path);
   effector->path = std::move(path);
@@ -101,7 +101,7 @@ Status Session::orbit(const std::string& name) {
   const auto index = static_cast<unsigned>(effector - parts_->effectors.data());
   Path path = orbit_of(parts_->world, effector->entity, index);
   if (path.rows.empty())
-    return Error{"Session::orbit `" + name + "`", "found no deformable surface; add one with Scene::add_surface"};
+    return Error{"Session::orbit `" + name + "`", "found no deformable surface", "add one with Scene::add_surface"};
   return follow(name, std::move(path));
 }
 
@@ -123,7 +123,7 @@ Status Session::release(const std::string& name) {
   SessionEffector* const effector = parts_->find_effector(name);
   if (!effector) return parts_->unknown_effector(name);
   if (Status s = parts_->stand_still("Session::release"); !s) return s;
-  if (parts_->replayed) return Error{"`" + name + "`", "is moved by a recording; call Session::restart() first"};
+  if (parts_->replayed) return Error{"`" + name + "`", "is moved by a recording", "call Session::restart() first"};
   parts_->take_away(*effector, EffectorSource::kReleased);
   return Done{};
 }
@@ -131,16 +131,16 @@ Status Session::release(const std::string& name) {
 Status Session::step(std::uint64_t ticks) {
   if (Status s = parts_->stand_still("Session::step"); !s) return s;
   Parts& p = *parts_;
-  if (p.ended) return Error{"Session::step", std::string(p.ended) + "; call Session::restart() first"};
+  if (p.ended) return Error{"Session::step", std::string(p.ended), "call Session::restart() first"};
   for (const SessionEffector& effector : p.effectors)
-    if (Status s = effector.link.may_step(); !s) return Error{"Session::step `" + effector.name + "`", s.error().what};
+    if (Status s = effector.link.may_step(); !s) return s.error().at("Session::step `" + effector.name + "`");
   const double dt = 1.0 / p.world.simulation.touch_rate;
   Status done = Done{};
   try {
     for (std::uint64_t i = 0; i < ticks; ++i) {
       if (p.replayed && p.ticks >= p.replayed->ticks.size()) {
-        done = Error{"Session::step", fmt::format("all {} ticks of the recording have run; call Session::restart()",
-                                                  p.replayed->ticks.size())};
+        done = Error{"Session::step", fmt::format("all {} ticks of the recording have run", p.replayed->ticks.size()),
+                     "call Session::restart()"};
         break;
       }
       const Tick tick = p.replay ? p.replay->begin_tick(p.ticks) : Tick{p.ticks, dt, static_cast<double>(p.ticks) * dt};
@@ -153,11 +153,11 @@ Status Session::step(std::uint64_t ticks) {
     }
   } catch (const std::exception& thrown) {
     p.end("it was stopped by an exception");
-    done = Error{"Session::step",
-                 std::string("stopped by an exception: ") + thrown.what() + "; please report it with the scene"};
+    done = Error{"Session::step", std::string("stopped by an exception: ") + thrown.what(),
+                 "please report it with the scene"};
   } catch (...) {
     p.end("it was stopped by an exception");
-    done = Error{"Session::step", "stopped by an exception of an unknown kind; please report it with the scene"};
+    done = Error{"Session::step", "stopped by an exception of an unknown kind", "please report it with the scene"};
   }
   p.rows.acquire();
   if (p.recorder) p.recorder->drain();
@@ -167,9 +167,9 @@ Status Session::step(std::uint64_t ticks) {
 Status Session::start() {
   if (Status s = parts_->stand_still("Session::start"); !s) return s;
   Parts& p = *parts_;
-  if (p.ticks > 0) return Error{"Session::start", "it has run before; call Session::restart() first"};
-  if (p.ended) return Error{"Session::start", std::string(p.ended) + "; call Session::restart() first"};
-  if (p.replayed) return Error{"Session::start", "a replay runs in lockstep; call Session::step()"};
+  if (p.ticks > 0) return Error{"Session::start", "it has run before", "call Session::restart() first"};
+  if (p.ended) return Error{"Session::start", std::string(p.ended), "call Session::restart() first"};
+  if (p.replayed) return Error{"Session::start", "a replay runs in lockstep", "call Session::step()"};
   if (Status s = p.start_drivers(); !s) return s;
   p.ended = "it has run in real time";
   p.history = {};
@@ -179,11 +179,13 @@ Status Session::start() {
   if (started) return started;
   p.halt_drivers();
   p.end("its clocks did not start");
-  return Error{"Session::start", started.error().what + ", then call Session::restart()"};
+  Error error = started.error().at("Session::start");
+  error.cure += error.cure.empty() ? "call Session::restart()" : ", then call Session::restart()";
+  return error;
 }
 
 Status Session::pause(bool paused) {
-  if (!parts_->clock()) return Error{"Session::pause", "the clocks do not run; call Session::start() first"};
+  if (!parts_->clock()) return Error{"Session::pause", "the clocks do not run", "call Session::start() first"};
   parts_->runner->pause(paused);
   return Done{};
 }

@@ -9,7 +9,7 @@ Result<DriverLink*> Session::Parts::find_link(const std::string& name, const cha
   SessionEffector* const effector = find_effector(name);
   if (!effector) return unknown_effector(name);
   if (effector->link) return &effector->link;
-  return Error{std::string(what) + " `" + name + "`", "has no driver; call Session::connect() first"};
+  return Error{std::string(what) + " `" + name + "`", "has no driver", "call Session::connect() first"};
 }
 
 Status Session::guard(const std::string& name, const GuardParameters& parameters) {
@@ -18,7 +18,7 @@ Status Session::guard(const std::string& name, const GuardParameters& parameters
   const GuardParameters& p = parameters;
   for (const double value : {p.max_force, p.max_torque, p.max_velocity, p.ramp})
     if (!(value >= 0.0) || !std::isfinite(value))
-      return Error{"Session::guard `" + name + "`", "a limit is negative or no number; say 0 for the device's own"};
+      return Error{"Session::guard `" + name + "`", "a limit is negative or no number", "say 0 for the device's own"};
   if (!(p.slew > 0.0)) return Error{"Session::guard `" + name + "`", "slew must be above 0 N/s"};
   effector->guard = parameters;
   return Done{};

@@ -92,13 +92,13 @@ Status Session::Parts::send_standing() {
 
 Status Session::Parts::send(RecordedEvent event, const char* what) {
   const std::string where = std::string(what) + " `" + event.name + "`";
-  if (!sound(event)) return Error{where, "a value is no number, or beyond 1e9; use SI units"};
-  if (!edits->has_room()) return Error{where, "too many changes wait for a tick; make fewer at a time"};
+  if (!sound(event)) return Error{where, "a value is no number, or beyond 1e9", "use SI units"};
+  if (!edits->has_room()) return Error{where, "too many changes wait for a tick", "make fewer at a time"};
   const bool once =
       event.kind == EventKind::kPush || event.kind == EventKind::kPointPush || event.kind == EventKind::kPlace;
   if (!once && standing.size() >= kMostStanding &&
       std::none_of(standing.begin(), standing.end(), [&](const RecordedEvent& it) { return replaces(event, it); }))
-    return Error{where, "512 forces and objects taken out hold already; end one first"};
+    return Error{where, "512 forces and objects taken out hold already", "end one first"};
   if (event.kind == EventKind::kPlace || event.kind == EventKind::kPresent) return send_to_object(event, what);
   return event.kind == EventKind::kHandForce ? send_to_hand(event, what) : send_to_body(event, what);
 }
@@ -107,7 +107,7 @@ Status Session::Parts::send_to_hand(const RecordedEvent& event, const char* what
   const SessionEffector* const effector = find_effector(event.name);
   if (!effector) return unknown_effector(event.name);
   if (event.second() != dvec3(0) && world.registry.has<Probe>(effector->entity))
-    return Error{std::string(what) + " `" + event.name + "`", "is a probe, which has no torque; give a force alone"};
+    return Error{std::string(what) + " `" + event.name + "`", "is a probe, which has no torque", "give a force alone"};
   edits->push({effector->entity, EventEdit{event.kind, 0.0, event.first(), event.second(), {}}, note_event(event)});
   keep_standing(event);
   return Done{};
@@ -119,17 +119,18 @@ Status Session::Parts::send_to_body(const RecordedEvent& event, const char* what
   const std::string where = std::string(what) + " `" + event.name + "`";
   const RigidBody* const rigid = world.registry.find<RigidBody>(*entity);
   if (world.registry.has<Deformable>(*entity))
-    return Error{where, "is a deformable surface, which gives way to contacts alone; make it a soft body"};
-  if (rigid && rigid->fixed) return Error{where, "is fixed; nothing moves it"};
+    return Error{where, "is a deformable surface, which gives way to contacts alone", "make it a soft body"};
+  if (rigid && rigid->fixed) return Error{where, "is fixed", "nothing moves it"};
   if (world.registry.has<Handle6>(*entity))
-    return Error{where, "is held by a hand; call Session::set_hand_force() instead"};
+    return Error{where, "is held by a hand", "call Session::set_hand_force() instead"};
   BodyEdit body{kind_of(event), *entity, 0, 0, event.first(), event.second(), {}};
   const Mesh& mesh = *collision_mesh_of(world, *entity);
   if (at_a_vertex(event.kind) && !find_corner(mesh, event.vertex, body))
-    return Error{where, fmt::format("vertex {} is none of its {}, or no triangle uses it; see Session::vertices()",
-                                    event.vertex, mesh.of_source.size())};
+    return Error{
+        where, fmt::format("vertex {} is none of its {}, or no triangle uses it", event.vertex, mesh.of_source.size()),
+        "see Session::vertices()"};
   if (!world.soft->body_edits.push(body))
-    return Error{where, "too many changes wait for a soft step; make fewer at a time"};
+    return Error{where, "too many changes wait for a soft step", "make fewer at a time"};
   edits->push({*entity, EventEdit{event.kind, 0.0, {}, {}, {}}, note_event(event)});
   keep_standing(event);
   return Done{};
@@ -142,20 +143,19 @@ Status Session::Parts::check_place(Entity object, const RecordedEvent& event) co
   if (event.kind != EventKind::kPlace) return Done{};
   if (!plausible_position(event.first()) ||
       !plausible_rotation({event.values[3], event.values[4], event.values[5], event.values[6]}))
-    return Error{where, "the place is not finite, or its rotation not of unit length; normalise it"};
+    return Error{where, "the place is not finite, or its rotation not of unit length", "normalise it"};
   if (!all.has<Deformable>(object)) return Done{};
   if (all.has<MovingPose>(object)) return Error{where, "is carried by a motion of the scene, which says where it is"};
   if (world.soft && !world.soft->yielding.empty())
-    return Error{where,
-                 "is a surface that soft or rigid bodies may press, which stays where it is; take it out instead"};
+    return Error{where, "is a surface that soft or rigid bodies may press, which stays where it is",
+                 "take it out instead"};
   return Done{};
 }
 
 Status Session::Parts::send_to_object(const RecordedEvent& event, const char* what) {
   const auto entity = find_object(event.name);
   if (!entity) return entity.error();
-  if (Status s = check_place(*entity, event); !s)
-    return Error{std::string(what) + " " + s.error().where, s.error().what};
+  if (Status s = check_place(*entity, event); !s) return s.error().at(std::string(what) + " " + s.error().where);
   const bool elsewhere = event.kind == EventKind::kPlace, present = event.values[0] != 0.0;
   EventEdit edit;
   edit.kind = event.kind;
@@ -168,8 +168,8 @@ Status Session::Parts::send_to_object(const RecordedEvent& event, const char* wh
   body.body = *entity;
   body.pose = {edit.force, edit.rotation};
   if (world.soft && !world.soft->body_edits.push(body))
-    return Error{std::string(what) + " `" + event.name + "`",
-                 "too many changes wait for a soft step; make fewer at a time"};
+    return Error{std::string(what) + " `" + event.name + "`", "too many changes wait for a soft step",
+                 "make fewer at a time"};
   edits->push({*entity, edit, note_event(event)});
   keep_standing(event);
   if (!elsewhere)

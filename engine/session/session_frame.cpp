@@ -36,16 +36,15 @@ SessionFigures Session::figures() const {
   return out;
 }
 
-Result<std::vector<std::string>> Session::findings() const {
+Result<std::vector<Note>> Session::findings() const {
   const Parts& p = *parts_;
   if (Status s = p.stand_still("Session::findings"); !s) return s.error();
-  std::vector<std::string> sentences = explain_dropped(p.world.dropped | (p.world.soft ? p.world.soft->dropped : 0));
+  std::vector<Note> notes = explain_dropped(p.world.dropped | (p.world.soft ? p.world.soft->dropped : 0));
   for (const SessionEffector& effector : p.effectors) {
-    for (std::string& sentence : explain_limits(p.world, effector.entity, effector.name))
-      sentences.push_back(std::move(sentence));
-    if (std::string late = effector.link.late_note(effector.name); !late.empty()) sentences.push_back(std::move(late));
+    for (Note& note : explain_limits(p.world, effector.entity, effector.name)) notes.push_back(std::move(note));
+    if (std::optional<Note> late = effector.link.late_note(effector.name)) notes.push_back(std::move(*late));
   }
-  return sentences;
+  return notes;
 }
 
 void Session::Parts::look() {
@@ -137,7 +136,7 @@ Result<Geometry> Session::geometry(const std::string& object) const {
   if (!entity) return entity.error();
   if (!p.world.registry.has<Deformable>(*entity)) return parts_->body_geometry(*entity, object);
   const Drawable* const drawable = p.world.registry.find<Drawable>(*entity);
-  if (!drawable) return Error{"`" + object + "`", "is not drawn; it has no mesh"};
+  if (!drawable) return Error{"`" + object + "`", "is not drawn", "it has no mesh"};
   const Mesh& mesh = *collision_mesh_of(p.world, *entity);
   const DrawMesh& draw = p.world.draw_meshes[drawable->mesh];
   Geometry out;
@@ -160,6 +159,15 @@ Status Session::stream(const std::string& object, std::vector<vec4>& out) {
   const std::vector<vec4>* const stream = p.view.stream(*entity);
   if (!stream) return Error{"`" + object + "`", kNoSurface};
   out = *stream;
+  return Done{};
+}
+
+Status Session::stream(const std::string& object, std::vector<vec4>& out, std::vector<StreamPart>& changed) {
+  Parts& p = *parts_;
+  const auto entity = p.find_object(object);
+  if (!entity) return entity.error();
+  p.look();
+  if (!p.view.take_changes(*entity, out, changed)) return Error{"`" + object + "`", kNoSurface};
   return Done{};
 }
 

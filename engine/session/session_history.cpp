@@ -207,11 +207,12 @@ Result<SavedState> unpack_state(const std::vector<std::uint8_t>& bytes) {
   const char* const kWhere = "Session::restore_state";
   constexpr std::size_t kEnd = sizeof(std::uint64_t), kLeast = sizeof kStateMagic + sizeof(std::uint32_t) + kEnd;
   if (bytes.size() < kLeast || std::memcmp(bytes.data(), kStateMagic, sizeof kStateMagic) != 0)
-    return Error{kWhere, "these bytes are no state; give what Session::save_state() returned"};
+    return Error{kWhere, "these bytes are no state", "give what Session::save_state() returned"};
   Unpacker in(bytes, sizeof kStateMagic, bytes.size() - kEnd);
   if (const auto version = in.get<std::uint32_t>(); version != kStateVersion)
-    return Error{kWhere, "the state has version " + std::to_string(version) + ", this is " +
-                             std::to_string(kStateVersion) + "; save it again"};
+    return Error{kWhere,
+                 "the state has version " + std::to_string(version) + ", this is " + std::to_string(kStateVersion),
+                 "save it again"};
   const Error damaged{kWhere, "the state ends too early or is damaged; save it again"};
   std::uint64_t expected = 0;
   std::memcpy(&expected, bytes.data() + bytes.size() - kEnd, kEnd);

@@ -33,9 +33,9 @@ std::string name_of(const World& world, Entity entity) {
 Status check_names(const std::vector<std::string>& names, const char* what) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
-    if (name.empty()) return Error{"scene", fmt::format("a {} has no name; give it one", what)};
+    if (name.empty()) return Error{"scene", fmt::format("a {} has no name", what), "give it one"};
     if (!seen.insert(name).second)
-      return Error{"scene", fmt::format("two {}s are named `{}`; give each a name of its own", what, name)};
+      return Error{"scene", fmt::format("two {}s are named `{}`", what, name), "give each a name of its own"};
   }
   return Done{};
 }
@@ -52,7 +52,7 @@ std::vector<Entity> touchable(const World& world) {
 }  // namespace
 
 Error work_stopped() {
-  return {"Session::open", "it was stopped by its progress function; nothing is wrong with the scene"};
+  return {"Session::open", "it was stopped by its progress function", "nothing is wrong with the scene"};
 }
 
 Session::Parts::~Parts() {
@@ -74,7 +74,8 @@ Status Session::Parts::prepare() {
   } catch (const std::exception& thrown) {
     made = Error{"scene", std::string("cannot be made: ") + thrown.what()};
   } catch (...) {
-    made = Error{"scene", "cannot be made: something that is no std::exception was thrown; look at what is registered"};
+    made =
+        Error{"scene", "cannot be made: something that is no std::exception was thrown", "look at what is registered"};
   }
   for (SessionEffector& effector : before) effector.link.close();  // those absent from the new world
   if (made)
@@ -85,6 +86,24 @@ Status Session::Parts::prepare() {
 }
 
 Status Session::Parts::remake(std::vector<SessionEffector>& before) {
+  if (Status s = spawn_world(); !s) return s;
+  ticks = overruns = 0;
+  history = {};
+  history.begun = settings;
+  edits = std::make_unique<Ring<Edit>>(kMostEdits);
+  places.clear();
+  if (Status s = list_named(); !s) return s;
+  restore_parameters();
+  if (Status s = prepare_spawned(); !s) return s;
+  keep_parameters();
+  attach_runner();
+  size_views();
+  run = std::make_shared<int>();
+  if (Status s = give_back_sources(before); !s) return s;
+  return send_standing();
+}
+
+Status Session::Parts::spawn_world() {
   if (Status s = check_scene(scene.level()); !s) return s;
   if (!chosen) {
     begin_part(0.0, 0.4);
@@ -99,11 +118,10 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   if (!spawned) return spawned.error();
   runner.reset();
   world = std::move(spawned).value();
-  ticks = overruns = 0;
-  history = {};
-  history.begun = settings;
-  edits = std::make_unique<Ring<Edit>>(kMostEdits);
-  places.clear();
+  return Done{};
+}
+
+Status Session::Parts::list_named() {
   for (const Entity held : pliant::hands(world)) {
     SessionEffector made;
     made.name = name_of(world, held);
@@ -122,27 +140,37 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   std::vector<std::string> names;
   for (const SessionEffector& effector : effectors) names.push_back(effector.name);
   if (Status s = check_names(names, "probe or tool"); !s) return s;
-  if (Status s = check_names(objects, "object"); !s) return s;
+  return check_names(objects, "object");
+}
 
-  for (const auto& [name, surface] : surfaces)  // before a restart
+void Session::Parts::restore_parameters() {
+  for (const auto& [name, surface] : surfaces)
     static_cast<DeformableParameters&>(world.registry.get<Deformable>(*find_object(name))) = surface;
   for (const auto& [name, device] : devices)
     static_cast<DeviceParameters&>(world.registry.get<HapticDevice>(find_effector(name)->device)) = device;
   restore_bodies();
+}
+
+Status Session::Parts::prepare_spawned() {
   begin_part(0.7, 1.0);
   const std::vector<std::string> found = tissue_findings(world);
   if (Status s = prepare_world(world); !s) return s;
   for (std::string& sentence : tissue_findings(world))
     if (std::find(found.begin(), found.end(), sentence) == found.end()) notes.push_back(std::move(sentence));
   for (std::string& sentence : make_orbits(world)) notes.push_back(std::move(sentence));
+  return Done{};
+}
 
+void Session::Parts::keep_parameters() {
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (const Deformable* surface = world.registry.find<Deformable>(object_entities[i]))
       surfaces[objects[i]] = *surface;
   keep_bodies();
   for (const SessionEffector& effector : effectors)
     devices.emplace(effector.name, world.registry.get<HapticDevice>(effector.device));
+}
 
+void Session::Parts::attach_runner() {
   runner = std::make_unique<Runner>(world);
   TickPart own;
   own.before = [this](Tick tick) { this->before(tick); };
@@ -153,6 +181,9 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   after_pause = false;
   shown = true;
   time = 0.0;
+}
+
+void Session::Parts::size_views() {
   for (std::vector<EffectorRow>& slot : rows.slots()) slot.assign(effectors.size(), {});
   view.reset(world);
   shapes.clear();
@@ -160,7 +191,9 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   looked = 0;
   size_kept();
   taken_out.assign(objects.size(), 0);
-  run = std::make_shared<int>();
+}
+
+Status Session::Parts::give_back_sources(std::vector<SessionEffector>& before) {
   for (SessionEffector& old : before) {
     SessionEffector* const effector = find_effector(old.name);
     if (!effector || old.source == EffectorSource::kLevel || old.source == EffectorSource::kNone) continue;
@@ -174,7 +207,6 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
     effector->source = EffectorSource::kNone;
     if (Status s = give(*effector, old.source); !s) return s;
   }
-  if (Status s = send_standing(); !s) return s;
   return Done{};
 }
 
@@ -190,8 +222,8 @@ const SessionEffector* Session::Parts::find_effector(const std::string& name) co
 Error Session::Parts::unknown_effector(const std::string& name) const {
   std::string names;
   for (const SessionEffector& effector : effectors) names += (names.empty() ? "" : ", ") + effector.name;
-  return {"`" + name + "`", names.empty() ? "the scene has no probe and no tool; add one with Scene::add_probe"
-                                          : "is no probe or tool; they are: " + names};
+  return {"`" + name + "`", names.empty() ? "the scene has no probe and no tool" : "is no probe or tool",
+          names.empty() ? "add one with Scene::add_probe" : "they are: " + names, "name.unknown"};
 }
 
 Result<Entity> Session::Parts::find_object(const std::string& name) const {
@@ -199,21 +231,21 @@ Result<Entity> Session::Parts::find_object(const std::string& name) const {
     if (objects[i] == name) return object_entities[i];
   std::string names;
   for (const std::string& object : objects) names += (names.empty() ? "" : ", ") + object;
-  return Error{"`" + name + "`", names.empty() ? "the scene has no object; add one with Scene::add_surface"
-                                               : "is no object; they are: " + names};
+  return Error{"`" + name + "`", names.empty() ? "the scene has no object" : "is no object",
+               names.empty() ? "add one with Scene::add_surface" : "they are: " + names, "name.unknown"};
 }
 
 Status Session::Parts::stand_still(const char* what) const {
-  if (clock()) return Error{what, "the clocks are running; call Session::stop() first"};
+  if (clock()) return Error{what, "the clocks are running", "call Session::stop() first"};
   return Done{};
 }
 
 Status Session::Parts::may_give(const SessionEffector& effector) const {
-  if (replayed) return Error{"`" + effector.name + "`", "is moved by a recording; call Session::restart() first"};
+  if (replayed) return Error{"`" + effector.name + "`", "is moved by a recording", "call Session::restart() first"};
   if (effector.source == EffectorSource::kNone || effector.source == EffectorSource::kReleased ||
       effector.source == EffectorSource::kLevel)
     return Done{};
-  return Error{"`" + effector.name + "`", "has a source already; call Session::release() first"};
+  return Error{"`" + effector.name + "`", "has a source already", "call Session::release() first"};
 }
 
 Status Session::Parts::give(SessionEffector& effector, EffectorSource source) {
@@ -239,7 +271,7 @@ Status Session::Parts::connect(const std::string& name, std::unique_ptr<Driver> 
   if (!effector) return unknown_effector(name);
   if (Status s = stand_still("Session::connect"); !s) return s;
   const std::string where = "Session::connect `" + name + "`";
-  if (!driver) return Error{where, "the driver is null; give one"};
+  if (!driver) return Error{where, "the driver is null", "give one"};
   if (Status s = may_give(*effector); !s) return s;
   if (Status s = effector->link.connect(std::move(driver), id, where, claimed, effector->guard); !s) return s;
   return give(*effector, EffectorSource::kDriver);

@@ -20,9 +20,8 @@ Status Session::keep_readings(std::size_t ticks) {
   const std::size_t most_ticks =
       most(limits::kJournal) / (sizeof(EffectorRow) * std::max<std::size_t>(1, p.effectors.size()));
   if (ticks > most_ticks)
-    return Error{"Session::keep_readings",
-                 fmt::format("{} ticks would take too much memory; keep {} at most, and take them more often", ticks,
-                             most_ticks)};
+    return Error{"Session::keep_readings", fmt::format("{} ticks would take too much memory", ticks),
+                 fmt::format("keep {} at most, and take them more often", most_ticks)};
   p.keeps = ticks;
   p.size_kept();
   return Done{};
@@ -33,7 +32,7 @@ Result<std::uint64_t> Session::take_readings(const std::string& name, std::vecto
   out.clear();
   const SessionEffector* const effector = p.find_effector(name);
   if (!effector) return p.unknown_effector(name);
-  if (p.keeps == 0) return Error{"Session::take_readings", "none are kept; call Session::keep_readings() first"};
+  if (p.keeps == 0) return Error{"Session::take_readings", "none are kept", "call Session::keep_readings() first"};
   const auto i = static_cast<std::size_t>(effector - p.effectors.data());
   std::vector<EffectorRow> rows;
   p.kept[i]->drain(rows);

@@ -20,9 +20,9 @@ namespace pliant {
 Status Session::record(const std::filesystem::path& file, bool replace) {
   Parts& p = *parts_;
   if (Status s = p.stand_still("Session::record"); !s) return s;
-  if (p.recorder) return Error{"Session::record", "a recording is under way; call Session::end_recording() first"};
+  if (p.recorder) return Error{"Session::record", "a recording is under way", "call Session::end_recording() first"};
   if (p.effectors.empty())
-    return Error{"Session::record", "the scene has no probe and no tool; there is nothing to record"};
+    return Error{"Session::record", "the scene has no probe and no tool", "there is nothing to record"};
   RecordingHeader header{p.world.name, p.world.simulation.touch_rate, effectors(), scene_hash(p.scene.level()), {}};
   for (const auto& [key, value] : p.settings) header.settings.push_back(key + "=" + value);
   for (const SessionEffector& effector : p.effectors)  // a driver's limits affect forces too
@@ -50,7 +50,7 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
 Status Session::end_recording() {
   Parts& p = *parts_;
   if (Status s = p.stand_still("Session::end_recording"); !s) return s;
-  if (!p.recorder) return Error{"Session::end_recording", "nothing is recorded; call Session::record() first"};
+  if (!p.recorder) return Error{"Session::end_recording", "nothing is recorded", "call Session::record() first"};
   const Status ended = p.recorder->finish();
   p.recorder.reset();
   return ended;
@@ -59,15 +59,16 @@ Status Session::end_recording() {
 Status Session::replay(const std::filesystem::path& file) {
   Parts& p = *parts_;
   if (Status s = p.stand_still("Session::replay"); !s) return s;
-  if (p.ticks > 0) return Error{"Session::replay", "ticks have run already; call Session::restart() first"};
+  if (p.ticks > 0) return Error{"Session::replay", "ticks have run already", "call Session::restart() first"};
   auto recording = read_recording(file);
   if (!recording) return recording.error();
   const RecordingHeader& header = recording->header;
   if (header.rate != p.world.simulation.touch_rate)
-    return Error{file.string(), fmt::format("was made at {} Hz, the scene runs at {} Hz; set Scene::simulation()",
-                                            header.rate, p.world.simulation.touch_rate)};
+    return Error{file.string(),
+                 fmt::format("was made at {} Hz, the scene runs at {} Hz", header.rate, p.world.simulation.touch_rate),
+                 "set Scene::simulation()"};
   if (header.probes != effectors())
-    return Error{file.string(), "was made with other probes and tools, or in another order; use its own scene"};
+    return Error{file.string(), "was made with other probes and tools, or in another order", "use its own scene"};
   if (header.scene == 0)
     p.notes.push_back(file.string() + kUnknownScene);
   else if (header.scene != scene_hash(p.scene.level()))

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "components/probe_shape.h"
 #include "components/soft_body.h"
 #include "engine/session/live_keys.h"
 #include "engine/session/scene_check.h"
@@ -44,7 +45,7 @@ Result<Named> find_named(const Session::Parts& p, const std::string& name) {
   if (!named.extensions.empty()) return named;
   std::vector<std::string> names = p.objects;
   for (const SessionEffector& effector : p.effectors) names.push_back(effector.name);
-  return Error{"`" + name + "`", unknown("name", name, "the scene", "its objects, probes and tools", names)};
+  return error_at("`" + name + "`", unknown("name", name, "the scene", "its objects, probes and tools", names));
 }
 
 struct Found {
@@ -69,10 +70,11 @@ Result<Found> find_named_key(const Named& named, const std::string& name, const 
   for (const Extension& extension : extension_table())
     if (find_key(extension, key)) whose += (whose.empty() ? "" : " and ") + ("`" + extension.name + "`");
   if (!whose.empty())
-    return Error{where, fmt::format("`{}` is {}, and this is a key of {}; its keys are: {}", name, kind_of(named),
-                                    whose, fmt::join(keys, ", "))};
+    return Error{where, fmt::format("`{}` is {}, and this is a key of {}", name, kind_of(named), whose),
+                 fmt::format("its keys are: {}", fmt::join(keys, ", "))};
   const std::string near = suggestion(key, keys);
-  return Error{where, fmt::format("is no key of {}{}; keys are: {}", kind_of(named), near, fmt::join(keys, ", "))};
+  return Error{where, fmt::format("is no key of {}", kind_of(named)),
+               near + (near.empty() ? "" : " ") + fmt::format("keys are: {}", fmt::join(keys, ", ")), "name.unknown"};
 }
 
 bool is_painted(const Mesh& mesh) {
@@ -88,15 +90,14 @@ bool moves_otherwise(const Motion& a, const Motion& b) {
 Result<SurfaceSetting> surface_setting(const Session::Parts& p, const std::string& where, const Deformable& before,
                                        Deformable& now) {
   const Mesh& mesh = p.world.meshes[before.mesh];
-  const bool arm = before.spring == SpringLaw::kStandardLinearSolid;
-  if (arm != (now.spring == SpringLaw::kStandardLinearSolid))
-    return Error{where,
-                 "the standard linear solid keeps a memory that is laid out when the session opens; change it in "
-                 "the scene and open that again"};
+  const bool arm = has_arm(before.spring);
+  if (arm != has_arm(now.spring))
+    return Error{where, "the standard linear solid keeps a memory that is laid out when the session opens",
+                 "change it in the scene and open that again"};
   if (now.reach == 0.0) now.reach = default_reach(mesh);
   const Motion motion_now = motion(now, p.world.touch->dt);
   if (is_painted(mesh) && moves_otherwise(motion(before, p.world.touch->dt), motion_now))
-    return Error{where, "is painted on this surface, and is read when the session opens; change the scene instead"};
+    return Error{where, "is painted on this surface, and is read when the session opens", "change the scene instead"};
   const double reach = std::max(now.reach, kLeastReach * static_cast<double>(mesh.mean_edge));
   return SurfaceSetting{now, motion_now,
                         share_kernel(now.shape, reach, now.volume, contact_radius(now, reach) / reach)};
@@ -169,7 +170,7 @@ Result<SessionChange> change_probe(Session::Parts& p, const std::string& name, c
     return change;
   }
   constexpr const char* kAgain = "; change it in the scene and open that again";
-  if (now.length > 0.0)
+  if (has_capsule(now))
     return Error{where, std::string("a capsule's tips are laid out by it when the session opens") + kAgain};
   if ((now.radius > 0.0) != (before.radius > 0.0))
     return Error{where, std::string("a point and a sphere have different places for contacts") + kAgain};
@@ -239,7 +240,7 @@ template <class Note>
 Status send(Session::Parts& p, SessionChange& change, const Note& note) {
   const bool soft = p.world.soft && !change.soft.empty();
   if (!p.edits->has_room() || (soft && !p.world.soft->parameter_edits.has_room()))
-    return Error{"Session::set", "too many values wait for a tick; set fewer at a time"};
+    return Error{"Session::set", "too many values wait for a tick", "set fewer at a time"};
   if (change.touch.empty()) change.touch.push_back({change.entity, EventEdit{}, 0});
   change.touch.front().number = note();
   for (const Edit& edit : change.touch) p.edits->push(edit);
@@ -270,12 +271,12 @@ Status set_value(Session::Parts& p, const std::string& name, const std::string& 
   const Extension* const extension = found->extension;
   const Key* const key = found->key;
   const std::string where = "`" + name + "`: " + key_name;
-  if (const std::string fault = check_value(*key, value); !fault.empty()) return Error{where, fault};
+  if (const std::optional<Note> fault = check_value(*key, value)) return error_at(where, *fault);
   const LevelNode before = named->node;
   if (before.deformable && before.deformable->young > 0.0 && key->name == "stiffness")
-    return Error{where, "follows from its Young's modulus; set `young` instead"};
+    return Error{where, "follows from its Young's modulus", "set `young` instead"};
   key->set(&named->node, value);
-  if (const std::string fault = extension->settle(&named->node); !fault.empty()) return Error{where, fault};
+  if (const std::optional<Note> fault = extension->settle(&named->node)) return error_at(where, *fault);
   Result<SessionChange> change = change_of(p, name, where, *extension, named->node);
   if (!change) return change.error();
   if (sent)
@@ -300,10 +301,10 @@ Status Session::Parts::apply_setting(const std::string& setting, Setting how) {
       const Json value = Json::parse(text, nullptr, false);
       if (value.is_number() && !std::isfinite(value.get<double>())) break;
       if (value.is_number()) return set_value(*this, object, key.name, value, sent);
-      if (key.type == KeyType::kPair && !check_value(key, value).empty()) break;
+      if (key.type == KeyType::kPair && check_value(key, value)) break;
       return set_value(*this, object, key.name, key.type == KeyType::kPair ? value : Json(text), sent);
     }
-  return Error{"`" + setting + "`", "cannot change in a session; set it in the scene"};
+  return Error{"`" + setting + "`", "cannot change in a session", "set it in the scene"};
 }
 
 std::vector<Error> Session::Parts::apply_settings(std::vector<std::string> waiting, Setting how) {

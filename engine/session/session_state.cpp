@@ -58,8 +58,8 @@ Result<Scene> with_more(const Scene& scene, const Scene& more, std::vector<std::
   }
   for (LevelNode& node : from.nodes) {
     if (node.probe || node.device || node.handle)
-      return Error{kAdd, "`" + node.name + "` is a probe, a device or a tool; open a session with it"};
-    if (node.motion) return Error{kAdd, "`" + node.name + "` follows a motion; open a session with it"};
+      return Error{kAdd, "`" + node.name + "` is a probe, a device or a tool", "open a session with it"};
+    if (node.motion) return Error{kAdd, "`" + node.name + "` follows a motion", "open a session with it"};
     if (node.deformable || node.soft_body || node.rigid_body) names.push_back(node.name);
     node.source = -1;
     if (node.mesh >= 0) node.mesh += meshes;
@@ -67,7 +67,7 @@ Result<Scene> with_more(const Scene& scene, const Scene& more, std::vector<std::
     for (std::int32_t& child : node.children) child += nodes;
     to.nodes.push_back(std::move(node));
   }
-  if (names.empty()) return Error{kAdd, "the scene has no object; add one with Scene::add_surface"};
+  if (names.empty()) return Error{kAdd, "the scene has no object", "add one with Scene::add_surface"};
   return merged;
 }
 
@@ -197,22 +197,23 @@ Result<std::vector<std::uint8_t>> Session::save_state() const {
 Status Session::restore_state(const std::vector<std::uint8_t>& bytes) {
   Parts& p = *parts_;
   if (Status s = p.stand_still(kRestore); !s) return s;
-  if (p.recorder) return Error{kRestore, "a recording is under way; call Session::end_recording() first"};
-  if (p.replayed) return Error{kRestore, "a recording is replayed; call Session::restart() first"};
+  if (p.recorder) return Error{kRestore, "a recording is under way", "call Session::end_recording() first"};
+  if (p.replayed) return Error{kRestore, "a recording is replayed", "call Session::restart() first"};
   auto state = unpack_state(bytes);
   if (!state) return state.error();
   if (state->scene != scene_hash(p.scene.level()) || state->rate != p.world.simulation.touch_rate ||
       state->effectors != effectors())
-    return Error{kRestore, "the state is another scene's; restore it in a session of the scene that it was saved in"};
+    return Error{kRestore, "the state is another scene's", "restore it in a session of the scene that it was saved in"};
   return p.go_back(std::move(*state));
 }
 
 Status Session::add(const Scene& more) {
   Parts& p = *parts_;
   const char* const kAdd = "Session::add";
-  if (p.clock()) return Error{kAdd, "the clocks are running; open the session with it, and take it out before start()"};
-  if (p.recorder) return Error{kAdd, "a recording is under way; call Session::end_recording() first"};
-  if (p.replayed) return Error{kAdd, "a recording is replayed; call Session::restart() first"};
+  if (p.clock())
+    return Error{kAdd, "the clocks are running", "open the session with it, and take it out before start()"};
+  if (p.recorder) return Error{kAdd, "a recording is under way", "call Session::end_recording() first"};
+  if (p.replayed) return Error{kAdd, "a recording is replayed", "call Session::restart() first"};
   if (p.ended || p.history.lacking)
     return Error{kAdd, std::string("nothing can be added: ") + (p.history.lacking ? p.history.lacking : p.ended)};
   std::vector<std::string> names;
@@ -244,8 +245,8 @@ Status Session::Parts::go_back(SavedState state) {
     const std::vector<Error> refused = apply_settings(begun, Setting::kKeep);
     if (!refused.empty()) {
       end("a state could not be restored");
-      return Error{kRestore,
-                   "a setting of the state is none of this scene's: " + refused.front().message() + "; save it again"};
+      return Error{kRestore, "a setting of the state is none of this scene's: " + refused.front().message(),
+                   "save it again"};
     }
     if (Status s = prepare(); !s) return s;
   }
@@ -270,7 +271,7 @@ Status Session::Parts::go_back(SavedState state) {
   try {
     done = run_again(state);
   } catch (const std::exception& thrown) {
-    done = Error{kRestore, std::string("stopped by an exception: ") + thrown.what() + "; please report it"};
+    done = Error{kRestore, std::string("stopped by an exception: ") + thrown.what(), "please report it"};
   }
   restoring = false;
   keeps = kept_ticks;

@@ -18,7 +18,8 @@ struct Simulation {
   dvec3 gravity{0, -9.81, 0};     // [m/s2]
 };
 
-// Values after the last of SpringLaw, Shape and SolverKind are registered ones (surface_law.h, linear_solver.h).
+// Values after the last of SpringLaw, Shape and SolverKind are those that have no enumerator, and registered ones
+// (surface_law.h, linear_solver.h).
 enum class SpringLaw : std::uint8_t { kLinear, kCubic, kExponential, kStandardLinearSolid };
 enum class Shape : std::uint8_t { kPunch, kHertz, kGaussian, kWendland, kVolume, kKelvinlet };
 enum class Response : std::uint8_t { kFollow, kLag };     // methods.md 1.8

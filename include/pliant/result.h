@@ -1,5 +1,4 @@
-// Errors of files, devices and arguments: a value, or one sentence with place, fault and remedy. No function of the
-// library throws.
+// Errors of files, devices and arguments: a value, or place, fault, remedy and code. No function of the library throws.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +15,42 @@
 
 namespace pliant {
 
-// One actionable sentence: "WHERE: what is wrong; what to do".
+// "FAULT; CURE", or the fault alone.
+inline std::string sentence_of(const std::string& what, const std::string& cure) {
+  return cure.empty() ? what : what + "; " + cure;
+}
+
+// A fact for programs, and its sentence for people: "WHERE: what is wrong; what to do". A program goes by `code`,
+// never by the words (docs/codes.md).
 struct Error {
   std::string where;       // file, JSON pointer, option or device
-  std::string what;        // the fault, and after a semicolon the remedy
+  std::string what;        // the fault
+  std::string cure;        // the remedy; empty: none is known
+  std::string code;        // "file.missing"; empty: nothing goes by it
   std::int32_t node = -1;  // index of the level node concerned; -1: none
   std::string pointer;     // JSON pointer within the file, if there is one; `where` includes it too
-  std::string message() const { return where.empty() ? what : where + ": " + what; }
+  Error at(std::string place) const {
+    Error error = *this;
+    error.where = std::move(place);
+    return error;
+  }
+  // Without `where`.
+  std::string sentence() const { return sentence_of(what, cure); }
+  std::string message() const { return where.empty() ? sentence() : where + ": " + sentence(); }
 };
+
+// Something worth knowing that does not prevent what was asked: of a run, of a conversion.
+struct Note {
+  std::string what;  // the whole, or the part before the remedy
+  std::string cure;  // the remedy; empty: none is needed
+  std::string code;  // "force.clipped"; empty: nothing goes by it
+  std::string of;    // name of the probe, tool, body or device concerned; empty: the whole
+  std::string message() const { return sentence_of(what, cure); }
+};
+
+inline Error error_at(std::string where, Note fault) {
+  return {std::move(where), std::move(fault.what), std::move(fault.cure), std::move(fault.code)};
+}
 
 // Called when a value is taken from an Error without a check, or vice versa: aborts with a message (LogLevel::kFatal,
 // pliant/process.h).

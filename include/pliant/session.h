@@ -108,6 +108,11 @@ struct Geometry {
   std::vector<std::uint32_t> index;          // three per triangle
 };
 
+// Vertices [first, first + count) of a stream.
+struct StreamPart {
+  std::uint32_t first = 0, count = 0;
+};
+
 class Session {
  public:
   // Copies the scene and allocates everything a tick needs. For a large scene this takes seconds: `progress` is called
@@ -182,7 +187,7 @@ class Session {
   SessionFigures figures() const;
   // All deviations from the force law so far, one sentence each with its remedy: clipped, withheld, gated or
   // slew-limited forces, invalid poses, dropped contacts. Not while the clocks run.
-  Result<std::vector<std::string>> findings() const;
+  Result<std::vector<Note>> findings() const;
   // Of the newest soft step: at most 512 contacts, including those of probes with bodies; and every tool's handle.
   // Empty in a scene without bodies. Contacts of probes with surfaces are in Reading::contact.
   Status body_contacts(std::vector<BodyContact>& out);
@@ -198,6 +203,9 @@ class Session {
   // rest shape, and `stream_vertex` indexes the body's own vertices (Session::vertices).
   Result<Geometry> geometry(const std::string& object) const;
   Status stream(const std::string& object, std::vector<vec4>& out);
+  // The same into the vector of the last call, and which parts have changed since, ascending: all of them the first
+  // time and after restart(). Only these are copied.
+  Status stream(const std::string& object, std::vector<vec4>& out, std::vector<StreamPart>& changed);
   Result<mat4> to_world(const std::string& object);
 
   // --- External forces, constant until changed; zero removes them. They apply from the next tick on (bodies: the next

@@ -31,6 +31,9 @@ class SpringFunction {
   virtual double force(double h, const SpringConstants& constants) const = 0;      // [m] rises with h; 0 at 0
   virtual double potential(double h, const SpringConstants& constants) const = 0;  // [m2] its integral from 0
   virtual double slope(double h, const SpringConstants& constants) const = 0;      // [1] its derivative; 1 at 0
+  // [m] Mean of the force between two heights: (potential(h1) - potential(h0)) / (h1 - h0), which makes the step
+  // passive. Override it where a closed form does not cancel.
+  virtual double mean_force(double h0, double h1, const SpringConstants& constants) const;
 };
 
 // How much of the dent's depth a vertex at distance r takes, as a function of u = (r / reach)^2 (P1 section 3;

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <new>
 
+#include "content/files/file_io.h"
 #include "lab/console/progress.h"
 #include "runtime/printable.h"
 
@@ -27,23 +28,26 @@ std::string note_line(const std::string& sentence) {
 }  // namespace
 
 std::string sentence_of(ExitStatus status, const Error& error) {
-  std::string sentence = trimmed(error.message());
-  if (sentence.find("; ") != std::string::npos) return sentence;
-  if (status == kUsage) return sentence + "; see `pliant --help`";
+  if (!error.cure.empty()) return trimmed(error.message());
+  Error cured = error;
+  cured.what = trimmed(error.what);
   // An error inside a level file is fixed by editing the level; `pliant validate` reads levels only.
-  const bool in_level = !error.pointer.empty() || error.node >= 0;
-  return sentence + (in_level ? "; mend the level: `pliant validate` lists every finding" : "");
+  if (status == kUsage)
+    cured.cure = "see `pliant --help`";
+  else if (!error.pointer.empty() || error.node >= 0)
+    cured.cure = "mend the level: `pliant validate` lists every finding";
+  return cured.message();
 }
 
 int fail(ExitStatus status, const Error& error) {
   std::fprintf(stderr, "pliant: error: %s\n", printable(sentence_of(status, error)).c_str());
-  return status;
+  return error.code == kDiskFull ? kNoRoom : status;
 }
 
 Error explain(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error))
-    return {"memory", "out of memory; use a coarser mesh, or smaller pictures (--size)"};
-  return {"pliant", std::string(error.what()) + "; please report this input"};
+    return {"memory", "out of memory", "use a coarser mesh, or smaller pictures (--size)"};
+  return {"pliant", std::string(error.what()), "please report this input"};
 }
 
 void note(const std::string& sentence) {

@@ -1,4 +1,5 @@
-// Exit status of the command: 0 success, 1 the input or the run failed, 2 wrong arguments.
+// Exit status of the command: 0 success, 1 the input or the run failed, 2 wrong arguments, 3 no room on the disk for
+// what it wrote.
 #pragma once
 
 #include <exception>
@@ -8,9 +9,10 @@
 
 namespace pliant {
 
-enum ExitStatus : int { kDone = 0, kFailed = 1, kUsage = 2 };
+enum ExitStatus : int { kDone = 0, kFailed = 1, kUsage = 2, kNoRoom = 3 };
 
-// Prints `pliant: error: WHERE: what is wrong; what to do` on one line to stderr and returns the status.
+// Prints `pliant: error: WHERE: what is wrong; what to do` on one line to stderr and returns the status: kNoRoom where
+// the error's code is kDiskFull.
 int fail(ExitStatus status, const Error& error);
 
 // Turns an unexpected exception (usually from a library) into an Error for the user.

@@ -23,8 +23,8 @@ std::optional<Error> close_stdout() {
   errno = 0;
   if (std::fflush(stdout) == 0 && !lost) return {};
   const std::string why = errno != 0 ? ": " + std::generic_category().message(errno) : std::string();
-  return Error{"stdout",
-               "cannot be written" + why + "; free some space, or keep the reading program open (files were written)"};
+  return Error{"stdout", "cannot be written" + why,
+               "free some space, or keep the reading program open (files were written)"};
 }
 
 }  // namespace pliant

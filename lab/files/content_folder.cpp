@@ -35,21 +35,22 @@ std::vector<fs::path> shipped_levels() {
 Result<fs::path> find_level(const std::string& argument) {
   std::error_code no;
   if (fs::is_regular_file(argument, no)) return fs::path(argument);
-  if (fs::is_directory(argument, no)) return Error{argument, "is a folder; give the file in it"};
-  if (fs::exists(argument, no)) return Error{argument, "is no regular file; save it as one first"};
+  if (fs::is_directory(argument, no)) return Error{argument, "is a folder", "give the file in it"};
+  if (fs::exists(argument, no)) return Error{argument, "is no regular file", "save it as one first"};
   const std::string name = argument.empty() ? kDemoLevel : argument;
   if (name.find('/') == std::string::npos) {
     const fs::path levels = content_folder() / "levels";
     for (const char* extension : {".gltf", ".glb"})
       if (const fs::path file = levels / (name + extension); fs::is_regular_file(file, no)) return file;
     if (argument.empty())
-      return Error{levels.string(), "the demo level is not there; set PLIANT_CONTENT to the folder that holds levels/"};
+      return Error{levels.string(), "the demo level is not there",
+                   "set PLIANT_CONTENT to the folder that holds levels/"};
   }
   std::vector<std::string> names;
   for (const fs::path& level : shipped_levels()) names.push_back(level.stem().string());
   const std::string near = name.find('/') == std::string::npos ? suggestion(fs::path(name).stem().string(), names) : "";
-  return Error{argument, "there is no such file and no shipped level of that name" +
-                             (near.empty() ? "; check the path, or see `pliant run --list`" : near)};
+  return Error{argument, "there is no such file and no shipped level of that name",
+               near.empty() ? "check the path, or see `pliant run --list`" : near, "file.missing"};
 }
 
 }  // namespace pliant

@@ -70,13 +70,13 @@ Result<OutputFolder> OutputFolder::create(const fs::path& folder, bool replace) 
   const bool there = fs::is_directory(out.asked_, error);
   if (there && replace) {
     if (clear_abandoned(out.asked_))
-      return Error{folder.string(), "is in use by another run; wait for it, or choose another with --out"};
+      return Error{folder.string(), "is in use by another run", "wait for it, or choose another with --out"};
     if (const std::string name = foreign_result(out.asked_); !name.empty())
-      return Error{(folder / name).string(),
-                   "was not written by a run, so --force does not replace it; move it away, or use another --out"};
+      return Error{(folder / name).string(), "was not written by a run, so --force does not replace it",
+                   "move it away, or use another --out"};
   }
   const Status opened = there && !replace && is_taken(out.asked_) ? out.choose_next() : out.open(out.asked_);
-  if (!opened) return Error{folder.string(), opened.error().what};
+  if (!opened) return opened.error().at(folder.string());
   return out;
 }
 
@@ -97,15 +97,15 @@ Status OutputFolder::open(const fs::path& folder) {
     }
     if (!error) staged = fs::create_directory(staging, error);
     if (!error && !staged)
-      return Error{folder.string(), "contains `" + staging.filename().string() + "` of another process; remove it"};
+      return Error{folder.string(), "contains `" + staging.filename().string() + "` of another process", "remove it"};
     // A run that ended early may remove the folder between the check and the creation.
     if (error && error != std::errc::no_such_file_or_directory) break;
   }
-  if (!staged) return Error{folder.string(), "cannot be created: " + error.message() + "; choose another with --out"};
+  if (!staged) return Error{folder.string(), "cannot be created: " + error.message(), "choose another with --out"};
   folder_ = folder;
   staging_ = staging;
   marker_ = begin_list(staging_);
-  if (marker_ < 0) return Error{folder.string(), "cannot be written to: " + why_not_written(errno)};
+  if (marker_ < 0) return not_written(folder.string(), "cannot be written to", errno);
   const int reserve = ::open((staging_ / kReserve).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (reserve >= 0) {
     off_t bytes = kReserved;
@@ -126,9 +126,9 @@ Status OutputFolder::choose_next() {
       made_.push_back(next);
       return open(next);
     }
-    if (error) return Error{asked_.string(), "cannot be created: " + error.message() + "; choose another with --out"};
+    if (error) return Error{asked_.string(), "cannot be created: " + error.message(), "choose another with --out"};
   }
-  return Error{asked_.string(), "has results, and so have all that follow; choose another with --out"};
+  return Error{asked_.string(), "has results, and so have all that follow", "choose another with --out"};
 }
 
 OutputFolder::OutputFolder(OutputFolder&& other) noexcept
@@ -186,8 +186,8 @@ Status OutputFolder::move_on() {
   fs::rename(staged, staging_, error);
   if (error) staging_ = staged;
   if (error)
-    return Error{shown().string(),
-                 "cannot be moved into place: " + error.message() + "; remove what is there, or choose another --out"};
+    return Error{shown().string(), "cannot be moved into place: " + error.message(),
+                 "remove what is there, or choose another --out"};
   return Done{};
 }
 
@@ -207,12 +207,14 @@ Status OutputFolder::commit() {
   std::erase_if(names_,
                 [&](const std::string& name) { return !is_there(staging_ / name); });  // the file could not be written
   std::optional<Error> wrong;  // the first error; the other files are still moved into place
-  const auto note_first = [&](const std::string& name, const char* what, const std::string& why) {
-    if (!wrong) wrong = Error{(shown() / name).string(), what + why};
+  const auto note_first = [&](const std::string& name, const char* what, int error, const char* cure) {
+    if (wrong) return;
+    wrong = not_written((shown() / name).string(), what, error);
+    if (cure && wrong->code != kDiskFull) wrong->cure = cure;
   };
   const std::string list = list_text(names_);
   if (::pwrite(marker_, list.data(), list.size(), 0) != static_cast<ssize_t>(list.size()))
-    note_first(kRunList, "cannot be written: ", why_not_written(errno));
+    note_first(kRunList, "cannot be written", errno, nullptr);
   std::set<std::string> old = replace_ ? listed_files(folder_) : std::set<std::string>();
   const auto in_the_way = [&](const std::string& name) {
     return is_there(folder_ / name) && (!old.count(name) || is_folder(folder_ / name));
@@ -226,16 +228,16 @@ Status OutputFolder::commit() {
     }
     placed = place_list();
   }
-  constexpr const char* kNotMoved = "cannot be moved into place: ";
-  const std::string cure = "; remove what is there, or choose another --out";
+  constexpr const char *kNotMoved = "cannot be moved into place",
+                       *kCure = "remove what is there, or choose another --out";
   std::erase_if(names_, [&](const std::string& name) {
     const int error = move_file(staging_ / name, folder_ / name, old.count(name) != 0);
-    if (error != 0) note_first(name, kNotMoved, std::generic_category().message(error) + cure);
+    if (error != 0) note_first(name, kNotMoved, error, kCure);
     return error != 0;
   });
   if (placed != 0)  // a file system without links
     if (const int error = move_file(staging_ / kRunList, folder_ / kRunList, replaces()); error != 0)
-      note_first(kRunList, kNotMoved, std::generic_category().message(error) + cure);
+      note_first(kRunList, kNotMoved, error, kCure);
   std::error_code error;
   for (const std::string& name : old)
     if (std::find(names_.begin(), names_.end(), name) == names_.end() && !is_folder(folder_ / name))

@@ -2,6 +2,7 @@
 // runs of a sweep (docs/fit.md).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ struct FitOptions {
   std::string out;                                    // level to write; empty: none
   std::string report;                                 // folder; empty: out/fit
   bool force = false;                                 // replace an existing level and report
-  double unit = 1.0;                                  // [m] unit of a bare mesh
+  std::optional<double> unit;                         // [m] unit of a bare mesh; empty: not said
   std::vector<std::string> of_measured, of_elements;  // options given that apply to one kind of fit only
 
   // Options of a fit to measured presses.

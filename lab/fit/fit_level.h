@@ -10,7 +10,7 @@
 namespace pliant {
 
 // A file or the name of a shipped level.
-Result<Level> level_to_fit(const std::string& name, double unit);
+Result<Level> level_to_fit(const std::string& name, std::optional<double> unit);
 // Index of the node of that name that has a mesh; errors list the nodes that have one.
 Result<std::int32_t> object_to_fit(const Level& level, const std::string& name);
 // Checks that `out` is glTF and does not exist or may be replaced.

@@ -181,9 +181,8 @@ Status write_keys(const LawFit& fit, const FitOptions& options, Level& level, st
   const Deformable fitted = fit.model.deformable(fit.p);
   if (node.soft_body) {
     if (fit.model.law != "hertz")
-      return Error{"--object " + node.name,
-                   "is a soft body, which has a modulus and no law; fit with --law hertz and --radius, or name a "
-                   "deformable surface"};
+      return Error{"--object " + node.name, "is a soft body, which has a modulus and no law",
+                   "fit with --law hertz and --radius, or name a deformable surface"};
     node.soft_body->young = fitted.young;
     node.soft_body->poisson = std::min(fitted.poisson, 0.499);
     return Done{};
@@ -193,9 +192,9 @@ Status write_keys(const LawFit& fit, const FitOptions& options, Level& level, st
   Deformable& it = *level.nodes[static_cast<std::size_t>(number)].deformable;
   it.spring = fitted.spring;
   it.stiffness = fitted.stiffness;
-  it.cubic = fitted.spring == SpringLaw::kCubic ? fitted.cubic : it.cubic;
-  it.stiffening = fitted.spring == SpringLaw::kExponential ? fitted.stiffening : it.stiffening;
-  if (fitted.spring == SpringLaw::kStandardLinearSolid) {
+  it.cubic = reads_key(fitted.spring, "cubic") ? fitted.cubic : it.cubic;
+  it.stiffening = reads_key(fitted.spring, "stiffening") ? fitted.stiffening : it.stiffening;
+  if (has_arm(fitted.spring)) {
     it.relaxation_stiffness = fitted.relaxation_stiffness;
     it.relaxation_time = fitted.relaxation_time;
   }
@@ -216,7 +215,7 @@ Status write_keys(const LawFit& fit, const FitOptions& options, Level& level, st
 int fit_press(const FitOptions& options) {
   if (!options.out.empty() && options.level.empty())
     return fail(kUsage,
-                {"-o " + options.out, "what was measured is no level; say with --level into which one it goes"});
+                {"-o " + options.out, "what was measured is no level", "say with --level into which one it goes"});
   if (!options.level.empty() && options.out.empty())
     return fail(kUsage, {"--level " + options.level, "say with -o where the level is written"});
   if (const Status out = check_out(options); !out) return fail(kUsage, out.error());

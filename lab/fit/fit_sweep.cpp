@@ -35,9 +35,8 @@ int fit_sweep(const FitOptions& options) {
   if (options.target.empty())
     return fail(kUsage, {"--sweep " + options.sweep, "name what was measured with --target CSV"});
   if (!options.out.empty())
-    return fail(kUsage,
-                {"-o " + options.out,
-                 "is not for --sweep: it says a setting and no level; use the setting with `pliant run --set`"});
+    return fail(kUsage, {"-o " + options.out, "is not for --sweep: it says a setting and no level",
+                         "use the setting with `pliant run --set`"});
   const Result<SweepTable> table = read_table({options.sweep});
   if (!table) return fail(kFailed, table.error());
   Result<PressRecord> target = read_press(options.target, options.probe, true);

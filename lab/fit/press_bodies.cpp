@@ -34,8 +34,8 @@ Result<LevelNode> tissue_node(const Level& level, std::int32_t number, const Fit
   else if (node.deformable && node.deformable->young > 0)
     soft.young = node.deformable->young, soft.poisson = std::min(node.deformable->poisson, 0.49);
   else if (options.young < 0)
-    return Error{"--object " + node.name,
-                 "says no modulus: it is no soft body and has no `young`; say --young and --poisson"};
+    return Error{"--object " + node.name, "says no modulus: it is no soft body and has no `young`",
+                 "say --young and --poisson"};
   if (options.young > 0) soft.young = options.young;
   if (options.poisson >= 0) soft.poisson = options.poisson;
   if (options.thickness > 0) soft.thickness = options.thickness, soft.fill = Fill::kWall;

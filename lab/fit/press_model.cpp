@@ -1,8 +1,12 @@
 #include "lab/fit/press_model.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "content/keys/enum_words.h"
 #include "content/keys/extensions.h"
 #include "systems/touch/model/contact_law.h"
 
@@ -61,13 +65,19 @@ double sphere_modulus(const Sizes& size, const ModelWish& wish) {
   return plane * (1 - wish.poisson * wish.poisson);
 }
 
+// The law of a surface; `hertz` is a linear one whose stiffness follows from a modulus.
+SpringLaw spring_of(const std::string& law) {
+  return value_of_word<SpringLaw>(law).value_or(SpringLaw::kLinear);
+}
+
 // Initial guesses for a law's own parameters.
 std::vector<std::vector<double>> law_starts(const std::string& law, const Sizes& size, const ModelWish& wish) {
   const double k = std::clamp(size.slope, R::kStiffness.min, R::kStiffness.max), d = size.depth;
   if (law == "hertz") return {{sphere_modulus(size, wish)}};
-  if (law == "cubic") return {{0.9 * k, 0.1 * k / (d * d)}, {0.3 * k, k / (d * d)}};
-  if (law == "exponential") return {{0.9 * k, 0.3 / d}, {0.2 * k, 3.0 / d}, {1.3 * k, -0.5 / d}};
-  if (law != "sls") return {{k}};
+  const SpringLaw spring = spring_of(law);
+  if (reads_key(spring, "cubic")) return {{0.9 * k, 0.1 * k / (d * d)}, {0.3 * k, k / (d * d)}};
+  if (reads_key(spring, "stiffening")) return {{0.9 * k, 0.3 / d}, {0.2 * k, 3.0 / d}, {1.3 * k, -0.5 / d}};
+  if (!has_arm(spring)) return {{k}};
   std::vector<std::vector<double>> starts;
   for (const double share : {0.01, 0.05, 0.25, 1.0}) starts.push_back({0.6 * k, 0.4 * k, share * size.span});
   return starts;
@@ -80,7 +90,13 @@ ModelParameter parameter(const char* key, const char* unit, Range range, double 
 }  // namespace
 
 const std::vector<std::string>& press_laws() {
-  static const std::vector<std::string> laws{"linear", "cubic", "exponential", "sls", "hertz"};
+  static const std::vector<std::string> laws = [] {
+    std::vector<std::string> all;
+    for (const SpringRow& row : kSpringRows)
+      if (row.step == SpringStep::kArm || !std::strchr(row.reads, ' ')) all.emplace_back(row.word);
+    all.emplace_back("hertz");
+    return all;
+  }();
   return laws;
 }
 
@@ -89,8 +105,8 @@ std::optional<PressModel> press_model(const std::string& law, const PressRecord&
   const ContactRange contact = contact_range(record, wish.contact);
   // Bounds must hold for every contact depth; initial guesses depend on it.
   const Sizes size = sizes_of(record, contact.low);
-  if (law == "sls" && record.time.empty()) {
-    why = "the law sls needs a column of time";
+  if (has_arm(spring_of(law)) && record.time.empty()) {
+    why = fmt::format("the law {} needs a column of time", law);
     return std::nullopt;
   }
   if (wish.damping && record.time.empty()) {
@@ -111,14 +127,15 @@ std::optional<PressModel> press_model(const std::string& law, const PressRecord&
     list.push_back(parameter("young", "Pa", {1e-3, 1e12}, sphere_modulus(usual, wish)));
   else
     list.push_back(parameter("stiffness", "N/m", R::kStiffness, k));
-  if (law == "cubic") {
+  const SpringLaw spring = spring_of(law);
+  if (reads_key(spring, "cubic")) {
     list.push_back(parameter("cubic", "N/m3", R::kCubic, k / (usual.depth * usual.depth)));
-  } else if (law == "exponential") {
+  } else if (reads_key(spring, "stiffening")) {
     list.push_back(parameter("stiffening", "1/m",
                              {std::max(R::kStiffening.min, -kFlattestPress / size.depth),
                               std::min(R::kStiffening.max, kSteepest / size.depth)},
                              1.0 / usual.depth));
-  } else if (law == "sls") {
+  } else if (has_arm(spring)) {
     list.push_back(parameter("relaxation.stiffness", "N/m", R::kRelaxationStiffness, k));
     list.push_back(parameter(
         "relaxation.time", "s",
@@ -142,9 +159,7 @@ std::optional<PressModel> press_model(const std::string& law, const PressRecord&
 Deformable PressModel::deformable(const Eigen::VectorXd& p) const {
   Deformable out;
   out.poisson = wish.poisson;
-  if (law == "cubic") out.spring = SpringLaw::kCubic;
-  if (law == "exponential") out.spring = SpringLaw::kExponential;
-  if (law == "sls") out.spring = SpringLaw::kStandardLinearSolid;
+  out.spring = spring_of(law);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const std::string& key = parameters[i].key;
     const double value = p[static_cast<Eigen::Index>(i)];

@@ -116,7 +116,7 @@ Status find_column(const std::vector<std::string>& heads, std::size_t q, const s
       other.emplace_back(i, unit);
       continue;
     }
-    if (out.at[q]) return Error{where, fmt::format("has two columns of {}; leave one", words.what)};
+    if (out.at[q]) return Error{where, fmt::format("has two columns of {}", words.what), "leave one"};
     out.at[q] = i + 1;
     out.factor[q] = known->factor;
   }
@@ -158,8 +158,8 @@ Result<Columns> read_head(std::string_view line, char mark, const std::string& w
       if (const Status found = find_column(heads, q, where, out); !found) return found.error();
   for (const std::size_t q : {kDepth, kForce})
     if (!out.at[q])
-      return Error{where, fmt::format("has no column of {}; name one {}, with its unit", quantity_words(q).what,
-                                      quantity_words(q).example)};
+      return Error{where, fmt::format("has no column of {}", quantity_words(q).what),
+                   fmt::format("name one {}, with its unit", quantity_words(q).example)};
   return out;
 }
 
@@ -193,24 +193,65 @@ bool read_number(std::string cell, char mark, double& value) {
 
 Error of_tool(const std::string& where, const std::string& probe) {
   return {where,
-          fmt::format("`{}` is a tool: what stands as its depth is how far its device is led past its handle, by "
-                      "the coupling, and no press of a surface; take a probe's rows, or measured presses",
-                      printable(probe))};
+          fmt::format("`{}` is a tool: what stands as its depth is how far its device is led past its handle, by the "
+                      "coupling, and no press of a surface",
+                      printable(probe)),
+          "take a probe's rows, or measured presses"};
 }
 
 // Rejects a record that no law can be fitted to.
 Status check(const PressRecord& record, const std::string& where) {
   if (record.size() < kLeastRows)
-    return Error{where, fmt::format("has {} rows; a fit takes at least {}", record.size(), kLeastRows)};
+    return Error{where, fmt::format("has {} rows", record.size()), fmt::format("a fit takes at least {}", kLeastRows)};
   const auto [least, most] = std::minmax_element(record.depth.begin(), record.depth.end());
   if (!(*most > 0))
-    return Error{where, "has no depth above 0; depth is positive where the indenter presses in: turn its sign"};
-  if (!(*most > *least)) return Error{where, "has the same depth in every row; a fit takes several"};
+    return Error{where, "has no depth above 0", "depth is positive where the indenter presses in: turn its sign"};
+  if (!(*most > *least)) return Error{where, "has the same depth in every row", "a fit takes several"};
   double sum = 0.0;
   for (std::size_t i = 0; i < record.size(); ++i) sum += record.force[i] * std::max(record.depth[i], 0.0);
   if (!(sum > 0))
-    return Error{where,
-                 "has a force that falls as the depth grows; force is positive against the indenter: turn its sign"};
+    return Error{where, "has a force that falls as the depth grows",
+                 "force is positive against the indenter: turn its sign"};
+  return Done{};
+}
+
+// Appends one row.
+Status read_row(const Columns& columns, const std::vector<std::string>& cells, const std::string& where,
+                const std::string& here, bool with_friction, PressRecord& record) {
+  double value[kQuantities] = {};
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    if (!columns.at[q]) continue;
+    const std::string& cell = cells[columns.at[q] - 1];
+    if (!read_number(cell, columns.mark, value[q]))
+      return Error{
+          here,
+          fmt::format(
+              "its {} is '{}', which is no finite number{}", quantity_words(q).what, printable(cell.substr(0, 40)),
+              cell.find(',') == std::string::npos ? "" : " (a decimal comma is read, marks between thousands are not)"),
+          "correct the row or leave it out"};
+    value[q] *= columns.factor[q];
+  }
+  double component = 0.0;
+  for (const std::size_t axis : columns.torque)
+    if (axis && read_number(cells[axis - 1], columns.mark, component) && component != 0.0)
+      return of_tool(where, record.probe);
+  if (with_friction && columns.axis[0] && columns.axis[1] && columns.axis[2]) {
+    double square = 0.0;
+    for (const std::size_t axis : columns.axis) {
+      if (!read_number(cells[axis - 1], columns.mark, component))
+        return Error{here, "its force is no finite number", "correct the row or leave it out"};
+      square += component * component;
+    }
+    value[kForce] = std::sqrt(square);
+  }
+  if (columns.at[kTime]) {
+    if (!record.time.empty() && !(value[kTime] > record.time.back()))
+      return Error{here, "its time does not grow from the row before", "sort the rows and remove doubles"};
+    record.time.push_back(value[kTime]);
+  }
+  record.depth.push_back(value[kDepth]);
+  record.force.push_back(value[kForce]);
+  record.contact.push_back(columns.contact ? cells[*columns.contact] == "1" : value[kDepth] > 0);
   return Done{};
 }
 
@@ -235,64 +276,34 @@ Result<PressRecord> parse_press(std::string_view text, const std::string& where,
       if (!head) return head.error();
       columns = *head;
       record.notes = columns->notes;
-      if (!probe.empty() && !columns->probe) return Error{where, "has no column `probe`; leave --probe out"};
+      if (!probe.empty() && !columns->probe) return Error{where, "has no column `probe`", "leave --probe out"};
       continue;
     }
     read_cells(whole, columns->mark, cells);
     while (cells.size() > columns->count && cells.back().empty()) cells.pop_back();
     if (cells.size() != columns->count)
-      return Error{here,
-                   fmt::format("has {} cells where the header has {}; correct the line{}", cells.size(), columns->count,
-                               columns->mark == ',' && cells.size() > columns->count
-                                   ? ", or, where its commas are decimal, put semicolons between cells"
-                                   : "")};
+      return Error{
+          here, fmt::format("has {} cells where the header has {}", cells.size(), columns->count),
+          fmt::format("correct the line{}", columns->mark == ',' && cells.size() > columns->count
+                                                ? ", or, where its commas are decimal, put semicolons between cells"
+                                                : "")};
     if (columns->probe) {
       const std::string& its = cells[*columns->probe];
       probes.insert(its);
       if (probe.empty() && probes.size() > 1)
-        return Error{where, fmt::format("has several probes, {} and {} among them; choose one with --probe NAME",
-                                        printable(*probes.begin()), printable(*probes.rbegin()))};
+        return Error{where,
+                     fmt::format("has several probes, {} and {} among them", printable(*probes.begin()),
+                                 printable(*probes.rbegin())),
+                     "choose one with --probe NAME"};
       if (!probe.empty() && its != probe) continue;
       record.probe = its;
     }
-    double value[kQuantities] = {};
-    for (std::size_t q = 0; q < kQuantities; ++q) {
-      if (!columns->at[q]) continue;
-      const std::string& cell = cells[columns->at[q] - 1];
-      if (!read_number(cell, columns->mark, value[q]))
-        return Error{here, fmt::format("its {} is '{}', which is no finite number{}; correct the row or leave it out",
-                                       quantity_words(q).what, printable(cell.substr(0, 40)),
-                                       cell.find(',') == std::string::npos
-                                           ? ""
-                                           : " (a decimal comma is read, marks between thousands are not)")};
-      value[q] *= columns->factor[q];
-    }
-    double component = 0.0;
-    for (const std::size_t axis : columns->torque)
-      if (axis && read_number(cells[axis - 1], columns->mark, component) && component != 0.0)
-        return of_tool(where, record.probe);
-    if (with_friction && columns->axis[0] && columns->axis[1] && columns->axis[2]) {
-      double square = 0.0;
-      for (const std::size_t axis : columns->axis) {
-        if (!read_number(cells[axis - 1], columns->mark, component))
-          return Error{here, "its force is no finite number; correct the row or leave it out"};
-        square += component * component;
-      }
-      value[kForce] = std::sqrt(square);
-    }
-    if (columns->at[kTime]) {
-      if (!record.time.empty() && !(value[kTime] > record.time.back()))
-        return Error{here, "its time does not grow from the row before; sort the rows and remove doubles"};
-      record.time.push_back(value[kTime]);
-    }
-    record.depth.push_back(value[kDepth]);
-    record.force.push_back(value[kForce]);
-    record.contact.push_back(columns->contact ? cells[*columns->contact] == "1" : value[kDepth] > 0);
+    if (const Status read = read_row(*columns, cells, where, here, with_friction, record); !read) return read.error();
   }
-  if (!columns) return Error{where, "is empty; a header such as time_s,depth_mm,force_N comes first, then rows"};
+  if (!columns) return Error{where, "is empty", "a header such as time_s,depth_mm,force_N comes first, then rows"};
   if (!probe.empty() && !probes.contains(probe))
-    return Error{where, fmt::format("has no probe '{}'; it has {}", printable(probe),
-                                    probes.empty() ? "none" : printable(*probes.begin()))};
+    return Error{where, fmt::format("has no probe '{}'", printable(probe)),
+                 fmt::format("it has {}", probes.empty() ? "none" : printable(*probes.begin()))};
   if (const Status status = check(record, where); !status) return status.error();
   const double deepest = *std::max_element(record.depth.begin(), record.depth.end());
   if (deepest > 0.2 || deepest < 1e-6)

@@ -13,8 +13,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kLeastContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
-constexpr double kLeastFittedReach = 1.5;                                       // [1] in radii of the indenter
+constexpr double kLeastFitContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
+constexpr double kLeastFittedReach = 1.5;                                          // [1] in radii of the indenter
 constexpr int kReaches = 20;          // tried from the least reach to the usual one, and from that to the widest
 constexpr double kGoodShape = 0.10;   // [1] of the depth: below this error no wider reach is tried
 constexpr std::size_t kNearest = 10;  // painted places from which a vertex is interpolated
@@ -27,9 +27,7 @@ FieldSource source_of(const PressPlace& place, Shape shape, double reach, double
   source.amplitude = 1.0f;
   source.inv_reach2 = static_cast<float>(1 / (reach * reach));
   source.shape = shape;
-  source.parameter = shape == Shape::kKelvinlet ? static_cast<float>(contact * reach)
-                     : shape == Shape::kVolume  ? static_cast<float>(5 * volume)
-                                                : static_cast<float>(contact * contact);
+  source.parameter = shape_parameter(shape, contact * reach, reach, volume);
   return source;
 }
 
@@ -147,11 +145,23 @@ ShapeFit fit_shape(const std::vector<PressedPlace>& places, double radius, doubl
       for (int i = 0; i <= kReaches; ++i)
         attempt(shape, volume, least * std::pow(most / least, i / (kReaches * 1.0)) * radius, contact);
     };
-    for (const Shape shape : {Shape::kPunch, Shape::kHertz, Shape::kKelvinlet})
-      for (double contact = kLeastContact; contact < kMostContact + 0.01; contact += kContactStep)
+    const auto every_shape = [&](const auto& wanted, const auto& each) {
+      for (std::size_t i = 0; i < std::size(kShapeRows); ++i)
+        if (wanted(kShapeRows[i].parameter)) each(static_cast<Shape>(i));
+    };
+    const auto of_contact = [](ShapeParameter p) {
+      return p == ShapeParameter::kContactShare || p == ShapeParameter::kContactLength;
+    };
+    every_shape(of_contact, [&](Shape shape) {
+      for (double contact = kLeastFitContact; contact < kMostContact + 0.01; contact += kContactStep)
         every_reach(shape, 1.0, contact);
-    for (const Shape shape : {Shape::kGaussian, Shape::kWendland}) every_reach(shape, 1.0, 0.0);
-    for (double volume = 0.0; volume < 1.01; volume += 0.1) every_reach(Shape::kVolume, volume, 0.0);
+    });
+    every_shape([](ShapeParameter p) { return p == ShapeParameter::kNone; },
+                [&](Shape shape) { every_reach(shape, 1.0, 0.0); });
+    every_shape([](ShapeParameter p) { return p == ShapeParameter::kVolume; },
+                [&](Shape shape) {
+                  for (double volume = 0.0; volume < 1.01; volume += 0.1) every_reach(shape, volume, 0.0);
+                });
   };
   try_between(kLeastFittedReach, kUsualReach);
   if (reach <= 0 && best.of_depth > kGoodShape) try_between(kUsualReach, kWidestReach);
@@ -169,16 +179,18 @@ ForceFit fit_force(const std::vector<PressedPlace>& places) {
   ForceFit best;
   best.error = 1e30;
   if (count == 0) return best;
-  for (const SpringLaw spring : {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential}) {
+  for (std::size_t i = 0; i < std::size(kSpringRows); ++i) {
+    const auto spring = static_cast<SpringLaw>(i);
+    const bool cubic = reads_key(spring, "cubic"), stiffening = reads_key(spring, "stiffening");
+    if (has_arm(spring) || (cubic && stiffening)) continue;
     std::vector<FitParameter> boxes{{1.0, 0.1, 10.0, 1.0}};
-    const double scale = spring == SpringLaw::kCubic ? 1 / (deepest * deepest) : 1 / deepest;
-    if (spring == SpringLaw::kCubic) boxes.push_back({0.1 * scale, 0.0, 100 * scale, scale});
-    if (spring == SpringLaw::kExponential) boxes.push_back({0.1 * scale, -5 * scale, 20 * scale, scale});
+    const double scale = cubic ? 1 / (deepest * deepest) : 1 / deepest;
+    if (cubic) boxes.push_back({0.1 * scale, 0.0, 100 * scale, scale});
+    if (stiffening) boxes.push_back({0.1 * scale, -5 * scale, 20 * scale, scale});
     const LeastSquares fit = least_squares(boxes, count, [&](const Eigen::VectorXd& p, Eigen::VectorXd& r) {
-      RestoringLaw law;
-      law.kind = spring;
-      if (spring == SpringLaw::kCubic) law.cubic = p[1];
-      if (spring == SpringLaw::kExponential) law.stiffening = exponential_alpha(p[1]);
+      RestoringLaw law{spring};
+      if (cubic) law.cubic = p[1];
+      if (stiffening) law.stiffening = exponential_alpha(p[1]);
       Eigen::Index k = 0;
       for (const PressedPlace& each : places)
         for (const PressedTissue& press : each.presses)

@@ -82,14 +82,16 @@ Result<Nearest> nearest_run(const SweepTable& table, const PressRecord& target, 
     for (const auto& [ending, found] : {std::pair(std::string(".max_depth_m"), &probes), {".max_offset_m", &tools}})
       if (figure.ends_with(ending)) found->insert(figure.substr(0, figure.size() - ending.size()));
   if (tools.contains(probe) || (probes.empty() && !tools.empty()))
-    return Error{"--sweep", fmt::format("`{}` is a tool, whose runs say no depth of a press; compare those of a probe",
-                                        probe.empty() ? *tools.begin() : probe)};
-  if (probes.empty()) return Error{"--sweep", "has no run that was done with a probe; run it first"};
+    return Error{
+        "--sweep",
+        fmt::format("`{}` is a tool, whose runs say no depth of a press", probe.empty() ? *tools.begin() : probe),
+        "compare those of a probe"};
+  if (probes.empty()) return Error{"--sweep", "has no run that was done with a probe", "run it first"};
   if (!probe.empty() && !probes.contains(probe))
-    return Error{"--probe " + probe, "is in none of the sweep's runs; they have " + *probes.begin()};
+    return Error{"--probe " + probe, "is in none of the sweep's runs", "they have " + *probes.begin()};
   if (probe.empty() && probes.size() > 1)
-    return Error{"--sweep", fmt::format("has several probes, {} and {} among them; choose one with --probe NAME",
-                                        *probes.begin(), *probes.rbegin())};
+    return Error{"--sweep", fmt::format("has several probes, {} and {} among them", *probes.begin(), *probes.rbegin()),
+                 "choose one with --probe NAME"};
   out.probe = probe.empty() ? *probes.begin() : probe;
 
   std::vector<std::map<std::string, double>> runs(table.rows.size());

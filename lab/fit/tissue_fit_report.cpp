@@ -16,7 +16,6 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr double kForceGoal = 0.05, kSurfaceGoal = 0.10;  // [1]
-constexpr const char* kSprings[] = {"linear", "cubic", "exponential", "sls"};
 
 }  // namespace
 
@@ -120,10 +119,10 @@ std::string json_of(const TissueFit& f, const Level& level) {
       {"fit_places", f.places},
       {"left_out_near_what_is_held", f.left_out},
       {"keys",
-       {{"spring", kSprings[static_cast<std::size_t>(f.surface.spring)]},
+       {{"spring", word_of(f.surface.spring)},
         {"stiffness", f.surface.stiffness},
-        {"cubic", f.surface.spring == SpringLaw::kCubic ? OrderedJson(f.surface.cubic) : OrderedJson()},
-        {"stiffening", f.surface.spring == SpringLaw::kExponential ? OrderedJson(f.surface.stiffening) : OrderedJson()},
+        {"cubic", reads_key(f.surface.spring, "cubic") ? OrderedJson(f.surface.cubic) : OrderedJson()},
+        {"stiffening", reads_key(f.surface.spring, "stiffening") ? OrderedJson(f.surface.stiffening) : OrderedJson()},
         {"shape", name_of(f.surface.shape)},
         {"reach", f.surface.reach},
         {"volume", f.surface.volume},
@@ -196,12 +195,12 @@ void say(const TissueFit& f) {
     print("; forces divided by {:.3f}, what cells of no size would give (places differ by {:.1f} %)", f.too_stiff,
           100 * f.too_stiff_off);
   print("\n");
-  print("  spring {}, stiffness {:.4g} N/m ({:.3g} to {:.3g} over the surface)",
-        kSprings[static_cast<std::size_t>(f.surface.spring)], f.surface.stiffness, f.softest, f.stiffest);
-  if (f.surface.spring == SpringLaw::kCubic) print(", cubic {:.4g} N/m3", f.surface.cubic);
-  if (f.surface.spring == SpringLaw::kExponential) print(", stiffening {:.4g} 1/m", f.surface.stiffening);
+  print("  spring {}, stiffness {:.4g} N/m ({:.3g} to {:.3g} over the surface)", word_of(f.surface.spring),
+        f.surface.stiffness, f.softest, f.stiffest);
+  if (reads_key(f.surface.spring, "cubic")) print(", cubic {:.4g} N/m3", f.surface.cubic);
+  if (reads_key(f.surface.spring, "stiffening")) print(", stiffening {:.4g} 1/m", f.surface.stiffening);
   print("\n  shape {}, reach {:.3g} mm", name_of(f.surface.shape), f.surface.reach * 1e3);
-  if (f.surface.shape == Shape::kVolume) print(", volume {:.2g}", f.surface.volume);
+  if (row_of(f.surface.shape).parameter == ShapeParameter::kVolume) print(", volume {:.2g}", f.surface.volume);
   if (depends_on_contact(f.surface.shape)) print(", contact_radius {:.3g} mm", f.surface.contact_radius * 1e3);
   print("\n");
   print("  {:<8} {:>6} {:>12} {:>12} {:>12} {:>14} {:>12}\n", "region", "places", "force RMS", "force worst", "dent",

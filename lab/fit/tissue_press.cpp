@@ -35,7 +35,7 @@ std::vector<Embedding> embedding_of(const std::vector<SurfaceSample>& samples, c
 
 Result<TissuePress> TissuePress::make(TetMesh tets, const TissueMaterial& material, PressKind kind) {
   if (tets.free_count == tets.node_count())
-    return Error{"mesh `" + tets.name + "`", "is held nowhere, so that a press would push it away; say --pin SIDE"};
+    return Error{"mesh `" + tets.name + "`", "is held nowhere, so that a press would push it away", "say --pin SIDE"};
   TissuePress out;
   out.tets_ = std::make_unique<const TetMesh>(std::move(tets));
   out.tissue_ = std::make_unique<Tissue>(*out.tets_, material, out.tets_->free_count);
@@ -45,7 +45,7 @@ Result<TissuePress> TissuePress::make(TetMesh tets, const TissueMaterial& materi
 }
 
 Error TissuePress::unsolved() const {
-  return {"mesh `" + tets_->name + "`", "has tetrahedra whose stiffness cannot be solved for; try another --cell"};
+  return {"mesh `" + tets_->name + "`", "has tetrahedra whose stiffness cannot be solved for", "try another --cell"};
 }
 
 bool TissuePress::factorise() {

@@ -65,7 +65,7 @@ Result<RunSeries> read_series(const fs::path& run) {
   const bool folder = fs::is_directory(run, ignored);
   const fs::path file = folder ? run / "forces.csv" : run;
   if (folder && !fs::exists(file, ignored))
-    return Error{run.string(), "has no forces.csv; name the folder that a run wrote (its --out)"};
+    return Error{run.string(), "has no forces.csv", "name the folder that a run wrote (its --out)"};
   const Result<Bytes> bytes = read_file(file, limits::kFile);
   if (!bytes) return bytes.error();
   std::string_view text{reinterpret_cast<const char*>(bytes->data()), bytes->size()};
@@ -81,7 +81,7 @@ Result<RunSeries> read_series(const fs::path& run) {
   const auto place = [&](const char* name) { return csv_column(header, name); };
   for (const char* name : {"time_s", "depth_m", "fn"})
     if (place(name) == kNoColumn)
-      return Error{file.string(), std::string("has no column `") + name + "`; name a forces.csv that a run wrote"};
+      return Error{file.string(), std::string("has no column `") + name + "`", "name a forces.csv that a run wrote"};
   RunSeries out;
   out.run = run.string();
   for (const char* name : {"ft", "in_contact", "object", "probe"})
@@ -111,8 +111,8 @@ Result<RunSeries> read_series(const fs::path& run) {
     ForceSeries& series = out.series[found->second];
     const double t = number_of(cells[time]), d = number_of(cells[depth]), f = number_of(cells[normal]);
     if (!std::isfinite(t) || !std::isfinite(d) || !std::isfinite(f))
-      return Error{file.string() + ":" + std::to_string(row),
-                   "has no number where time_s, depth_m and fn stand; correct the row or leave it out"};
+      return Error{file.string() + ":" + std::to_string(row), "has no number where time_s, depth_m and fn stand",
+                   "correct the row or leave it out"};
     series.time.push_back(t);
     series.depth.push_back(d);
     series.normal.push_back(f);
@@ -124,7 +124,7 @@ Result<RunSeries> read_series(const fs::path& run) {
     if (!told && torque < cells.size() && number_of(cells[torque]) != 0.0 && !std::isnan(number_of(cells[torque])))
       series.tool = true;
   }
-  if (out.series.empty()) return Error{file.string(), "has no rows; name a run that had a probe or a tool"};
+  if (out.series.empty()) return Error{file.string(), "has no rows", "name a run that had a probe or a tool"};
   return out;
 }
 

@@ -126,7 +126,7 @@ std::string two_digits(double value) {
 }
 
 Error interrupted(const char* verb) {
-  return {verb, "was interrupted and wrote nothing; run it again"};
+  return {verb, "was interrupted and wrote nothing", "run it again"};
 }
 
 Status write_text(OutputFolder& out, const std::string& name, const std::string& text) {

@@ -41,6 +41,8 @@ int run_all(const std::vector<const Study*>& studies, const StudyOptions& option
   if (const Status done = out->commit(); !done) return fail(kFailed, done.error());
   print("{}: {} files{}\n", out->shown().string(), out->written().size(),
         out->moved() ? " (the folder that was meant has results already, which stay; --force replaces a study's)" : "");
+  for (const std::string& name : out->written())
+    if (name.ends_with(".png")) print("plot: {}\n", (out->shown() / name).string());
   return kDone;
 }
 
@@ -49,7 +51,7 @@ int run_all(const std::vector<const Study*>& studies, const StudyOptions& option
 int study(const StudyOptions& options) {
   if (options.list) return list();
   if (options.name.empty())
-    return fail(kUsage, {"study", "say which one, or all; `pliant study --list` says which there are"});
+    return fail(kUsage, {"study", "say which one, or all", "`pliant study --list` says which there are"});
   std::vector<const Study*> chosen;
   std::vector<std::string> names{"all"};
   for (const Study& known : kStudies) {
@@ -58,8 +60,8 @@ int study(const StudyOptions& options) {
   }
   if (chosen.empty()) {
     const std::string near = suggestion(options.name, names);
-    return fail(kUsage, {"study", "unknown study '" + options.name + "'" +
-                                      (near.empty() ? "; `pliant study --list` says which there are" : near)});
+    return fail(kUsage, {"study", "unknown study '" + options.name + "'",
+                         near.empty() ? "`pliant study --list` says which there are" : near, "name.unknown"});
   }
   return run_all(chosen, options);
 }

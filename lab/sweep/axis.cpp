@@ -61,14 +61,14 @@ struct Span {
 Result<Span> read_span(const PlanJson& json, const std::string& pointer) {
   Span span;
   for (const auto& [key, end] : {std::pair("from", &span.from), {"to", &span.to}}) {
-    if (!json.contains(key)) return Error{pointer, fmt::format("has no \"{}\"; give the range both ends", key)};
+    if (!json.contains(key)) return Error{pointer, fmt::format("has no \"{}\"", key), "give the range both ends"};
     const PlanJson& value = json[key];
     if (!value.is_number() || !std::isfinite(value.get<double>()))
       return Error{pointer + "/" + key, "must be a number; got " + brief(value)};
     *end = value.get<double>();
   }
   if (!(span.from < span.to))
-    return Error{pointer, fmt::format("goes from {} to {}; \"from\" must be less than \"to\"", span.from, span.to)};
+    return Error{pointer, fmt::format("goes from {} to {}", span.from, span.to), "\"from\" must be less than \"to\""};
   if (json.contains("log")) {
     if (!json["log"].is_boolean()) return Error{pointer + "/log", "must be true or false; got " + brief(json["log"])};
     span.log = json["log"].get<bool>();
@@ -79,13 +79,12 @@ Result<Span> read_span(const PlanJson& json, const std::string& pointer) {
 }
 
 Error too_many(const std::string& pointer) {
-  return {pointer, fmt::format("makes more than {} runs of the plan, with the axes before it; take fewer values, or a "
-                               "Latin hypercube",
-                               kMostRuns)};
+  return {pointer, fmt::format("makes more than {} runs of the plan, with the axes before it", kMostRuns),
+          "take fewer values, or a Latin hypercube"};
 }
 
 Result<SweepAxis> read_list(SweepAxis axis, const PlanJson& json, std::size_t room) {
-  if (json.empty()) return Error{axis.pointer, "is an empty list; give it values, or leave the axis out"};
+  if (json.empty()) return Error{axis.pointer, "is an empty list", "give it values, or leave the axis out"};
   if (json.size() > room) return too_many(axis.pointer);
   std::set<std::string> seen;
   for (std::size_t i = 0; i < json.size(); ++i) {
@@ -94,7 +93,7 @@ Result<SweepAxis> read_list(SweepAxis axis, const PlanJson& json, std::size_t ro
       return Error{at, "must be a number, a text, true, false or a list of numbers; got " + brief(json[i])};
     axis.values.push_back(canonical(json[i]));
     if (!seen.insert(text_of(axis.values.back())).second)
-      return Error{at, "the value " + brief(json[i]) + " stands twice; leave one of them out"};
+      return Error{at, "the value " + brief(json[i]) + " stands twice", "leave one of them out"};
   }
   return axis;
 }
@@ -128,10 +127,10 @@ std::string text_of(const PlanJson& value) {
                            : canonical(value).dump(-1, ' ', false, PlanJson::error_handler_t::replace);
 }
 
-std::string unknown_in(const PlanJson& object, const std::vector<std::string>& known, const std::string& what) {
+std::optional<Note> unknown_in(const PlanJson& object, const std::vector<std::string>& known, const std::string& what) {
   for (const auto& [key, value] : object.items())
     if (std::find(known.begin(), known.end(), key) == known.end()) return unknown("key", key, what, "keys", known);
-  return {};
+  return std::nullopt;
 }
 
 Result<SweepAxis> read_axis(const std::string& name, const PlanJson& json, const std::string& pointer,
@@ -140,11 +139,10 @@ Result<SweepAxis> read_axis(const std::string& name, const PlanJson& json, const
   if (json.is_array()) return read_list(std::move(axis), json, room);
   if (!json.is_object())
     return Error{pointer, "must be a list of values or {\"from\", \"to\", \"steps\"}; got " + brief(json)};
-  if (const std::string wrong = unknown_in(json, {"from", "to", "steps", "log"}, "a range"); !wrong.empty())
-    return Error{pointer, wrong};
+  if (const auto wrong = unknown_in(json, {"from", "to", "steps", "log"}, "a range")) return error_at(pointer, *wrong);
   auto span = read_span(json, pointer);
   if (!span) return span.error();
-  if (!json.contains("steps")) return Error{pointer, "has no \"steps\"; say how many values the range has"};
+  if (!json.contains("steps")) return Error{pointer, "has no \"steps\"", "say how many values the range has"};
   const PlanJson steps = canonical(json["steps"]);
   if (!steps.is_number_integer() || steps.get<double>() < 2 || steps.get<double>() > kMostRuns)
     return Error{pointer + "/steps",
@@ -155,9 +153,10 @@ Result<SweepAxis> read_axis(const std::string& name, const PlanJson& json, const
   for (std::size_t i = 0; i < count; ++i) {
     const double value = span->at(static_cast<double>(i) / static_cast<double>(count - 1));
     if (!seen.insert(value).second)
-      return Error{pointer + "/steps", fmt::format("{} values are too many for twelve digits between {} and {}; take "
-                                                   "fewer, or a wider range",
-                                                   count, span->from, span->to)};
+      return Error{
+          pointer + "/steps",
+          fmt::format("{} values are too many for twelve digits between {} and {}", count, span->from, span->to),
+          "take fewer, or a wider range"};
     axis.values.push_back(canonical(value));
   }
   return axis;
@@ -167,8 +166,7 @@ Result<SweepAxis> read_sampled_axis(const std::string& name, const PlanJson& jso
                                     std::size_t runs, std::uint64_t seed) {
   SweepAxis axis{name, pointer, true, {}};
   if (!json.is_object()) return Error{pointer, "must be {\"from\", \"to\"}; got " + brief(json)};
-  if (const std::string wrong = unknown_in(json, {"from", "to", "log"}, "a range"); !wrong.empty())
-    return Error{pointer, wrong};
+  if (const auto wrong = unknown_in(json, {"from", "to", "log"}, "a range")) return error_at(pointer, *wrong);
   auto span = read_span(json, pointer);
   if (!span) return span.error();
   Stream stream(seed, name);

@@ -38,7 +38,7 @@ Result<SweepAxis> read_sampled_axis(const std::string& name, const PlanJson& jso
                                     std::size_t runs, std::uint64_t seed);
 
 // Empty, or a sentence that names a key of the object which is not in `known`.
-std::string unknown_in(const PlanJson& object, const std::vector<std::string>& known, const std::string& what);
+std::optional<Note> unknown_in(const PlanJson& object, const std::vector<std::string>& known, const std::string& what);
 
 inline constexpr std::size_t kMostRuns = 100000;  // per plan: a line of about 1 kB each
 inline constexpr std::size_t kMostAxes = 64;      // per plan

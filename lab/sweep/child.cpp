@@ -54,8 +54,8 @@ Result<Child> Child::start(const std::vector<std::string>& arguments, const fs::
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const auto not_started = [](int error) {
-    return Error{"run", std::string("cannot be started: ") + std::strerror(error) +
-                            "; end other programs, or take a lower --jobs"};
+    return Error{"run", std::string("cannot be started: ") + std::strerror(error),
+                 "end other programs, or take a lower --jobs"};
   };
 
   child.said_ = ::memfd_create("pliant-said", MFD_CLOEXEC);

@@ -93,8 +93,9 @@ Result<RunResult> read_run(const fs::path& folder) {
   if (!bytes) return bytes.error();
   const PlanJson report = PlanJson::parse(bytes->begin(), bytes->end(), nullptr, false);
   const std::string ended = report.is_object() ? report.value("ended", std::string()) : std::string();
-  if (ended.empty()) return Error{"report.json", "is no report of a run; check the space left"};
-  if (ended != "done") return Error{"", ended == "interrupted" ? "interrupted by a signal; do it again" : ended};
+  if (ended.empty()) return Error{"report.json", "is no report of a run", "check the space left", "disk.full"};
+  if (ended == "interrupted") return Error{"", "interrupted by a signal", "do it again"};
+  if (ended != "done") return Error{"", ended};
   RunResult result{PlanJson::object(), PlanJson::object(), PlanJson::array()};
   result.figures["hash"] = report["hash"];
   result.figures["ticks"] = report["ticks"];
@@ -111,7 +112,7 @@ Result<RunResult> read_run(const fs::path& folder) {
   if (report.contains("soft")) add_times(report["soft"]["step_ms"], "soft_step_ms", result.timing);
   if (report.contains("soft") && report["soft"].value("time_lost_s", 0.0) > 0.0)
     result.timing["soft.time_lost_s"] = report["soft"]["time_lost_s"];
-  if (report.contains("dropped")) result.notes = report["dropped"];
+  if (report.contains("notes")) result.notes = report["notes"];
   return result;
 }
 

@@ -12,7 +12,7 @@ namespace pliant {
 struct RunResult {
   PlanJson figures;  // name -> number, and "hash"
   PlanJson timing;   // name -> number
-  PlanJson notes;    // sentences: where the run did something unexpected
+  PlanJson notes;    // as in the report: where the run did something unexpected
 };
 // Reads report.json and forces.csv in a run's folder. Figures of a probe or tool are prefixed with its name:
 // tip.max_force_N.

@@ -31,7 +31,7 @@ bool is_line(const PlanJson& json) {
   const auto text = [&](const char* key) { return json.contains(key) && json[key].is_string(); };
   const auto object = [&](const char* key) { return json.contains(key) && json[key].is_object(); };
   return json.is_object() && text("id") && text("status") && object("axes") && object("timing") &&
-         (is_done(json) ? object("figures") : text("error")) &&
+         (is_done(json) ? object("figures") : text("error")) && (!json.contains("code") || text("code")) &&
          (!json.contains("attempt") || json["attempt"].is_number_unsigned());
 }
 
@@ -59,11 +59,16 @@ std::uint64_t attempt_of(const PlanJson& line) {
   return line.contains("attempt") ? line["attempt"].get<std::uint64_t>() : 1;
 }
 
-std::vector<std::string> notes_of(const PlanJson& line) {
-  std::vector<std::string> notes;
-  if (line.contains("notes") && line["notes"].is_array())
-    for (const PlanJson& note : line["notes"])
-      if (note.is_string()) notes.push_back(note.get<std::string>());
+std::vector<Note> notes_of(const PlanJson& line) {
+  std::vector<Note> notes;
+  if (!line.contains("notes") || !line["notes"].is_array()) return notes;
+  for (const PlanJson& json : line["notes"]) {
+    if (!json.is_object()) continue;
+    const auto text = [&](const char* key) {
+      return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : std::string();
+    };
+    notes.push_back({text("what"), text("cure"), text("code"), text("of")});
+  }
   return notes;
 }
 
@@ -93,7 +98,7 @@ std::string sweep_json(const SweepPlan& plan, const ExpandedPlan& expanded) {
 Status keep_sweep(const fs::path& folder, const std::string& json, std::string& note) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) return Error{folder.string(), "cannot be created: " + error.message() + "; choose another with --out"};
+  if (error) return Error{folder.string(), "cannot be created: " + error.message(), "choose another with --out"};
   const fs::path file = folder / kSweepFile;
   for (int attempt = 0;; ++attempt) {
     if (!fs::exists(fs::symlink_status(file, error))) {
@@ -114,7 +119,7 @@ Result<PlanJson> read_sweep(const fs::path& folder) {
   const fs::path file = folder / kSweepFile;
   std::error_code no;
   if (!fs::exists(file, no))
-    return Error{folder.string(), std::string("has no ") + kSweepFile + "; name the --out folder of a `pliant sweep`"};
+    return Error{folder.string(), std::string("has no ") + kSweepFile, "name the --out folder of a `pliant sweep`"};
   const auto bytes = read_file(file);
   if (!bytes) return bytes.error();
   PlanJson json = PlanJson::parse(bytes->begin(), bytes->end(), nullptr, false);
@@ -130,7 +135,7 @@ Result<PlanJson> read_sweep(const fs::path& folder) {
     for (const PlanJson& run : json["runs"])
       sound = sound && run.is_object() && run.contains("id") && run["id"].is_string() && run.contains("values") &&
               run["values"].is_array() && run["values"].size() == json["axes"].size();
-  if (!sound) return Error{file.string(), "was not written by a sweep; move it away, or choose another --out"};
+  if (!sound) return Error{file.string(), "was not written by a sweep", "move it away, or choose another --out"};
   return json;
 }
 
@@ -138,20 +143,18 @@ Result<LineFile> LineFile::open(const fs::path& file, bool& torn) {
   LineFile out;
   out.path_ = file;
   out.file_ = ::open(file.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-  if (out.file_ < 0) return Error{file.string(), "cannot be written: " + why_not_written(errno)};
+  if (out.file_ < 0) return not_written(file.string(), "cannot be written", errno);
   const int locked = lock(out.file_);
   if (locked == EWOULDBLOCK)
-    return Error{file.string(), "another sweep adds to it; wait for it, or give each process its own --shard I/N"};
+    return Error{file.string(), "another sweep adds to it", "wait for it, or give each process its own --shard I/N"};
   if (locked != 0)
-    return Error{file.string(),
-                 std::string("cannot be locked: ") + std::strerror(locked) +
-                     "; choose an --out on a file system with locks, such as a local disk (`pliant sweep "
-                     "merge` takes several folders)"};
+    return Error{file.string(), std::string("cannot be locked: ") + std::strerror(locked),
+                 "choose an --out on a file system with locks, such as a local disk (`pliant sweep merge` takes "
+                 "several folders)"};
   const off_t size = ::lseek(out.file_, 0, SEEK_END);
   char last = '\n';
   torn = size > 0 && ::pread(out.file_, &last, 1, size - 1) == 1 && last != '\n';
-  if (torn && ::write(out.file_, "\n", 1) != 1)
-    return Error{file.string(), "cannot be written: " + why_not_written(errno)};
+  if (torn && ::write(out.file_, "\n", 1) != 1) return not_written(file.string(), "cannot be written", errno);
   return out;
 }
 
@@ -164,7 +167,7 @@ Status LineFile::add(const PlanJson& line) {
   const off_t before = ::lseek(file_, 0, SEEK_END);
   const ssize_t written = ::write(file_, text.data(), text.size());
   if (written == static_cast<ssize_t>(text.size()) && ::fsync(file_) == 0) return Done{};
-  Error error{path_.string(), "cannot be written: " + why_not_written(written < 0 ? errno : ENOSPC)};
+  Error error = not_written(path_.string(), "cannot be written", written < 0 ? errno : ENOSPC);
   if (::ftruncate(file_, before) != 0) error.what += " (its last line is not whole, and is left out)";
   return error;
 }
@@ -179,11 +182,11 @@ Status read_lines(const fs::path& folder, Lines& lines) {
       files.push_back(entry->path());
   }
   if (error && error != std::errc::no_such_file_or_directory)
-    return Error{folder.string(), "cannot be looked into: " + error.message() + "; check its permissions"};
+    return Error{folder.string(), "cannot be looked into: " + error.message(), "check its permissions"};
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     std::ifstream in(file);
-    if (!in) return Error{file.string(), "cannot be read; check its permissions"};
+    if (!in) return Error{file.string(), "cannot be read", "check its permissions"};
     for (std::string text; std::getline(in, text);) {
       PlanJson json = PlanJson::parse(text, nullptr, false);
       if (json.is_discarded() || !is_line(json)) {
@@ -197,11 +200,12 @@ Status read_lines(const fs::path& folder, Lines& lines) {
       if (is_done(json) && is_done(at->second) && ours != theirs) lines.disagree.push_back(id);
       const bool better = is_done(json) != is_done(at->second)         ? is_done(json)
                           : attempt_of(json) != attempt_of(at->second) ? attempt_of(json) > attempt_of(at->second)
-                          : ours != theirs                             ? ours < theirs
-                                                                       : notes_of(json) < notes_of(at->second);
+                          : ours != theirs
+                              ? ours < theirs
+                              : json.value("notes", PlanJson()).dump() < at->second.value("notes", PlanJson()).dump();
       if (better) at->second = std::move(json);
     }
-    if (in.bad()) return Error{file.string(), "cannot be read to its end; check the disk, or the connection to it"};
+    if (in.bad()) return Error{file.string(), "cannot be read to its end", "check the disk, or the connection to it"};
   }
   std::sort(lines.disagree.begin(), lines.disagree.end());
   lines.disagree.erase(std::unique(lines.disagree.begin(), lines.disagree.end()), lines.disagree.end());

@@ -49,7 +49,7 @@ struct Lines {
 Status read_lines(const std::filesystem::path& folder, Lines& lines);
 
 bool is_done(const PlanJson& line);
-std::uint64_t attempt_of(const PlanJson& line);           // attempt number at a failed run, from 1
-std::vector<std::string> notes_of(const PlanJson& line);  // notes of the run; none from an older sweep
+std::uint64_t attempt_of(const PlanJson& line);    // attempt number at a failed run, from 1
+std::vector<Note> notes_of(const PlanJson& line);  // notes of the run
 
 }  // namespace pliant

@@ -20,46 +20,49 @@ constexpr Limit kPlanFile{16 * limits::kMiB, "bytes", "a plan is held in memory"
 constexpr int kDeepestNesting = 16;  // a valid plan is nested at most 5 deep
 
 // Options of `pliant run` that the sweep sets itself, with the reason.
-constexpr std::pair<const char*, const char*> kRefused[] = {
-    {"--out", "is the sweep's own; runs write into a folder that goes again"},
-    {"--force", "replaces results, and a run of a sweep has a folder of its own; leave it out"},
-    {"--window", "opens a window, and a sweep's runs have none; leave it out"},
-    {"--headless", "holds for every run of a sweep; leave it out"},
-    {"--input", "needs a window, and a sweep's runs have none; leave it out"},
-    {"--realtime", "is not the same twice, and a sweep's runs are in lockstep; leave it out"},
-    {"--lockstep", "holds for every run of a sweep; leave it out"},
-    {"--record", "writes a file that the next run would replace; record one run with `pliant run`"},
-    {"--list", "runs nothing; leave it out"},
-    {"--help", "runs nothing; leave it out"},
-    {"--frames", "takes pictures, and a sweep's runs take none; leave it out"},
-    {"--fps", "takes pictures, and a sweep's runs take none; leave it out"},
-    {"--size", "is of pictures, and a sweep's runs take none; leave it out"},
-    {"--soft-store", "is the sweep's own; leave it out"},
-    {"--field", "is of pictures, and a sweep's runs take none: forces come from the CPU; leave it out"}};
+struct RefusedOption {
+  const char *name, *why, *cure;
+};
+constexpr RefusedOption kRefused[] = {
+    {"--out", "is the sweep's own", "runs write into a folder that goes again"},
+    {"--force", "replaces results, and a run of a sweep has a folder of its own", "leave it out"},
+    {"--window", "opens a window, and a sweep's runs have none", "leave it out"},
+    {"--headless", "holds for every run of a sweep", "leave it out"},
+    {"--input", "needs a window, and a sweep's runs have none", "leave it out"},
+    {"--realtime", "is not the same twice, and a sweep's runs are in lockstep", "leave it out"},
+    {"--lockstep", "holds for every run of a sweep", "leave it out"},
+    {"--record", "writes a file that the next run would replace", "record one run with `pliant run`"},
+    {"--list", "runs nothing", "leave it out"},
+    {"--help", "runs nothing", "leave it out"},
+    {"--frames", "takes pictures, and a sweep's runs take none", "leave it out"},
+    {"--fps", "takes pictures, and a sweep's runs take none", "leave it out"},
+    {"--size", "is of pictures, and a sweep's runs take none", "leave it out"},
+    {"--soft-store", "is the sweep's own", "leave it out"},
+    {"--field", "is of pictures, and a sweep's runs take none: forces come from the CPU", "leave it out"}};
 
 std::string argument(const std::string& name, const PlanJson& value) {
   return value.is_boolean() ? name : name + "=" + text_of(value);
 }
 
 // Empty, or the error of `pliant run` for this option.
-std::string wrong_option(CheckArguments check, const std::string& name, const PlanJson& value) {
+Status check_option(CheckArguments check, const std::string& name, const PlanJson& value) {
   // A value in the name would bypass the list of refused options.
   if (name.find('=') != std::string::npos || name == "--")
-    return "'" + name + "' is no name of an option; write the name alone, and its value behind the colon";
-  for (const auto& [refused, why] : kRefused)
-    if (name == refused) return std::string("the option ") + refused + " " + why;
+    return Error{"", "'" + name + "' is no name of an option", "write the name alone, and its value behind the colon"};
+  for (const auto& [refused, why, cure] : kRefused)
+    if (name == refused) return Error{"", std::string("the option ") + refused + " " + why, cure};
   if (value.is_object() || value.is_array() || value.is_null())
-    return "must be a number, a text, true or false; got " + brief(value);
-  const Status parsed = check({argument(name, value)});
-  return parsed ? std::string() : parsed.error().what;
+    return Error{"", "must be a number, a text, true or false; got " + brief(value)};
+  return check({argument(name, value)});
 }
 
 Error syntax_error(const fs::path& file, const std::string& text, std::size_t byte) {
   const std::size_t end = std::min(byte ? byte - 1 : 0, text.size());
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
   const std::size_t start = end ? text.rfind('\n', end - 1) : std::string::npos;
-  return {file.string(), fmt::format("is no JSON at line {}, column {}; check brackets, commas and quotes there", line,
-                                     end - (start == std::string::npos ? 0 : start + 1) + 1)};
+  return {file.string(),
+          fmt::format("is no JSON at line {}, column {}", line, end - (start == std::string::npos ? 0 : start + 1) + 1),
+          "check brackets, commas and quotes there"};
 }
 
 Result<PlanJson> parse(const fs::path& file) {
@@ -80,13 +83,14 @@ Result<PlanJson> parse(const fs::path& file) {
   };
   try {
     PlanJson json = PlanJson::parse(text, look);
-    if (deep) return Error{file.string(), "is nested deeper than any plan; see docs/sweep.md"};
+    if (deep) return Error{file.string(), "is nested deeper than any plan", "see docs/sweep.md"};
     if (wide)
-      return Error{file.string(), fmt::format("has an object with more than {} keys; see docs/sweep.md", kMostKeys)};
+      return Error{file.string(), fmt::format("has an object with more than {} keys", kMostKeys), "see docs/sweep.md"};
     if (!twice.empty())
-      return Error{file.string(), fmt::format("has the key \"{}\" twice in one object; leave one of them out", twice)};
+      return Error{file.string(), fmt::format("has the key \"{}\" twice in one object", twice),
+                   "leave one of them out"};
     if (!json.is_object())
-      return Error{file.string(), "is no JSON object; give it \"level\" and \"axes\" (docs/sweep.md)"};
+      return Error{file.string(), "is no JSON object", "give it \"level\" and \"axes\" (docs/sweep.md)"};
     return json;
   } catch (const PlanJson::parse_error& error) {
     return syntax_error(file, text, error.byte);
@@ -94,9 +98,10 @@ Result<PlanJson> parse(const fs::path& file) {
     // The library's message ends with the number in quotes.
     const std::string said = error.what();
     const std::size_t quote = said.find('\'');
-    return Error{file.string(), "has a number that no computer's number holds" +
-                                    (quote == std::string::npos ? "" : ": " + said.substr(quote, 40)) +
-                                    "; write one below 1e308"};
+    return Error{file.string(),
+                 "has a number that no computer's number holds" +
+                     (quote == std::string::npos ? "" : ": " + said.substr(quote, 40)),
+                 "write one below 1e308"};
   }
 }
 
@@ -106,24 +111,23 @@ class Reader {
   Reader(const PlanJson& json, SweepPlan& plan, CheckArguments check) : json_(json), plan_(plan), check_(check) {}
 
   Status read() {
-    if (const std::string wrong =
-            unknown_in(json_, {"level", "options", "axes", "latin_hypercube", "timeout_s", "keep", "about"}, "a plan");
-        !wrong.empty())
-      return Error{"", wrong};
+    if (const auto wrong =
+            unknown_in(json_, {"level", "options", "axes", "latin_hypercube", "timeout_s", "keep", "about"}, "a plan"))
+      return error_at("", *wrong);
     for (const auto part :
          {&Reader::level, &Reader::options, &Reader::axes, &Reader::hypercube, &Reader::timeout, &Reader::keep})
       if (Status ok = (this->*part)(); !ok) return ok;
     if (plan_.axes.empty())
-      return Error{"", "varies nothing; give \"axes\" or \"latin_hypercube\", or use `pliant run`"};
+      return Error{"", "varies nothing", "give \"axes\" or \"latin_hypercube\", or use `pliant run`"};
     return Done{};
   }
 
  private:
   Status level() {
-    if (!json_.contains("level")) return Error{"", "has no \"level\"; name a file or a shipped level"};
+    if (!json_.contains("level")) return Error{"", "has no \"level\"", "name a file or a shipped level"};
     if (!json_["level"].is_string()) return Error{"/level", "must be a text; got " + brief(json_["level"])};
     const auto name = json_["level"].get<std::string>();
-    if (name.empty()) return Error{"/level", "its name is empty; name a file or a shipped level"};
+    if (name.empty()) return Error{"/level", "its name is empty", "name a file or a shipped level"};
     std::error_code no;
     if (const fs::path beside = plan_.file.parent_path() / name; fs::is_regular_file(beside, no)) {
       plan_.level = beside;
@@ -143,13 +147,13 @@ class Reader {
       const std::string name = "--" + key, at = "/options/" + escaped(key);
       const bool many = name == "--set" || name == "--probe";
       if (many && value.size() > kMostKeys)
-        return Error{at, fmt::format("has more than {} texts; leave some out", kMostKeys)};
+        return Error{at, fmt::format("has more than {} texts", kMostKeys), "leave some out"};
       if (many && !value.is_array()) return Error{at, "must be a list of texts; got " + brief(value)};
       for (std::size_t i = 0; i < (many ? value.size() : 1); ++i) {
         const PlanJson& one = many ? value[i] : value;
         const std::string where = many ? at + "/" + std::to_string(i) : at;
         if (many && !one.is_string()) return Error{where, "must be a text; got " + brief(one)};
-        if (const std::string wrong = wrong_option(check_, name, one); !wrong.empty()) return Error{where, wrong};
+        if (const Status fine = check_option(check_, name, one); !fine) return fine.error().at(where);
         if (one.is_boolean() && !one.get<bool>()) continue;
         plan_.options.emplace_back(name, one.is_boolean() ? "" : text_of(one));
       }
@@ -163,15 +167,15 @@ class Reader {
   Status check_name(const std::string& name, const std::string& pointer) {
     for (const SweepAxis& axis : plan_.axes)
       if (axis.name == name)
-        return Error{pointer, "`" + name + "` is an axis already (" + axis.pointer + "); leave one of them out"};
+        return Error{pointer, "`" + name + "` is an axis already (" + axis.pointer + ")", "leave one of them out"};
     for (const auto& [option, value] : plan_.options)
       if (option == name && name != "--probe")
-        return Error{pointer, "`" + name + "` stands in /options too; leave it out there"};
-    if (name == "--set") return Error{pointer, "is no axis; name the key itself: NODE.EXTENSION.KEY"};
+        return Error{pointer, "`" + name + "` stands in /options too", "leave it out there"};
+    if (name == "--set") return Error{pointer, "is no axis", "name the key itself: NODE.EXTENSION.KEY"};
     if (name == "--threads")
-      return Error{pointer, "is no axis: it changes no result, so that its runs are one; give it in \"options\""};
+      return Error{pointer, "is no axis: it changes no result, so that its runs are one", "give it in \"options\""};
     if (name.find('=') != std::string::npos)
-      return Error{pointer, "has '=' in its name; write the name alone, and its values behind the colon"};
+      return Error{pointer, "has '=' in its name", "write the name alone, and its values behind the colon"};
     return Done{};
   }
 
@@ -179,23 +183,23 @@ class Reader {
   Status check_count(const std::string& pointer, std::size_t more_axes, std::size_t times) {
     const std::size_t axes = plan_.axes.size() + more_axes, runs = plan_.count() * times;
     if (axes > kMostAxes)
-      return Error{pointer,
-                   fmt::format("makes {} axes, and a plan has at most {}; leave some out, or make several plans", axes,
-                               kMostAxes)};
+      return Error{pointer, fmt::format("makes {} axes, and a plan has at most {}", axes, kMostAxes),
+                   "leave some out, or make several plans"};
     if (runs > kMostRuns)
-      return Error{pointer,
-                   fmt::format("makes more than {} runs of the plan; take fewer values, or fewer samples", kMostRuns)};
+      return Error{pointer, fmt::format("makes more than {} runs of the plan", kMostRuns),
+                   "take fewer values, or fewer samples"};
     if (axes * runs > kMostValues)
-      return Error{pointer, fmt::format("makes {} runs of {} axes, more than {} values in all; take fewer of either",
-                                        runs, axes, kMostValues)};
+      return Error{pointer,
+                   fmt::format("makes {} runs of {} axes, more than {} values in all", runs, axes, kMostValues),
+                   "take fewer of either"};
     return Done{};
   }
 
   Status add(Result<SweepAxis> axis) {
     if (!axis) return axis.error();
     for (std::size_t i = 0; axis->is_option() && i < axis->values.size(); ++i)
-      if (const std::string wrong = wrong_option(check_, axis->name, axis->values[i]); !wrong.empty())
-        return Error{axis->pointer + (axis->sampled ? "" : "/" + std::to_string(i)), wrong};
+      if (const Status fine = check_option(check_, axis->name, axis->values[i]); !fine)
+        return fine.error().at(axis->pointer + (axis->sampled ? "" : "/" + std::to_string(i)));
     plan_.axes.push_back(std::move(axis).value());
     return Done{};
   }
@@ -216,7 +220,7 @@ class Reader {
 
   Result<std::uint64_t> whole(const PlanJson& object, const std::string& key, double low, double high) {
     const std::string at = "/latin_hypercube/" + key;
-    if (!object.contains(key)) return Error{"/latin_hypercube", "has no \"" + key + "\"; give it a whole number"};
+    if (!object.contains(key)) return Error{"/latin_hypercube", "has no \"" + key + "\"", "give it a whole number"};
     const PlanJson value = canonical(object[key]);
     if (!value.is_number_integer() || value.get<double>() < low || value.get<double>() > high)
       return Error{at, fmt::format("must be a whole number between {} and {}; got {}", low, high, brief(object[key]))};
@@ -229,13 +233,12 @@ class Reader {
     const std::string at = "/latin_hypercube";
     if (!cube.is_object())
       return Error{at, "must be an object with \"runs\", \"seed\" and \"axes\"; got " + brief(cube)};
-    if (const std::string wrong = unknown_in(cube, {"runs", "seed", "axes"}, "latin_hypercube"); !wrong.empty())
-      return Error{at, wrong};
+    if (const auto wrong = unknown_in(cube, {"runs", "seed", "axes"}, "latin_hypercube")) return error_at(at, *wrong);
     const auto runs = whole(cube, "runs", 2, kMostRuns), seed = whole(cube, "seed", 0, 0x1p53);
     if (!runs) return runs.error();
     if (!seed) return seed.error();
     if (!cube.contains("axes") || !cube["axes"].is_object() || cube["axes"].empty())
-      return Error{at, "has no \"axes\"; name keys or options, each with {\"from\", \"to\"}"};
+      return Error{at, "has no \"axes\"", "name keys or options, each with {\"from\", \"to\"}"};
     if (Status ok = check_count(at, cube["axes"].size(), *runs); !ok) return ok;
     plan_.samples = *runs;
     for (const auto& [name, range] : cube["axes"].items()) {
@@ -344,7 +347,7 @@ Result<SweepPlan> read_plan(const fs::path& file, CheckArguments check) {
   if (!json) return json.error();
   if (const Status ok = Reader(*json, plan, check).read(); !ok) {
     const std::string& pointer = ok.error().where;
-    return Error{file.string() + (pointer.empty() ? "" : " " + pointer), ok.error().what};
+    return ok.error().at(file.string() + (pointer.empty() ? "" : " " + pointer));
   }
   return plan;
 }

@@ -116,11 +116,10 @@ Status try_arguments(const Level& level, bool bare, const std::vector<std::strin
     auto source = parse_source(argument.substr(std::string_view(kProbePath).size()));
     if (!source) return source.error();
     if (source->driver == DriverKind::kMouse)
-      return Error{argument, "needs a window, and a sweep's runs have none; use orbit or script:FILE.csv"};
+      return Error{argument, "needs a window, and a sweep's runs have none", "use orbit or script:FILE.csv"};
     if (!source->device.empty())
-      return Error{argument,
-                   "is moved by a hand, never the same twice; record it with `pliant run --record FILE`, and give the "
-                   "option \"replay\""};
+      return Error{argument, "is moved by a hand, never the same twice",
+                   "record it with `pliant run --record FILE`, and give the option \"replay\""};
     sources.push_back(*source);
   }
   if (bare && sources.empty()) sources.push_back({"probe", DriverKind::kOrbit, {}});

@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 #include <thread>
 
 #include "content/files/file_io.h"
+#include "lab/console/exit.h"
 #include "lab/console/progress.h"
 #include "lab/sweep/child.h"
 #include "lab/sweep/figures.h"
@@ -33,7 +35,7 @@ class WorkFolder {
     work.path_ = fs::absolute(folder) / (begin + std::to_string(::getpid()));
     error.clear();
     if (!fs::create_directory(work.path_, error))
-      return Error{folder.string(), "cannot be written to: " + error.message() + "; choose another with --out"};
+      return Error{folder.string(), "cannot be written to: " + error.message(), "choose another with --out"};
     return work;
   }
   WorkFolder(WorkFolder&& other) noexcept : path_(std::move(other.path_)) { other.path_.clear(); }
@@ -58,21 +60,22 @@ struct Slot {
 // Removes the plan's location from sentences, so that they are the same everywhere.
 PlanJson without_folder(PlanJson notes, const fs::path& folder) {
   const std::string begin = folder.string() + "/";
-  for (PlanJson& note : notes) {
-    if (!note.is_string()) continue;
-    auto text = note.get<std::string>();
-    for (std::size_t at = 0; (at = text.find(begin, at)) != std::string::npos;) text.erase(at, begin.size());
-    note = std::move(text);
-  }
+  for (PlanJson& note : notes)
+    for (PlanJson& part : note) {
+      if (!part.is_string()) continue;
+      auto text = part.get<std::string>();
+      for (std::size_t at = 0; (at = text.find(begin, at)) != std::string::npos;) text.erase(at, begin.size());
+      part = std::move(text);
+    }
   return notes;
 }
 
-// Empty, or the reason of the failure.
-std::string keep_curve(const fs::path& run, const fs::path& curve) {
+Status keep_curve(const fs::path& run, const fs::path& curve) {
   std::error_code error;
   fs::create_directory(curve.parent_path(), error);
   if (!error) fs::rename(run / "forces.csv", curve, error);
-  return error ? curve.string() + ": cannot be put in place: " + error.message() + "; check the folder" : "";
+  if (error) return not_written(curve.string(), "cannot be put in place", error.value());
+  return Done{};
 }
 
 // True if the folder's disk has no room for a run's results.
@@ -88,26 +91,29 @@ PlanJson line_of(const SweepPlan& plan, const SweepRun& run, const Child& child,
   PlanJson line{{"id", run.id}, {"status", "done"}, {"axes", PlanJson::object()}};
   for (std::size_t i = 0; i < plan.axes.size(); ++i) line["axes"][plan.axes[i].name] = run.values[i];
   PlanJson timing = PlanJson::object();
-  std::string error;
+  std::optional<Error> error;
   if (child.succeeded()) {
     auto result = read_run(child.folder() / "out");
     if (result) {
       line["figures"] = std::move(result->figures);
       line["notes"] = without_folder(std::move(result->notes), run_folder(plan));
       timing = std::move(result->timing);
-      if (plan.keep_curves) error = keep_curve(child.folder() / "out", curve_of(folder, run.id));
+      if (plan.keep_curves)
+        if (const Status kept = keep_curve(child.folder() / "out", curve_of(folder, run.id)); !kept)
+          error = kept.error();
     } else {
-      error = result.error().message();
+      error = result.error();
     }
   } else {
-    error = child.complaint();
+    error = Error{"", child.complaint(), "", child.exit_status() == kNoRoom ? kDiskFull : ""};
   }
-  if (!error.empty()) {
+  if (error) {
     line.erase("figures");
     line.erase("notes");
     line["status"] = child.timed_out() ? "timed out" : "failed";
     line["exit"] = child.exit_status() ? PlanJson(*child.exit_status()) : PlanJson();
-    line["error"] = error;
+    line["error"] = error->message();
+    if (!error->code.empty()) line["code"] = error->code;
     if (const auto earlier = before.runs.find(run.id); earlier != before.runs.end())
       line["attempt"] = attempt_of(earlier->second) + 1;
   }
@@ -174,9 +180,10 @@ Result<RunsDone> do_runs(const SweepPlan& plan, const ExpandedPlan& expanded, co
       const PlanJson line = line_of(plan, run, slots[i].child, before, folder);
       // A full disk is not a failure of the run: it is repeated when there is room.
       if (!is_done(line) && !interrupt.requested())
-        if (const auto why = line["error"].get<std::string>(); wants_room(why) || is_full(folder))
-          return Error{folder.string(), "run " + run.id + " could not write its results (" + why +
-                                            "); with more room the same command goes on with it"};
+        if (line.value("code", std::string()) == kDiskFull || is_full(folder))
+          return Error{folder.string(),
+                       "run " + run.id + " could not write its results (" + line["error"].get<std::string>() + ")",
+                       "with more room the same command goes on with it"};
       // A batch system may signal the sweep and its runs together: a run ended by that signal is repeated.
       if (is_done(line) || !interrupt.requested()) {
         if (Status ok = lines.add(line); !ok) return ok.error();

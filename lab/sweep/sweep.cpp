@@ -21,10 +21,10 @@ struct Work {
   std::size_t without_curve = 0;               // completed, but to be repeated for their curves
 };
 
-// A run ended by a full disk has not failed: older sweeps wrote a line for it.
+// A run ended by a full disk has not failed.
 State state_of(const PlanJson& line) {
   if (is_done(line)) return State::kDone;
-  return wants_room(line["error"].get<std::string>()) ? State::kToDo : State::kFailed;
+  return line.value("code", std::string()) == kDiskFull ? State::kToDo : State::kFailed;
 }
 
 // `curves`: the folder of kept curves; empty: curves are not kept.
@@ -115,15 +115,17 @@ int report(const fs::path& folder, const Work& work, const RunsDone& done, const
         done.failed ? "; the lines say why, --retry-failed does them again" : "",
         left ? "" : "; `pliant sweep merge` makes tables and plots of them");
   if (!interrupt.requested()) return kDone;
-  return fail(kFailed, {"sweep", std::to_string(left) + " runs are left of " + std::to_string(work.wanted.size()) +
-                                     ": interrupted; the same command goes on with them"});
+  return fail(
+      kFailed,
+      {"sweep", std::to_string(left) + " runs are left of " + std::to_string(work.wanted.size()) + ": interrupted",
+       "the same command goes on with them"});
 }
 
 }  // namespace
 
 int sweep(const SweepOptions& options) {
   if (options.plan.empty())
-    return fail(kUsage, {"sweep", "say which plan, or `merge`; see `pliant sweep --help` and docs/sweep.md"});
+    return fail(kUsage, {"sweep", "say which plan, or `merge`", "see `pliant sweep --help` and docs/sweep.md"});
   const auto shard = choose_shard(options.shard, [](const char* name) { return std::getenv(name); });
   if (!shard) return fail(kUsage, shard.error());
   const auto plan = read_plan(options.plan, options.check);

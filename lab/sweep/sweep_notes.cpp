@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <unordered_map>
@@ -14,36 +13,38 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kNamedNotes = 12;  // most notes printed; the report has all
+constexpr const char* kUntouched = "run.untouched";  // code of a probe or tool without contact
+constexpr std::size_t kNamedNotes = 12;              // most notes printed; the report has all
 
-// A limit: its figure, and the words that identify a run's sentence about it.
+// A limit: its figure, and the codes of a run's notes about it.
 struct LimitKind {
-  const char *key, *figure;  // figure: a suffix if it begins with a dot
-  const char *what, *cure, *mark;
+  const char *key, *figure;  // figure: of the soft clock if it begins with "soft.", else a suffix
+  const char *what, *cure;
+  const char *code, *of_torque = "";
 };
 constexpr LimitKind kLimits[] = {
     {"clipped", "clipped_ticks", "a force was clipped", "raise max_force or max_torque where the device can render it",
-     " was clipped at "},
+     "force.clipped", "torque.clipped"},
     {"withheld", "withheld_ticks", "a force was damped, because the hand would have got more energy than it gave",
-     "raise --rate, or refine and smooth the mesh where it is touched", " was damped in "},
+     "raise --rate, or refine and smooth the mesh where it is touched", "force.withheld", "torque.withheld"},
     {"gated", "gated_ticks", "no force was sent until the safety gate opened", "start outside the object",
-     "the safety gate opens once"},
+     "force.gated", "torque.gated"},
     {"slewed", "slewed_ticks", "a force changed faster than max_slew or max_stiffness let it",
-     "move slower, or raise them where the device can render it", " changed faster than "},
+     "move slower, or raise them where the device can render it", "force.slewed", "torque.slewed"},
     {"late", "late_ticks", "a tool's contacts were not solved within the budget of a tick",
-     "lower --rate, or use --tool-force linear", "exceeded its time budget"},
+     "lower --rate, or use --tool-force linear", "tool.late"},
     {"stale", "stale_ticks", "a tool's force faded, because its model was older than three soft steps",
-     "lower --rate, make `cell` larger, or make soft_step longer", "its model was older than"},
+     "lower --rate, make `cell` larger, or make soft_step longer", "tool.stale"},
     {"contacts_cut", "soft.contacts_cut", "contacts were dropped because a soft step was full",
-     "press with a smaller area, or coarsen the meshes in contact", "dropped because a soft step was full"},
+     "press with a smaller area, or coarsen the meshes in contact", "soft.contacts_cut"},
     {"halted", "soft.halted_s", "bodies were stopped, because they would have passed through each other",
-     "make soft_step shorter, or press more slowly", "bodies were stopped for"},
+     "make soft_step shorter, or press more slowly", "soft.halted"},
     {"unconverged", "soft.unconverged", "soft steps ended unconverged",
-     "make soft_step shorter, or give bodies in contact more similar masses and stiffnesses", "ended unconverged"},
+     "make soft_step shorter, or give bodies in contact more similar masses and stiffnesses", "soft.unconverged"},
     {"began_inside", "soft.began_inside_m", "bodies began inside each other", "move one of them in the level",
-     "inside each other and are pushed apart"},
+     "soft.began_inside"},
     {"time_lost", "soft.time_lost_s", "the soft clock did not keep up", "make `cell` larger or soft_step longer",
-     "the soft clock did not keep up"},
+     "soft.time_lost"},
 };
 
 double number_in(const PlanJson& figures, const std::string& name) {
@@ -92,45 +93,32 @@ void find_limits(const SweepTable& table, SweepNotes& out) {
   }
 }
 
-// The sentence without its numbers: runs report the same with other numbers.
-std::string without_numbers(const std::string& sentence) {
-  std::string out;
-  const char *at = sentence.data(), *const end = at + sentence.size();
-  while (at != end) {
-    double ignored = 0.0;
-    if (*at >= '0' && *at <= '9') {
-      at = std::max(std::from_chars(at, end, ignored).ptr, at + 1);
-      out += '#';
-    } else {
-      out += *at++;
-    }
-  }
-  return out;
-}
-
-bool is_limit(const std::string& sentence) {
-  return std::any_of(std::begin(kLimits), std::end(kLimits),
-                     [&](const LimitKind& kind) { return sentence.find(kind.mark) != std::string::npos; });
+bool is_limit(const std::string& code) {
+  return !code.empty() && std::any_of(std::begin(kLimits), std::end(kLimits), [&](const LimitKind& kind) {
+    return code == kind.code || code == kind.of_torque;
+  });
 }
 
 void find_other_notes(const SweepTable& table, SweepNotes& out) {
-  std::map<std::string, std::size_t> known;  // sentence without its numbers -> index in out.notes
+  std::map<std::pair<std::string, std::string>, std::size_t> known;  // (code, of) -> index in out.notes
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     if (!table.rows[row].done()) continue;
     std::vector<std::size_t> here;
-    for (const std::string& sentence : notes_of(table.rows[row].line)) {
-      if (is_limit(sentence)) continue;
-      const auto [place, is_new] = known.try_emplace(without_numbers(sentence), out.notes.size());
-      if (is_new) out.notes.push_back({sentence, 0, row});
+    for (Note& note : notes_of(table.rows[row].line)) {
+      if (is_limit(note.code)) continue;
+      // A note without a code is another one wherever its sentence is.
+      const std::pair key =
+          note.code.empty() ? std::pair(std::string(), note.message()) : std::pair(note.code, note.of);
+      const auto [place, is_new] = known.try_emplace(key, out.notes.size());
+      if (is_new) out.notes.push_back({std::move(note), 0, row});
       if (std::find(here.begin(), here.end(), place->second) != here.end()) continue;
       here.push_back(place->second);
       ++out.notes[place->second].runs;
     }
   }
   // Runs without contact are counted separately.
-  std::erase_if(out.notes, [&](const SweepNote& note) {
-    return note.runs <= out.untouched && note.sentence.find("never touched anything") != std::string::npos;
-  });
+  std::erase_if(out.notes,
+                [&](const SweepNote& each) { return each.runs <= out.untouched && each.note.code == kUntouched; });
   std::stable_sort(out.notes.begin(), out.notes.end(),
                    [](const SweepNote& a, const SweepNote& b) { return a.runs > b.runs; });
 }
@@ -210,7 +198,7 @@ std::vector<std::string> sentences_of(const SweepNotes& notes, const SweepTable&
     out.push_back(fmt::format("{} {} ({}: {}); {}", in_runs(limit.runs), limit.what, worst_words(limit),
                               run_words(table, limit.row), limit.cure));
   for (std::size_t i = 0; i < std::min(notes.notes.size(), kNamedNotes); ++i)
-    out.push_back(in_runs(notes.notes[i].runs) + ": " + notes.notes[i].sentence);
+    out.push_back(in_runs(notes.notes[i].runs) + ": " + notes.notes[i].note.message());
   if (notes.notes.size() > kNamedNotes)
     out.push_back(
         fmt::format("the runs have {} more notes; report.json of a merge has them", notes.notes.size() - kNamedNotes));
@@ -232,8 +220,12 @@ void add_notes(const SweepNotes& notes, const SweepTable& table, PlanJson& repor
         {"runs", limit.runs}, {"worst", limit.worst}, {"figure", limit.figure}, {"id", table.rows[limit.row].id}};
   }
   report["notes"] = PlanJson::array();
-  for (const SweepNote& note : notes.notes)
-    report["notes"].push_back({{"sentence", note.sentence}, {"runs", note.runs}, {"id", table.rows[note.row].id}});
+  for (const SweepNote& each : notes.notes) {
+    report["notes"].push_back(
+        {{"sentence", each.note.message()}, {"runs", each.runs}, {"id", table.rows[each.row].id}});
+    if (!each.note.code.empty()) report["notes"].back()["code"] = each.note.code;
+    if (!each.note.of.empty()) report["notes"].back()["of"] = each.note.of;
+  }
   report["idle_axes"] = notes.idle_axes;
 }
 

@@ -1,5 +1,5 @@
 // Summary of a sweep's notes. For each limit: the number of runs in which it acted and its worst value. Every other
-// note once for all runs with the same sentence. Axes that have no effect.
+// note once for all runs that have one of the same code and object. Axes that have no effect.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct SweepLimit {
 };
 
 struct SweepNote {
-  std::string sentence;  // from the first run with this note; other runs have other numbers
+  Note note;  // of the first run with it; other runs have other numbers
   std::size_t runs = 0;
   std::size_t row = 0;  // index of that run
 };

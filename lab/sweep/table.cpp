@@ -18,6 +18,12 @@ void add_names(const PlanJson& object, std::vector<std::string>& names, std::set
     if (known.insert(name).second) names.push_back(name);
 }
 
+std::string notes_text(const PlanJson& line) {
+  std::string text;
+  for (const Note& note : notes_of(line)) text += (text.empty() ? "" : " | ") + note.message();
+  return text;
+}
+
 std::string csv(const SweepTable& table, const char* part, const std::vector<std::string>& names, bool with_status) {
   std::string text = "id";
   for (const SweepAxis& axis : table.axes) text += "," + csv_text(axis.name);
@@ -33,7 +39,7 @@ std::string csv(const SweepTable& table, const char* part, const std::vector<std
       text += ",";
       if (row.line.contains(part) && row.line[part].contains(name)) text += csv_text(text_of(row.line[part][name]));
     }
-    if (with_status) text += "," + csv_text(fmt::format("{}", fmt::join(notes_of(row.line), " | ")));
+    if (with_status) text += "," + csv_text(notes_text(row.line));
     text += "\n";
   }
   return text;
@@ -75,8 +81,8 @@ Result<SweepTable> read_table(const std::vector<std::filesystem::path>& folders)
     if (table.sweep.is_null())
       table.sweep = std::move(sweep).value();
     else if (table.sweep != *sweep)
-      return Error{folder.string(), "is of another plan, level or version than " + folders.front().string() +
-                                        "; merge those of one plan"};
+      return Error{folder.string(), "is of another plan, level or version than " + folders.front().string(),
+                   "merge those of one plan"};
     if (Status read = read_lines(folder, lines); !read) return read.error();
   }
   for (const PlanJson& axis : table.sweep["axes"]) {

@@ -243,17 +243,18 @@ RunFigures LevelRun::figures(std::uint64_t hash) {
                      {},
                      wrong_                   ? sentence_of(kFailed, *wrong_)
                      : interrupt_.requested() ? "interrupted"
-                                              : "done"};
+                                              : "done",
+                     run_.replay.has_value()};
   devices_.view(figures.devices);
   return figures;
 }
 
 // Findings of the run, for stderr and the report.
 void LevelRun::add_findings(RunFigures& figures) {
-  std::vector<std::string> sentences;
+  std::vector<Note> notes;
   try {
-    sentences = explain_run(figures, devices_);
-    for (std::string& sentence : devices_.findings()) sentences.push_back(std::move(sentence));
+    notes = explain_run(figures, devices_);
+    for (Note& found : devices_.findings()) notes.push_back(std::move(found));
   } catch (const std::exception& error) {  // the figures are written without them
     figures.misses.resize(journal_->probes().size());
     take(explain(error));
@@ -262,22 +263,22 @@ void LevelRun::add_findings(RunFigures& figures) {
   const auto due = static_cast<std::size_t>(std::lower_bound(frame_ticks_.begin(), frame_ticks_.end(), reached) -
                                             frame_ticks_.begin());
   if (ran_.pictures < due && !wrong_)
-    sentences.push_back(fmt::format(
-        "{} of {} pictures were not taken because drawing is slower than the run; take fewer or smaller ones",
-        due - ran_.pictures, due));
+    notes.push_back({fmt::format("{} of {} pictures were not taken because drawing is slower than the run",
+                                 due - ran_.pictures, due),
+                     "take fewer or smaller ones",
+                     "run.pictures_missed",
+                     {}});
   const std::uint64_t rows = journal_->ticks() * journal_->probes().size();
   for (const auto& [lost, file] :
        {std::pair(rows - std::min(rows, keeper_->rows()), "forces.csv"), {bodies_ ? bodies_->lost() : 0, "bodies.csv"}})
     if (lost > 0)
-      sentences.push_back(
-          fmt::format("{} rows of {} were lost because the disk was too slow; use a faster disk, a lower --rate or "
-                      "fewer pictures",
-                      lost, file));
-  for (const std::string& sentence : sentences) {
-    note(sentence);
-    figures.dropped.push_back(sentence);
+      notes.push_back({fmt::format("{} rows of {} were lost because the disk was too slow", lost, file),
+                       "use a faster disk, a lower --rate or fewer pictures", "run.rows_lost", file});
+  for (const Note& found : notes) {
+    note(found.message());
+    figures.notes.push_back(found);
   }
-  figures.dropped.insert(figures.dropped.end(), run_.notes.begin(), run_.notes.end());
+  figures.notes.insert(figures.notes.end(), run_.notes.begin(), run_.notes.end());
 }
 
 // A picture is stuck: its thread still uses the window and the world.

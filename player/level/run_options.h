@@ -1,13 +1,14 @@
 // The options of `pliant run`.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace pliant {
 
 struct RunOptions {
-  double unit = 1.0;                // [m] unit of a bare mesh
+  std::optional<double> unit;       // [m] unit of a bare mesh; empty: not said
   bool list = false;                // only list the shipped levels
   std::string level;                // file, name of a shipped level, or empty: the demo level
   std::vector<std::string> probes;  // NAME=SOURCE

@@ -16,9 +16,9 @@
 #include "content/safety_cap.h"
 #include "engine/choice/model_choice.h"
 #include "engine/run/driver_limits.h"
-#include "engine/run/scene_hash.h"
 #include "engine/run/sources.h"
 #include "lab/files/content_folder.h"
+#include "player/level/run_replay.h"
 #include "player/run/unfelt.h"
 #include "systems/device/hands.h"
 #include "systems/device/repeat.h"
@@ -33,20 +33,6 @@ namespace {
 constexpr const char* kNeedsWindow =
     "needs a window, and none is open; set DISPLAY and leave out --headless and --lockstep, or use orbit";
 constexpr const char *kUnitSetting = "--unit=", *kErrorSetting = "--error=";  // in a recording's settings
-
-// Checks that the recording belongs to this level: same name, rate and probes.
-Outcome check_replay(const Recording& replay, const RunOptions& options, const World& world) {
-  if (replay.header.level != world.name)
-    return failed({options.replay, "was recorded on level '" + replay.header.level + "'; run it on that level"});
-  std::vector<std::string> names;
-  for (const Entity hand : hands(world)) {
-    const Name* name = world.registry.find<Name>(hand);
-    names.push_back(name ? name->value : std::string());
-  }
-  if (names != replay.header.probes)
-    return failed({options.replay, "was recorded with other probes than the level has; record it again"});
-  return {};
-}
 
 // The default probe of a window: without --probe and without a mouse probe in the level, the mouse gets one. Not if
 // there is a tool, which the mouse carries instead (viewer/hand/carrier.h).
@@ -68,8 +54,8 @@ void say_added(const RunOptions& options, const Level& level, Prepared& run) {
     const std::string name = argument.substr(0, argument.find('='));
     if (names.empty() || std::find(names.begin(), names.end(), name) != names.end()) continue;
     const std::string near = suggestion(name, names);
-    say(run, fmt::format("--probe {}: the level has no probe or tool of that name, so one was added{}", name,
-                         near.empty() ? fmt::format("; it has: {}", fmt::join(names, ", ")) : near));
+    say(run, Note{fmt::format("--probe {}: the level has no probe or tool of that name, so one was added", name),
+                  near.empty() ? fmt::format("it has: {}", fmt::join(names, ", ")) : near, "run.probe_added", name});
   }
 }
 
@@ -128,11 +114,11 @@ Outcome refuse_requests(bool windowed, const Level& level, Prepared& run) {
     return device.driver != DriverKind::kExternal || device.id != asked.request.allowed;
   });
   for (const LevelRequest& asked : run.refused) {
-    const std::string where = "`" + asked.moves + "`";
+    const std::string where = "`" + asked.moves + "`", code = "device.refused";
     const std::string what =
         "the level asks for more than it may: " + fmt::format("{}", fmt::join(asked.request.refused, "; "));
-    if (asked.request.allowed.empty() && !windowed) return failed({where, what + "; " + device_cure(asked)});
-    say(run, where + ": " + what + "; " + (windowed ? "the window asks you" : device_cure(asked)));
+    if (asked.request.allowed.empty() && !windowed) return failed({where, what, device_cure(asked), code});
+    say(run, Note{where + ": " + what, windowed ? "the window asks you" : device_cure(asked), code, asked.moves});
   }
   return {};
 }
@@ -171,9 +157,9 @@ void say_unmoved(bool windowed, Prepared& run) {
     if (!mouse && (device->driver != DriverKind::kExternal || run.hands.moves(hand))) continue;
     const Name* name = run.world.registry.find<Name>(hand);
     const std::string its = name ? name->value : std::string();
-    say(run,
-        fmt::format("nothing moves `{}`: its driver `{}` {}; give it --probe {}=orbit", its, word_of(device->driver),
-                    mouse ? "needs a window" : "is for programs that embed the engine", its));
+    say(run, Note{fmt::format("nothing moves `{}`: its driver `{}` {}", its, word_of(device->driver),
+                              mouse ? "needs a window" : "is for programs that embed the engine"),
+                  fmt::format("give it --probe {}=orbit", its), "run.unmoved", its});
   }
 }
 
@@ -193,30 +179,31 @@ void keep_one_mouse(const std::vector<ProbeSource>& sources, Prepared& run) {
   });
   for (std::size_t i = 1; i < moved.size(); ++i) {
     moved[i].second->driver = DriverKind::kExternal;
-    say(run, fmt::format("there is one mouse, and it moves `{}`; nothing moves `{}`; give it --probe {}=orbit",
-                         moved[0].first, moved[i].first, moved[i].first));
+    say(run,
+        Note{fmt::format("there is one mouse, and it moves `{}`; nothing moves `{}`", moved[0].first, moved[i].first),
+             fmt::format("give it --probe {}=orbit", moved[i].first), "run.unmoved", moved[i].first});
   }
 }
 
 // One note for all surfaces that settle so slowly that their damping was changed.
 void say_creeping(Prepared& run) {
   std::size_t more = 0;
-  std::string sentence;
+  std::optional<Note> found;
   for (auto [entity, deformable] : run.world.registry.view<const Deformable>()) {
     const double ratio = damping_of(deformable);
     if (!(ratio > deformable.damping_ratio)) continue;
-    if (!sentence.empty()) {
+    if (found) {
       ++more;
       continue;
     }
     const Name* name = run.world.registry.find<Name>(entity);
-    sentence = fmt::format(
-        "`{}`: settling_time {:g} s needs damping_ratio {:.3g}, which is used instead of {:g}; give a shorter "
-        "settling_time to keep your own",
-        name ? name->value : std::string(), deformable.settling_time, ratio, deformable.damping_ratio);
+    const std::string its = name ? name->value : std::string();
+    found = Note{fmt::format("`{}`: settling_time {:g} s needs damping_ratio {:.3g}, which is used instead of {:g}",
+                             its, deformable.settling_time, ratio, deformable.damping_ratio),
+                 "give a shorter settling_time to keep your own", "surface.creeps", its};
   }
-  if (more > 0) sentence += fmt::format(" ({} more surfaces too)", more);
-  if (!sentence.empty()) say(run, sentence);
+  if (more > 0) found->cure += fmt::format(" ({} more surfaces too)", more);
+  if (found) say(run, *found);
 }
 
 // --error of this run, else of the recording.
@@ -239,7 +226,7 @@ Outcome apply_budget(const RunOptions& options, Level& level, Prepared& run) {
 }
 
 // A replay uses its recorded settings, then --set and --tool-force.
-Outcome apply_settings(const RunOptions& options, double unit, Level& level, Prepared& run) {
+Outcome apply_settings(const RunOptions& options, std::optional<double> unit, Level& level, Prepared& run) {
   if (run.replay && !run.replay->header.settings.empty()) {
     for (const std::string& setting : run.replay->header.settings)
       if (!setting.starts_with(kUnitSetting) && !setting.starts_with(kErrorSetting) && !is_driver_setting(setting))
@@ -248,7 +235,7 @@ Outcome apply_settings(const RunOptions& options, double unit, Level& level, Pre
       return failed({options.replay, "its setting " + status.error().message() + "; record it again with this level"});
     if (unit != options.unit || !run.settings.empty())
       say(run, fmt::format("the recording's settings hold:{}{}{}",
-                           unit != options.unit ? fmt::format(" --unit {}", unit) : std::string(),
+                           unit != options.unit ? fmt::format(" --unit {}", *unit) : std::string(),
                            run.settings.empty() ? "" : " --set ", fmt::join(run.settings, " --set ")));
   }
   if (const Status status = set_keys(level, options.sets); !status) return wrong_arguments(status.error());
@@ -257,75 +244,57 @@ Outcome apply_settings(const RunOptions& options, double unit, Level& level, Pre
     if (Outcome wrong = choose_tool_force(options, level)) return wrong;
     run.settings.push_back("*.handle.force=" + options.tool_force);
   }
-  if (unit != 1.0) run.settings.push_back(fmt::format("{}{}", kUnitSetting, unit));
+  if (unit) run.settings.push_back(fmt::format("{}{}", kUnitSetting, *unit));
   return {};
 }
 
-// A bare mesh is replayed in its recorded unit, unless --unit gives another.
-Result<double> choose_unit(const RunOptions& options, const Level& level, const Prepared& run) {
+// A bare mesh is replayed in its recorded unit, unless --unit gives another. Empty: none is said.
+Result<std::optional<double>> choose_unit(const RunOptions& options, const Level& level, const Prepared& run) {
   if (const Status status = check_unit(level, options.unit); !status) return status.error();
-  if (!run.replay || options.unit != 1.0 || level.has_pliant()) return options.unit;
-  for (const std::string& setting : run.replay->header.settings)
-    if (setting.starts_with(kUnitSetting)) return parse_unit(setting.substr(std::string_view(kUnitSetting).size()));
-  return options.unit;
+  std::optional<double> unit = options.unit;
+  if (run.replay && !unit && !level.has_pliant())
+    for (const std::string& setting : run.replay->header.settings) {
+      if (!setting.starts_with(kUnitSetting)) continue;
+      const Result<double> recorded = parse_unit(setting.substr(std::string_view(kUnitSetting).size()));
+      if (!recorded) return recorded.error();
+      unit = *recorded;
+    }
+  if (const Status said = check_unit_said(level, unit); !said) return said.error();
+  return unit;
 }
 
 // One note for all bodies with locking elements.
 void say_locking(Prepared& run) {
   std::size_t more = 0;
-  std::string sentence;
+  std::optional<Note> found;
   for (auto [entity, body] : run.world.registry.view<const SoftBody>()) {
-    const std::string doubt = locking_doubt(body, run.world.tet_meshes[body.tets].tets.size());
-    if (doubt.empty()) continue;
-    const Name* name = run.world.registry.find<Name>(entity);
-    if (sentence.empty())
-      sentence = fmt::format("`{}` {}", name ? name->value : std::string(), doubt);
-    else
+    std::optional<Note> doubt = locking_doubt(body, run.world.tet_meshes[body.tets].tets.size());
+    if (!doubt) continue;
+    if (found) {
       ++more;
+      continue;
+    }
+    const Name* name = run.world.registry.find<Name>(entity);
+    doubt->of = name ? name->value : std::string();
+    doubt->what = "`" + doubt->of + "` " + doubt->what;
+    found = std::move(doubt);
   }
-  if (more > 0) sentence += fmt::format(" ({} more bod{} too)", more, more == 1 ? "y" : "ies");
-  if (!sentence.empty()) say(run, sentence);
+  if (more > 0) found->cure += fmt::format(" ({} more bod{} too)", more, more == 1 ? "y" : "ies");
+  if (found) say(run, *found);
 }
 
-}  // namespace
-
-void say(Prepared& run, const std::string& sentence) {
-  note(sentence);
-  run.notes.push_back(sentence);
-}
-
-Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
-  if (!options.replay.empty()) {
-    auto recording = read_recording(options.replay);
-    if (!recording) return failed(recording.error());
-    run.replay = std::move(recording).value();
-    const auto changes =
-        std::count_if(run.replay->events.begin(), run.replay->events.end(),
-                      [](const RecordedEvent& event) { return event.kind != EventKind::kNewSource || event.tick > 0; });
-    if (changes > 0)
-      say(run, fmt::format(
-                   "{} holds {} changes that a program made in its run (parameters, forces, pushes, places, sources), "
-                   "which are not repeated here: forces will differ; Session::replay repeats them",
-                   options.replay, changes));
-  }
-  const auto file = find_level(options.level);
-  if (!file) return failed(file.error());
-  auto loaded = load_level(*file);
-  if (!loaded) return failed(loaded.error());
-  Level& level = *loaded;
-  run.file = *file;
-  std::vector<std::string> notes = level.notes;
-
+// The level as the run uses it: unit, probes, limits, settings, budget, models.
+Outcome prepare_level(const RunOptions& options, bool windowed, Level& level, std::vector<ProbeSource>& sources,
+                      Prepared& run) {
   const bool bare = !level.has_pliant();
-  const Result<double> unit = choose_unit(options, level, run);
-  if (!unit) return wrong_arguments(unit.error());
-  scale_roots(level, *unit);
+  const Result<std::optional<double>> unit = choose_unit(options, level, run);
+  if (!unit) return unit.error().code == kUnitUnsaid ? failed(unit.error()) : wrong_arguments(unit.error());
+  scale_roots(level, unit->value_or(1.0));
   if (bare) {
     make_touchable(level);
     if (const std::string hint = unit_hint(bounds(level)); !hint.empty()) say(run, hint);
   }
   if (!run.replay) hold_back_requests(options, level, run);
-  std::vector<ProbeSource> sources;
   if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
   SafetyCap cap;
   if (options.max_force > 0.0) cap.max_force = options.max_force;
@@ -339,19 +308,16 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   const auto choices = choose_models(level);
   if (!choices) return failed(choices.error());
   for (const ModelChoice& choice : *choices) say(run, choice.sentence());
+  return {};
+}
 
-  run.scene = scene_hash(level);
-  if (run.replay && run.replay->header.scene == 0)
-    say(run, options.replay + kUnknownScene);
-  else if (run.replay && run.replay->header.scene != run.scene)
-    say(run,
-        "the level is not as it was when the recording was made (its files, or --set, --unit, --error or --tool-force "
-        "of this run): forces will differ");
+Outcome make_world(const RunOptions& options, bool windowed, Level& level, std::vector<std::string> notes,
+                   const std::vector<ProbeSource>& sources, Prepared& run) {
   auto spawned = spawn_moving_images(level, &notes);
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();
   for (const std::string& sentence : notes) say(run, sentence);
-  for (const std::string& sentence : unused_key_notes(level)) say(run, sentence);
+  for (const Note& unused : unused_key_notes(level)) say(run, unused);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
   if (windowed) repeat_scripts(run.world);
   run.world.field_place = choose_field(options, windowed, run.world);
@@ -369,15 +335,33 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   if (const auto unfelt = unfelt_bodies(run.world)) say(run, *unfelt);
   say_creeping(run);
   say_locking(run);
-  if (run.replay) {
-    if (const Status status = apply_driver_settings(run.world, run.replay->header.settings); !status)
-      return failed({options.replay, "its setting " + status.error().message()});
-    if (Outcome wrong = check_replay(*run.replay, options, run.world)) return wrong;
-    if (run.replay->header.rate != run.world.simulation.touch_rate)
-      return wrong_arguments(
-          {"--rate", fmt::format("the recording was made at {} Hz; leave it out", run.replay->header.rate)});
-  }
   return {};
+}
+
+}  // namespace
+
+void say(Prepared& run, const Note& said) {
+  note(said.message());
+  run.notes.push_back(said);
+}
+void say(Prepared& run, const std::string& sentence) {
+  say(run, Note{sentence, {}, {}, {}});
+}
+
+Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
+  if (!options.replay.empty())
+    if (Outcome wrong = load_replay(options, run)) return wrong;
+  const auto file = find_level(options.level);
+  if (!file) return failed(file.error());
+  auto level = load_level(*file);
+  if (!level) return failed(level.error());
+  run.file = *file;
+  std::vector<std::string> notes = level->notes;
+  std::vector<ProbeSource> sources;
+  if (Outcome wrong = prepare_level(options, windowed, *level, sources, run)) return wrong;
+  compare_scene(options, *level, run);
+  if (Outcome wrong = make_world(options, windowed, *level, std::move(notes), sources, run)) return wrong;
+  return run.replay ? apply_replay(options, run) : Outcome{};
 }
 
 }  // namespace pliant

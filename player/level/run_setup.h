@@ -36,7 +36,7 @@ struct Prepared {
   RunOptions asked;  // from the command line: in a window other levels may follow the first
   World world;
   std::optional<Recording> replay;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   SimulatedHands hands;               // not connected
   std::filesystem::path file;         // of the level
   std::vector<LevelRequest> refused;  // devices that it requests but may not use without the user's permission
@@ -46,7 +46,8 @@ struct Prepared {
 };
 
 // Adds a note to stderr and to the report.
-void say(Prepared& run, const std::string& sentence);
+void say(Prepared& run, const Note& note);
+void say(Prepared& run, const std::string& sentence);  // without a code
 
 // File -> Level -> World. `windowed`: it will be shown in a window.
 Outcome prepare(const RunOptions& options, bool windowed, Prepared& run);

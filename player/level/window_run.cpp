@@ -22,7 +22,7 @@ RunOptions another_level(const RunOptions& asked, const std::string& file, std::
                                     {!asked.sets.empty(), "--set"},
                                     {!asked.record.empty(), "--record"},
                                     {!asked.tool_force.empty(), "--tool-force"},
-                                    {asked.unit != 1.0, "--unit"},
+                                    {asked.unit.has_value(), "--unit"},
                                     {asked.force, "--force"}})
     if (given) left += std::string(left.empty() ? "" : ", ") + name;
   other.probes.clear();
@@ -30,7 +30,7 @@ RunOptions another_level(const RunOptions& asked, const std::string& file, std::
   other.record.clear();
   other.force = false;
   other.tool_force.clear();
-  other.unit = 1.0;
+  other.unit.reset();
   if (!asked.out.empty()) other.out = asked.out + "/" + std::filesystem::path(file).stem().string();
   return other;
 }
@@ -88,7 +88,7 @@ Outcome open_window(const RunOptions& options, std::optional<Shown>& shown) {
                                options.sized ? options.height : kWindowHeight, ", or use --headless");
   if (!window) {
     if (options.window) return failed(window.error());
-    note("running without a window: " + window.error().what);
+    note("running without a window: " + window.error().sentence());
     return {};
   }
   if (options.frames > 0 && options.seconds <= 0.0)

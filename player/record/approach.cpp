@@ -69,23 +69,19 @@ std::optional<Miss> find_miss(const World& world, const Approach& approach, doub
   return best;
 }
 
-std::string explain_miss(const std::string& probe, const std::optional<Miss>& miss) {
+Note explain_miss(const std::string& probe, const std::optional<Miss>& miss) {
+  const std::string who = "probe `" + probe + "` never touched anything";
   if (!miss)
-    return "probe `" + probe +
-           "` never touched anything: the level has no deformable surface (PLIANT_deformable), and the probe met no "
-           "soft or "
-           "rigid body; add one, or change the probe's path";
+    return {who + ": the level has no deformable surface (PLIANT_deformable), and the probe met no soft or rigid body",
+            "add one, or change the probe's path", kUntouched, probe};
   if (miss->behind)
-    return fmt::format(
-        "probe `{}` never touched anything, although it was below the surface of `{}`: it entered through a back face, "
-        "or "
-        "stayed inside another probe's dent; approach from outside, or press deeper",
-        probe, miss->object);
-  return fmt::format(
-      "probe `{}` never touched anything: its smallest distance was {:.4g} mm, to `{}` ({} vertices, {:.4g} mm "
-      "across); "
-      "move its path there, and check the units of its path (metres) and of the mesh (`pliant inspect`)",
-      probe, miss->distance * 1e3, miss->object, miss->vertices, miss->diagonal * 1e3);
+    return {who + ", although it was below the surface of `" + miss->object +
+                "`: it entered through a back face, or stayed inside another probe's dent",
+            "approach from outside, or press deeper", kUntouched, probe};
+  return {fmt::format("{}: its smallest distance was {:.4g} mm, to `{}` ({} vertices, {:.4g} mm across)", who,
+                      miss->distance * 1e3, miss->object, miss->vertices, miss->diagonal * 1e3),
+          "move its path there, and check the units of its path (metres) and of the mesh (`pliant inspect`)",
+          kUntouched, probe};
 }
 
 }  // namespace pliant

@@ -45,7 +45,8 @@ struct Miss {
 // Empty if there is no surface, or the probe has no place.
 std::optional<Miss> find_miss(const World& world, const Approach& approach, double radius);
 
-// The sentence for it.
-std::string explain_miss(const std::string& probe, const std::optional<Miss>& miss);
+// Code of a probe or tool that never touched anything.
+inline constexpr const char* kUntouched = "run.untouched";
+Note explain_miss(const std::string& probe, const std::optional<Miss>& miss);
 
 }  // namespace pliant

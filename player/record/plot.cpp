@@ -195,7 +195,7 @@ Status plot_forces(const std::filesystem::path& file, const std::string& title, 
 
   for (std::size_t i = 0; i < shown && seconds > 0.0; ++i)
     draw_row(pen, rows[i], kTitle + kRow * static_cast<double>(i), seconds, dt);
-  if (!pen.save(file)) return Error{file.string(), "the plot cannot be written; check the space left"};
+  if (!pen.save(file)) return Error{file.string(), "the plot cannot be written", "check the space left", "disk.full"};
   return Done{};
 }
 

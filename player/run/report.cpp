@@ -98,6 +98,15 @@ OrderedJson probes(const RunFigures& figures) {
   return list;
 }
 
+// A key without a value is left out.
+OrderedJson json_of(const Note& note) {
+  OrderedJson json = OrderedJson::object();
+  for (const auto& [key, value] :
+       {std::pair("code", &note.code), {"of", &note.of}, {"what", &note.what}, {"cure", &note.cure}})
+    if (!value->empty()) json[key] = *value;
+  return json;
+}
+
 // Results of each device, and reasons why one could not be used.
 OrderedJson devices(const RunFigures& figures) {
   OrderedJson list = OrderedJson::array();
@@ -179,7 +188,8 @@ std::string report_json(const RunFigures& figures) {
   json["probes"] = probes(figures);
   if (!figures.devices.devices.empty()) json["devices"] = devices(figures);
   if (figures.soft) json["soft"] = soft(*figures.soft, figures.world.soft->tally);
-  json["dropped"] = figures.dropped;
+  json["notes"] = OrderedJson::array();
+  for (const Note& note : figures.notes) json["notes"].push_back(json_of(note));
   json["hash"] = figures.hash;
   json["systems_us"] = systems(figures.schedule);
   // Names come from files and may be invalid UTF-8.

@@ -28,11 +28,12 @@ struct RunFigures {
   std::string field;                     // cpu
   double rate = 1000.0;                  // [Hz]
   std::uint64_t overruns = 0;
-  std::vector<std::string> dropped;         // sentences
+  std::vector<Note> notes;
   std::string hash;                         // hex
   const SoftClock* soft = nullptr;          // null: nothing soft or rigid moves in the level
   std::vector<std::optional<Miss>> misses;  // per probe of the journal: empty if it had contact or there is no surface
   std::string ended;                        // done, interrupted, or the error that ended it
+  bool replayed = false;                    // its poses come from a recording
   DevicesView devices{};                    // that moved probes and tools
 };
 

@@ -14,18 +14,17 @@ bool is_moved(const RunFigures& figures, std::size_t hand) {
   const HapticDevice* device = find_device(figures.world, figures.journal.probes()[hand]);
   const DriverKind driver = device ? device->driver : DriverKind::kNull;
   if (driver == DriverKind::kMouse) return figures.mode == "window";
-  if (driver == DriverKind::kExternal) {
-    const std::string& source = figures.keeper.summaries()[hand].source;
-    return source == "hand" || source.starts_with("hand:") || source.starts_with("replay:") ||
-           (source.starts_with("device:") && source != "device:");
-  }
+  if (driver == DriverKind::kExternal) return figures.replayed || !device->id.empty();
   return driver != DriverKind::kNull;
 }
 
 }  // namespace
 
-std::vector<std::string> explain_run(RunFigures& figures, DeviceLinks& devices) {
-  std::vector<std::string> sentences;
+std::vector<Note> explain_run(RunFigures& figures, DeviceLinks& devices) {
+  std::vector<Note> notes;
+  const auto add = [&](std::vector<Note> more) {
+    for (Note& note : more) notes.push_back(std::move(note));
+  };
   for (std::size_t i = 0; i < figures.journal.probes().size(); ++i) {
     const Entity hand = figures.journal.probes()[i];
     const ProbeSummary& summary = figures.keeper.summaries()[i];
@@ -33,24 +32,22 @@ std::vector<std::string> explain_run(RunFigures& figures, DeviceLinks& devices) 
     if (summary.contact_ticks == 0 && devices.never_ready(hand)) {
       // its device reports the reason
     } else if (summary.contact_ticks == 0 && !is_moved(figures, i)) {
-      sentences.push_back(fmt::format("{} `{}` never touched anything: nothing moves it; give it --probe {}=orbit",
-                                      summary.tool ? "tool" : "probe", summary.name, summary.name));
+      notes.push_back({fmt::format("{} `{}` never touched anything: nothing moves it", summary.tool ? "tool" : "probe",
+                                   summary.name),
+                       fmt::format("give it --probe {}=orbit", summary.name), kUntouched, summary.name});
     } else if (const Probe* probe = figures.world.registry.find<Probe>(hand); summary.contact_ticks == 0 && probe) {
       figures.misses.back() = find_miss(figures.world, summary.approach, probe->radius);
-      sentences.push_back(explain_miss(summary.name, figures.misses.back()));
+      notes.push_back(explain_miss(summary.name, figures.misses.back()));
     } else if (summary.contact_ticks == 0) {
-      sentences.push_back("tool `" + summary.name +
-                          "` never touched anything; move its device into contact (script, or --probe " + summary.name +
-                          "=orbit)");
+      notes.push_back({"tool `" + summary.name + "` never touched anything",
+                       "move its device into contact (script, or --probe " + summary.name + "=orbit)", kUntouched,
+                       summary.name});
     }
-    for (std::string& sentence : explain_limits(figures.world, hand, summary.name))
-      sentences.push_back(std::move(sentence));
-    for (std::string& sentence : explain_tool(figures.world, summary)) sentences.push_back(std::move(sentence));
+    add(explain_limits(figures.world, hand, summary.name));
+    add(explain_tool(figures.world, summary));
   }
-  if (figures.soft)
-    for (std::string& sentence : explain_soft_steps(figures.world, figures.soft->figures()))
-      sentences.push_back(std::move(sentence));
-  return sentences;
+  if (figures.soft) add(explain_soft_steps(figures.world, figures.soft->figures()));
+  return notes;
 }
 
 }  // namespace pliant

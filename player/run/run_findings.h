@@ -10,6 +10,6 @@
 namespace pliant {
 
 // Also fills `figures.misses`. Call after the clocks have stopped.
-std::vector<std::string> explain_run(RunFigures& figures, DeviceLinks& devices);
+std::vector<Note> explain_run(RunFigures& figures, DeviceLinks& devices);
 
 }  // namespace pliant

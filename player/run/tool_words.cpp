@@ -24,51 +24,58 @@ std::string count(std::uint64_t n, const char* what) {
 
 }  // namespace
 
-std::vector<std::string> explain_tool(const World& world, const ProbeSummary& summary) {
-  std::vector<std::string> sentences;
+std::vector<Note> explain_tool(const World& world, const ProbeSummary& summary) {
+  std::vector<Note> notes;
   if (summary.late_ticks > 0)
-    sentences.push_back(
-        fmt::format("tool `{}`: the contact solve exceeded its time budget in {}; after {} such ticks in a row the "
-                    "linear model was "
-                    "used; lower --rate, or use --tool-force linear",
-                    summary.name, count(summary.late_ticks, "tick"), kLateTicks));
+    notes.push_back(
+        {fmt::format("tool `{}`: the contact solve exceeded its time budget in {}; after {} such ticks in a "
+                     "row the linear model was used",
+                     summary.name, count(summary.late_ticks, "tick"), kLateTicks),
+         "lower --rate, or use --tool-force linear", "tool.late", summary.name});
   if (summary.stale_ticks > 0)
-    sentences.push_back(fmt::format(
-        "tool `{}`: in {} its model was older than {:g} soft steps ({:.3g} s), so its force faded; lower "
-        "--rate, make its `cell` larger, or make soft_step longer",
-        summary.name, count(summary.stale_ticks, "tick"), kStaleSteps, kStaleSteps * world.simulation.soft_step));
-  return sentences;
+    notes.push_back(
+        {fmt::format("tool `{}`: in {} its model was older than {:g} soft steps ({:.3g} s), so its force faded",
+                     summary.name, count(summary.stale_ticks, "tick"), kStaleSteps,
+                     kStaleSteps * world.simulation.soft_step),
+         "lower --rate, make its `cell` larger, or make soft_step longer", "tool.stale", summary.name});
+  return notes;
 }
 
-std::vector<std::string> explain_soft_steps(const World& world, const SoftFigures& figures) {
-  std::vector<std::string> sentences;
+std::vector<Note> explain_soft_steps(const World& world, const SoftFigures& figures) {
+  std::vector<Note> notes;
+  const auto add = [&](const char* code, std::string what, std::string cure) {
+    notes.push_back({std::move(what), std::move(cure), code, {}});
+  };
   const SoftTally& tally = world.soft->tally;
   if (tally.contacts_cut > 0)
-    sentences.push_back(fmt::format(
-        "{} dropped because a soft step was full; press with a smaller area, or coarsen the meshes in contact",
-        count(tally.contacts_cut, "contact") + (tally.contacts_cut == 1 ? " was" : " were")));
+    add("soft.contacts_cut",
+        count(tally.contacts_cut, "contact") + (tally.contacts_cut == 1 ? " was" : " were") +
+            " dropped because a soft step was full",
+        "press with a smaller area, or coarsen the meshes in contact");
   if (tally.began_inside > 0.0)
-    sentences.push_back(
-        fmt::format("{} and {} begin {:.2f} mm inside each other and are pushed apart; move one of them in the level",
-                    body_name(world, tally.inside_a), body_name(world, tally.inside_b), tally.began_inside * 1e3));
+    add("soft.began_inside",
+        fmt::format("{} and {} begin {:.2f} mm inside each other and are pushed apart",
+                    body_name(world, tally.inside_a), body_name(world, tally.inside_b), tally.began_inside * 1e3),
+        "move one of them in the level");
   if (tally.halted_for > 0.0)
-    sentences.push_back(fmt::format(
-        "bodies were stopped for {:.3g} s in total, in soft steps in which they would have passed through each "
-        "other; make soft_step shorter, or press more slowly",
-        tally.halted_for));
+    add("soft.halted",
+        fmt::format("bodies were stopped for {:.3g} s in total, in soft steps in which they would have passed through "
+                    "each other",
+                    tally.halted_for),
+        "make soft_step shorter, or press more slowly");
   if (tally.unconverged > 0 && tally.residual > kSaidResidual)
-    sentences.push_back(
-        fmt::format("{} of {} ended unconverged (residual at most {:.2g} m/s), so what is gripped or stacked may "
-                    "creep; make soft_step shorter, or give bodies in contact more similar masses and stiffnesses",
-                    tally.unconverged, count(figures.steps, "soft step"), tally.residual));
-  for (std::string& sentence : explain_sag(world)) sentences.push_back(std::move(sentence));
+    add("soft.unconverged",
+        fmt::format("{} of {} ended unconverged (residual at most {:.2g} m/s), so what is gripped or stacked may creep",
+                    tally.unconverged, count(figures.steps, "soft step"), tally.residual),
+        "make soft_step shorter, or give bodies in contact more similar masses and stiffnesses");
+  for (std::string& sentence : explain_sag(world)) add("soft.sagged", std::move(sentence), {});
   const double kept = static_cast<double>(figures.steps) * world.simulation.soft_step;  // [s] lower bound
   if (figures.time_lost > kSaidLoss * (kept + figures.time_lost))
-    sentences.push_back(fmt::format(
-        "the soft clock did not keep up: bodies are {:.2f} s behind after {} of {:g} s; make `cell` larger or "
-        "soft_step longer, or leave out --realtime",
-        figures.time_lost, count(figures.steps, "step"), world.simulation.soft_step));
-  return sentences;
+    add("soft.time_lost",
+        fmt::format("the soft clock did not keep up: bodies are {:.2f} s behind after {} of {:g} s", figures.time_lost,
+                    count(figures.steps, "step"), world.simulation.soft_step),
+        "make `cell` larger or soft_step longer, or leave out --realtime");
+  return notes;
 }
 
 }  // namespace pliant

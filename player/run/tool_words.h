@@ -1,4 +1,4 @@
-// Sentences about imperfect results of tools and of the soft clock.
+// Notes about imperfect results of tools and of the soft clock.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@
 
 namespace pliant {
 
-// One sentence, with its remedy, per deficiency of the tool's ticks. Valid when the clocks have stopped.
-std::vector<std::string> explain_tool(const World& world, const ProbeSummary& summary);
+// A note, with its remedy, per deficiency of the tool's ticks. Valid when the clocks have stopped.
+std::vector<Note> explain_tool(const World& world, const ProbeSummary& summary);
 // The same for the soft clock's steps.
-std::vector<std::string> explain_soft_steps(const World& world, const SoftFigures& figures);
+std::vector<Note> explain_soft_steps(const World& world, const SoftFigures& figures);
 
 }  // namespace pliant

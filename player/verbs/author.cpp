@@ -66,10 +66,11 @@ Result<std::int32_t> find_object(const Level& level, const std::vector<std::int3
   const bool other =
       std::any_of(level.nodes.begin(), level.nodes.end(), [&](const LevelNode& node) { return node.name == name; });
   const std::string near = suggestion(name, names);
-  return Error{fmt::format("{} {}", option, name),
-               other          ? "names a node without a surface; nodes that have one: " + list
-               : near.empty() ? "names a node that the file does not have; those with a surface: " + list
-                              : "names a node that the file does not have" + near};
+  const std::string where = fmt::format("{} {}", option, name), code = "name.unknown";
+  if (other) return Error{where, "names a node without a surface", "nodes that have one: " + list, code};
+  if (near.empty())
+    return Error{where, "names a node that the file does not have", "those with a surface: " + list, code};
+  return Error{where, "names a node that the file does not have", near, code};
 }
 
 // The nodes to create.
@@ -84,7 +85,7 @@ struct Plan {
 Result<Plan> plan_of(const AuthorOptions& options, const Level& level) {
   Plan plan;
   const std::vector<std::int32_t> all = objects(level);
-  if (all.empty()) return Error{options.in, "has no surface that could be touched; choose a file with a mesh"};
+  if (all.empty()) return Error{options.in, "has no surface that could be touched", "choose a file with a mesh"};
   for (const auto& [names, option, nodes] :
        {std::tuple(&options.soft, "--soft", &plan.soft), std::tuple(&options.surface, "--surface", &plan.surface)})
     for (const std::string& name : *names) {
@@ -92,7 +93,7 @@ Result<Plan> plan_of(const AuthorOptions& options, const Level& level) {
       if (!node) return node.error();
       if (std::count(plan.soft.begin(), plan.soft.end(), *node) +
           std::count(plan.surface.begin(), plan.surface.end(), *node))
-        return Error{fmt::format("{} {}", option, name), "is asked for twice; name a node once"};
+        return Error{fmt::format("{} {}", option, name), "is asked for twice", "name a node once"};
       nodes->push_back(*node);
     }
   if (plan.soft.empty() && plan.surface.empty()) plan.soft.push_back(all.front());
@@ -102,7 +103,7 @@ Result<Plan> plan_of(const AuthorOptions& options, const Level& level) {
   const std::string tool = !options.tool.empty() ? options.tool : plan.soft.empty() ? "none" : "rod";
   if (tool != "none") plan.tool = find_instrument(tool);
   if (plan.tool && plan.soft.empty())
-    return Error{"--tool " + tool, "is for soft bodies, and --surface makes none; use --soft, or --probe instead"};
+    return Error{"--tool " + tool, "is for soft bodies, and --surface makes none", "use --soft, or --probe instead"};
   plan.probe = options.probe || !plan.tool;
   return plan;
 }
@@ -166,6 +167,7 @@ void say_soft(const Level& level, const World& world, const Plan& plan) {
         if (tets.parts.size() > 3) names += fmt::format(" and {} more", tets.parts.size() - 3);
         print("    takes along what lies inside of it: {}\n", names);
       }
+      for (const Note& found : tets.report.notes) note(in_quotes(name) + ": " + found.message());
       for (const std::string& finding : tets.report.findings) note(in_quotes(name) + ": " + finding);
       say_pins(level, number, tets);
     }
@@ -271,12 +273,13 @@ int author(const AuthorOptions& options) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension != ".glb" && extension != ".gltf")
-    return fail(kUsage, {options.out, "a level is glTF; end the name with .glb or .gltf"});
+    return fail(kUsage, {options.out, "a level is glTF", "end the name with .glb or .gltf"});
   Result<Level> level = load_level(options.in);
   if (!level) return fail(kFailed, level.error());
   if (const Status unit = check_unit(*level, options.unit); !unit) return fail(kUsage, unit.error());
+  if (const Status unit = check_unit_said(*level, options.unit); !unit) return fail(kFailed, unit.error());
   for (const std::string& sentence : level->notes) note(sentence);
-  scale_roots(*level, options.unit);
+  scale_roots(*level, options.unit.value_or(1.0));
   const bool bare = !level->has_pliant();
   const Box around = bounds(*level);
   if (const std::string hint = unit_hint(around, bare); !hint.empty())
@@ -293,12 +296,13 @@ int author(const AuthorOptions& options) {
   for (const Led& each : *led) files.push_back(each.file);
   for (const fs::path& file : files)
     if (!options.force && fs::exists(fs::symlink_status(file, ignored)))
-      return fail(kFailed, {file.string(), "is there already; name another, or replace it with --force"});
+      return fail(kFailed, {file.string(), "is there already", "name another, or replace it with --force"});
   const Result<World> world = try_out(*level);
   if (!world) {
     Error error = world.error();
     if (error.where.empty() || error.where == level->path.string()) error.where = options.in;
-    if (!plan->soft.empty()) error.what += "; or try it as a surface: --surface instead of --soft";
+    if (!plan->soft.empty())
+      error.cure += std::string(error.cure.empty() ? "" : "; or ") + "try it as a surface: --surface instead of --soft";
     return fail(kFailed, error);
   }
   const Interrupt interrupt({"the level is being written; press Ctrl-C again to quit at once",

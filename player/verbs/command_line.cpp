@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 
 #include "content/files/limits.h"
 #include "content/keys/extension_table.h"
@@ -15,8 +16,10 @@
 namespace pliant {
 namespace {
 
-// The unknown option and the nearest known one; "" if none is near.
-std::string nearest_option(const CLI::App& app) {
+constexpr const char* kArguments = "arguments";  // code
+
+// The unknown option and the nearest known one, if one is near.
+std::optional<Error> unknown_option(const CLI::App& app, const std::string& where) {
   std::vector<std::string> known;
   for (const CLI::App* verb : app.get_subcommands())
     for (const CLI::Option* option : verb->get_options())
@@ -24,10 +27,10 @@ std::string nearest_option(const CLI::App& app) {
   for (const std::string& argument : app.remaining(true)) {
     if (!argument.starts_with("--")) continue;
     const std::string option = argument.substr(0, argument.find('='));
-    if (const std::string near = suggestion(option, known); !near.empty())
-      return "unknown option '" + option + "'" + near;
+    if (std::string near = suggestion(option, known); !near.empty())
+      return Error{where, "unknown option '" + option + "'", std::move(near), kArguments};
   }
-  return {};
+  return std::nullopt;
 }
 
 // CLI11's messages may have several lines; ours is one sentence that refers to the help.
@@ -38,20 +41,19 @@ Error usage_error(const CLI::App& app, const CLI::ParseError& error) {
     help = "pliant " + where + " --help";
   }
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
-    const std::string near = nearest_option(app);
-    if (!near.empty()) return {where, near};
+    if (std::optional<Error> unknown = unknown_option(app, where)) return *unknown;
   }
   std::string what = error.what();
   what = what.substr(0, what.find('\n'));
   while (!what.empty() && (what.back() == '.' || what.back() == ' ')) what.pop_back();
-  return {where, what + "; see `" + help + "`"};
+  return {where, what, "see `" + help + "`", kArguments};
 }
 
 Error unknown_verb(const std::string& word, const std::vector<CLI::App*>& verbs) {
   std::vector<std::string> names;
   for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
   const std::string near = suggestion(word, names);
-  return {"arguments", "unknown verb '" + word + "'" + (near.empty() ? "; see `pliant --help`" : near)};
+  return {"arguments", "unknown verb '" + word + "'", near.empty() ? "see `pliant --help`" : near, kArguments};
 }
 
 constexpr AddVerb kVerbs[] = {add_run,   add_author, add_inspect, add_convert, add_validate, add_devices,

@@ -120,9 +120,10 @@ Status check_valid(Level level, const std::string& in) {
   leave_out_missing_files(level);
   for (const Finding& finding : validate_level(std::move(level), prepare_world))
     if (finding.severity == Severity::kError)
-      return Error{in + (finding.pointer.empty() ? "" : " " + finding.pointer),
-                   finding.message + (finding.message.find("; ") == std::string::npos ? "; correct it first" : "") +
-                       " (nothing is written that `pliant validate` would refuse)"};
+      return Error{in + (finding.pointer.empty() ? "" : " " + finding.pointer), finding.what,
+                   (finding.cure.empty() ? "correct it first" : finding.cure) +
+                       " (nothing is written that `pliant validate` would refuse)",
+                   finding.code};
   return Done{};
 }
 
@@ -130,15 +131,16 @@ Status check_valid(Level level, const std::string& in) {
 Status check_free(const ConvertOptions& options) {
   std::error_code ignored;
   if (options.force || !fs::exists(fs::symlink_status(options.out, ignored))) return Done{};
-  return Error{options.out, "is there already; name another, or replace it with --force"};
+  return Error{options.out, "is there already", "name another, or replace it with --force"};
 }
 
 int convert_panorama(const ConvertOptions& options) {
   if (lower_extension(options.out) != ".png")
-    return fail(kUsage, {options.out, "a panorama becomes a picture of its cube map; end the name with .png"});
-  for (const auto& [given, name] :
-       {std::pair(options.draco_bits != 0, "--draco"), {options.reorder, "--reorder"}, {options.unit != 1.0, "--unit"}})
-    if (given) return fail(kUsage, {name, "is for meshes, and a panorama becomes a picture; leave it out"});
+    return fail(kUsage, {options.out, "a panorama becomes a picture of its cube map", "end the name with .png"});
+  for (const auto& [given, name] : {std::pair(options.draco_bits != 0, "--draco"),
+                                    {options.reorder, "--reorder"},
+                                    {options.unit.has_value(), "--unit"}})
+    if (given) return fail(kUsage, {name, "is for meshes, and a panorama becomes a picture", "leave it out"});
   if (const Status free = check_free(options); !free) return fail(kFailed, free.error());
   const auto panorama = load_panorama(options.in);
   if (!panorama) return fail(kFailed, panorama.error());
@@ -159,13 +161,13 @@ int convert(const ConvertOptions& options) {
   if (lower_extension(options.in) == ".exr") return convert_panorama(options);
   const std::string extension = lower_extension(options.out);
   if (extension != ".gltf" && extension != ".glb")
-    return fail(kUsage, {options.out, "meshes are written as glTF; end the name with .glb or .gltf"});
+    return fail(kUsage, {options.out, "meshes are written as glTF", "end the name with .glb or .gltf"});
   if (const Status free = check_free(options); !free) return fail(kFailed, free.error());
   auto level = load_level(options.in);
   if (!level) return fail(kFailed, level.error());
   if (const Status unit = check_unit(*level, options.unit); !unit) return fail(kUsage, unit.error());
   for (const std::string& sentence : level->notes) note(sentence);
-  scale_roots(*level, options.unit);
+  scale_roots(*level, options.unit.value_or(1.0));
   if (options.reorder)
     if (const Status s = reorder(*level); !s) return fail(kFailed, s.error());
   if (const Status s = check_valid(*level, options.in); !s) return fail(kFailed, s.error());

@@ -40,7 +40,7 @@ class HeldDevice {
     if (!chosen) return chosen.error();
     for (const std::string& sentence : chosen->notes) note(sentence);
     if (chosen->id.empty())
-      return Error{"--test " + wish, "the mouse needs no test; name a device that `pliant devices` lists"};
+      return Error{"--test " + wish, "the mouse needs no test", "name a device that `pliant devices` lists"};
     shown = chosen->name;
     auto made = make_device(chosen->id);
     if (!made) return made.error();
@@ -195,7 +195,7 @@ int test_device(const DeviceTestOptions& options) {
     look(held, options.seconds, interrupt, [](double) { return dvec3(0); });
     return kDone;
   }
-  if (!can.renders_force || can.resists_only) return fail(kUsage, {"--push", name + " does not push; leave it out"});
+  if (!can.renders_force || can.resists_only) return fail(kUsage, {"--push", name + " does not push", "leave it out"});
   const double most = can.max_force > 0.0 ? std::min(kPushForce, kPushShare * can.max_force) : kPushForce;
   if (!confirmed(most)) {
     note("nothing was pushed, because the answer was not `yes`");

@@ -21,22 +21,22 @@ bool is_measured(const std::string& file) {
 int fit(const FitOptions& options) {
   const bool measured = options.sweep.empty() && is_measured(options.in), elements = options.sweep.empty() && !measured;
   if (!measured && !options.of_measured.empty())
-    return fail(kUsage, {options.of_measured[0], "is for measured presses (.csv); leave it out"});
+    return fail(kUsage, {options.of_measured[0], "is for measured presses (.csv)", "leave it out"});
   if (!elements && !options.of_elements.empty())
-    return fail(kUsage, {options.of_elements[0], "is for finite elements of a level's object; leave it out"});
+    return fail(kUsage, {options.of_elements[0], "is for finite elements of a level's object", "leave it out"});
   if (!options.sweep.empty()) {
     if (!options.in.empty())
-      return fail(kUsage, {"fit " + options.in, "stands beside --sweep; name what was measured with --target"});
-    if (!options.out.empty() || !options.object.empty() || options.unit != 1.0)
-      return fail(kUsage, {"--sweep", "writes no level; leave out -o, --object and --unit"});
+      return fail(kUsage, {"fit " + options.in, "stands beside --sweep", "name what was measured with --target"});
+    if (!options.out.empty() || !options.object.empty() || options.unit)
+      return fail(kUsage, {"--sweep", "writes no level", "leave out -o, --object and --unit"});
     return fit_sweep(options);
   }
-  if (!options.target.empty()) return fail(kUsage, {"--target", "is for --sweep DIR; without it, name the file first"});
-  if (measured && options.level.empty() && options.unit != 1.0)
-    return fail(kUsage, {"--unit", "is of the bare mesh that --level names; a table's units stand in its header"});
+  if (!options.target.empty())
+    return fail(kUsage, {"--target", "is for --sweep DIR", "without it, name the file first"});
+  if (measured && options.level.empty() && options.unit)
+    return fail(kUsage, {"--unit", "is of the bare mesh that --level names", "a table's units stand in its header"});
   if (options.in.empty())
-    return fail(kUsage, {"fit",
-                         "say what: a level with --object, measured presses (.csv), or --sweep DIR --target CSV; "
+    return fail(kUsage, {"fit", "say what: a level with --object, measured presses (.csv), or --sweep DIR --target CSV",
                          "see `pliant fit --help`"});
   return measured ? fit_press(options) : fit_tissue(options);
 }

@@ -85,9 +85,10 @@ std::vector<ObjectReport> inspect_objects(const Level& level) {
     // A room that is only drawn is seen from inside.
     const bool touched = bare || node.deformable || node.rigid_body || node.soft_body;
     // The same limit as in a run; here each surface would be built separately.
-    const std::string many = LevelBudget::ask(limits::kSurfaces, surfaces += touched);
-    object.refused = many.empty() ? budget.ask_triangles(triangles += budget.of(node.mesh).triangles) : many;
-    if (!object.refused.empty()) {
+    std::optional<Note> many = LevelBudget::ask(limits::kSurfaces, surfaces += touched);
+    if (!many) many = budget.ask_triangles(triangles += budget.of(node.mesh).triangles);
+    if (many) {
+      object.refused = many->message();
       objects.push_back(std::move(object));
       continue;
     }
@@ -99,7 +100,7 @@ std::vector<ObjectReport> inspect_objects(const Level& level) {
       object.report = built->report;
       object.box = object.mesh.box;
     } else {
-      object.refused = built.error().what;
+      object.refused = built.error().sentence();
     }
     objects.push_back(std::move(object));
   }
@@ -119,8 +120,8 @@ std::vector<std::string> problems(const ObjectReport& object) {
       "the surface is open there: it can be touched, but does not enclose a volume");
   add(r.non_manifold_edges, "non-manifold edge", "non-manifold edges",
       "more than two triangles, or two of opposite orientation, meet there");
-  if (const std::string turned = winding_note(r); !turned.empty()) list.push_back(turned);
-  if (const std::string doubt = winding_doubt(r); !doubt.empty()) list.push_back(doubt);
+  for (const std::optional<Note>& found : {winding_note(r), winding_doubt(r)})
+    if (found) list.push_back(found->message());
   if (r.made_normals) list.push_back("no normals in the file; made from the faces");
   return list;
 }
@@ -213,9 +214,9 @@ OrderedJson describe(const Level& level, const std::vector<ObjectReport>& object
   json["objects"] = list;
   json["flesh"] = describe_tissue(level);
   std::vector<std::string> notes = level.notes;
-  for (std::string& sentence : unused_key_notes(level)) notes.push_back(std::move(sentence));
+  for (const Note& unused : unused_key_notes(level)) notes.push_back(unused.message());
   for (const DeviceFault& idle : find_unmoved_probes(level))
-    notes.push_back("`" + level.nodes[idle.node].name + "` " + idle.what);
+    notes.push_back("`" + level.nodes[idle.node].name + "` " + idle.what.message());
   OrderedJson asked_for = OrderedJson::array();
   for (const LevelRequest& asked : device_requests(level)) {
     asked_for.push_back({{"moves", asked.moves}, {"id", asked.id}, {"allowed", asked.request.allowed}});
@@ -279,15 +280,15 @@ int inspect(const InspectOptions& options) {
   const auto path = find_level(options.file);
   if (!path) return fail(kFailed, path.error());
   if (options.fit && (is_tet_file(*path) || is_panorama_file(*path)))
-    return fail(kUsage, {"--fit", "is for levels and meshes that are touched; leave it out"});
-  if (options.unit != 1.0 && (is_tet_file(*path) || is_panorama_file(*path)))
-    return fail(kUsage, {"--unit", "is for bare meshes; leave it out"});
+    return fail(kUsage, {"--fit", "is for levels and meshes that are touched", "leave it out"});
+  if (options.unit && (is_tet_file(*path) || is_panorama_file(*path)))
+    return fail(kUsage, {"--unit", "is for bare meshes", "leave it out"});
   if (is_tet_file(*path)) return inspect_tets(*path, options.json);
   if (is_panorama_file(*path)) return inspect_panorama(*path, options.json);
   auto level = load_level(*path);
   if (!level) return fail(kFailed, level.error());
   if (const Status unit = check_unit(*level, options.unit); !unit) return fail(kUsage, unit.error());
-  scale_roots(*level, options.unit);
+  scale_roots(*level, options.unit.value_or(1.0));
   const std::vector<ObjectReport> objects = inspect_objects(*level);
   OrderedJson json = describe(*level, objects);
   if (options.fit) {

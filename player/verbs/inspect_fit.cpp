@@ -41,8 +41,8 @@ Result<OrderedJson> describe_fit(Level& level, double error) {
   const auto choices = choose_models(level);
   if (!choices) return choices.error();
   if (choices->empty())
-    return Error{level.path.string(),
-                 "has no object with an error budget; give one the key `error`, or all of them `--error 0.3`"};
+    return Error{level.path.string(), "has no object with an error budget",
+                 "give one the key `error`, or all of them `--error 0.3`"};
   OrderedJson fit = OrderedJson::array();
   for (const ModelChoice& choice : *choices) fit.push_back(describe(choice));
   return fit;

@@ -77,6 +77,12 @@ Level tissue_of(const Level& level) {
 
 }  // namespace
 
+OrderedJson messages(const std::vector<Note>& notes) {
+  OrderedJson list = OrderedJson::array();
+  for (const Note& note : notes) list.push_back(note.message());
+  return list;
+}
+
 OrderedJson describe_tissue(const Level& level) {
   OrderedJson list = OrderedJson::array();
   bool any = false;
@@ -89,9 +95,10 @@ OrderedJson describe_tissue(const Level& level) {
   for (auto [entity, body] : world->registry.view<const SoftBody>()) {
     const TetMesh& tets = world->tet_meshes[body.tets];
     OrderedJson tissue = describe(tets);
-    tissue["problems"] = tets.report.findings;
-    if (const std::string doubt = locking_doubt(body, tets.tets.size()); !doubt.empty())
-      tissue["problems"].push_back(doubt);
+    tissue["problems"] = messages(tets.report.notes);
+    for (const std::string& sentence : tets.report.findings) tissue["problems"].push_back(sentence);
+    if (const std::optional<Note> doubt = locking_doubt(body, tets.tets.size()))
+      tissue["problems"].push_back(doubt->message());
     list.push_back(std::move(tissue));
   }
   return list;
@@ -124,7 +131,7 @@ void print_tissue(const OrderedJson& tissue) {
 OrderedJson describe_as_tissue(const BuiltMesh& surface, const std::stop_token& stop) {
   const Result<SoftPreview> preview = preview_soft_body(surface, SoftBody{}, nullptr, stop);
   if (!preview && stop.stop_requested()) return nullptr;
-  if (!preview) return {{"problem", preview.error().what}};
+  if (!preview) return {{"problem", preview.error().sentence()}};
   return {{"cell_m", preview->cell},
           {"nodes", preview->nodes.size()},
           {"tetrahedra", preview->tetrahedra},
@@ -136,7 +143,7 @@ OrderedJson describe_as_tissue(const BuiltMesh& surface, const std::stop_token& 
           {"largest_dihedral_deg", preview->quality.largest_dihedral * kDegrees},
           {"worst_ratio", preview->quality.worst_ratio},
           {"step_ms", preview->step_ms},
-          {"problems", preview->findings}};
+          {"problems", messages(preview->notes)}};
 }
 
 void print_as_tissue(const OrderedJson& tissue) {

@@ -13,8 +13,8 @@ namespace pliant {
 int list_levels() {
   const std::vector<std::filesystem::path> levels = shipped_levels();
   if (levels.empty())
-    return fail(kFailed, {(content_folder() / "levels").string(),
-                          "there are no levels; set PLIANT_CONTENT to the folder that holds levels/"});
+    return fail(kFailed, {(content_folder() / "levels").string(), "there are no levels",
+                          "set PLIANT_CONTENT to the folder that holds levels/"});
   std::size_t longest = 0;
   for (const std::filesystem::path& level : levels) longest = std::max(longest, level.stem().string().size());
   for (const std::filesystem::path& level : levels) {

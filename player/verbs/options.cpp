@@ -50,12 +50,12 @@ std::string parse_size(const std::string& text, RunOptions& run) {
   return {};
 }
 
-void add_unit(CLI::App* verb, double& unit, const char* what) {
+void add_unit(CLI::App* verb, std::optional<double>& unit, const char* what) {
   verb->add_option_function<std::string>(
           "--unit",
           [&unit](const std::string& text) {
             const auto metres = parse_unit(text);
-            if (!metres) throw CLI::ValidationError(metres.error().where + " " + metres.error().what);
+            if (!metres) throw CLI::ValidationError(metres.error().where + " " + metres.error().sentence());
             unit = *metres;
           },
           what)

@@ -40,7 +40,7 @@ CLI::Validator named();
 // "960x540" -> width, height; otherwise returns a sentence.
 std::string parse_size(const std::string& text, RunOptions& run);
 // --unit of every verb that reads a bare mesh.
-void add_unit(CLI::App* verb, double& unit, const char* what);
+void add_unit(CLI::App* verb, std::optional<double>& unit, const char* what);
 // --limits of every verb that reads files.
 void add_limits(CLI::App* verb);
 

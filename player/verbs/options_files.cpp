@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <memory>
 #include <tuple>
 
@@ -6,6 +9,7 @@
 #include "content/author/presets.h"
 #include "content/level/unit.h"
 #include "content/level_file.h"
+#include "content/tets/tet_file.h"
 #include "editor/edit.h"
 #include "engine/choice/model_choice.h"
 #include "lab/console/exit.h"
@@ -18,7 +22,10 @@ namespace pliant {
 void add_inspect(CLI::App& app, int& status) {
   const auto options = std::make_shared<InspectOptions>();
   CLI::App* verb = app.add_subcommand("inspect", "what is in a file, whether it can be touched, what is wrong with it");
-  verb->add_option("file", options->file, "level, mesh, tetrahedra or EXR panorama")->required()->check(named());
+  verb->add_option("file", options->file,
+                   fmt::format("level, mesh, tetrahedra ({}) or EXR panorama", fmt::join(tet_endings(), ", ")))
+      ->required()
+      ->check(named());
   verb->add_flag("--json", options->json, "as JSON");
   CLI::Option* fit = verb->add_flag("--fit", options->fit, "which models error budgets choose, and the evidence");
   verb->add_option("--error", options->error,
@@ -55,9 +62,11 @@ void add_convert(CLI::App& app, int& status) {
 }
 
 void add_validate(CLI::App& app, int& status) {
-  const auto options = std::make_shared<std::string>();
+  const auto options = std::make_shared<ValidateOptions>();
   CLI::App* verb = app.add_subcommand("validate", "every finding of a level with its JSON pointer");
-  verb->add_option("level", *options, "level")->required()->check(named());
+  verb->add_option("level", options->level, "level or mesh")->required()->check(named());
+  verb->add_flag("--json", options->json, "as JSON, with codes (docs/codes.md)");
+  add_unit(verb, options->unit, "what one unit of a bare mesh is (m)");
   add_limits(verb);
   verb->footer("Example:\n  pliant validate level.gltf");
   verb->callback([options, &status] { status = validate(*options); });

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "lab/console/exit.h"
@@ -14,6 +15,8 @@
 
 namespace pliant {
 namespace {
+
+using OrderedJson = nlohmann::ordered_json;
 
 const char* word(Severity severity) {
   switch (severity) {
@@ -27,27 +30,47 @@ const char* word(Severity severity) {
   UNREACHABLE();
 }
 
+// A list of findings; a key without a value is left out.
+std::string json_of(const Findings& findings) {
+  OrderedJson list = OrderedJson::array();
+  for (const Finding& finding : findings) {
+    OrderedJson& json = list.emplace_back(OrderedJson::object());
+    json["severity"] = word(finding.severity);
+    for (const auto& [key, value] : {std::pair("code", &finding.code),
+                                     {"pointer", &finding.pointer},
+                                     {"what", &finding.what},
+                                     {"cure", &finding.cure}})
+      if (!value->empty()) json[key] = *value;
+  }
+  return list.dump(2, ' ', true, OrderedJson::error_handler_t::replace);
+}
+
 }  // namespace
 
-int validate(const std::string& argument) {
-  const auto file = find_level(argument);
+int validate(const ValidateOptions& options) {
+  const auto file = find_level(options.level);
   if (!file) return fail(kFailed, file.error());
-  const Findings findings = validate_level(*file, [](World& world) -> Status {
+  const auto prepare = [](World& world) -> Status {
     if (const Status status = prepare_world(world); !status) return status;
     find_sag(world);
     return Done{};
-  });
+  };
+  const Findings findings = validate_level(*file, prepare, options.unit);
   int errors = 0, warnings = 0;
   for (const Finding& finding : findings) {
     errors += finding.severity == Severity::kError;
     warnings += finding.severity == Severity::kWarning;
-    print("{}: {}: {}\n", finding.pointer.empty() ? "/" : finding.pointer, word(finding.severity), finding.message);
+    if (!options.json)
+      print("{}: {}: {}\n", finding.pointer.empty() ? "/" : finding.pointer, word(finding.severity), finding.message());
   }
-  print("{}: {} error{}, {} warning{}\n", file->string(), errors, errors == 1 ? "" : "s", warnings,
-        warnings == 1 ? "" : "s");
+  if (options.json)
+    print("{}\n", json_of(findings));
+  else
+    print("{}: {} error{}, {} warning{}\n", file->string(), errors, errors == 1 ? "" : "s", warnings,
+          warnings == 1 ? "" : "s");
   if (errors == 0) return kDone;
-  return fail(kFailed, {file->string(), fmt::format("{} error{}; see the finding{} above", errors,
-                                                    errors == 1 ? "" : "s", errors == 1 ? "" : "s")});
+  return fail(kFailed, {file->string(), fmt::format("{} error{}", errors, errors == 1 ? "" : "s"),
+                        fmt::format("see the finding{} above", errors == 1 ? "" : "s")});
 }
 
 }  // namespace pliant

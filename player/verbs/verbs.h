@@ -15,9 +15,9 @@ int list_levels();
 struct InspectOptions {
   std::string file;
   bool json = false;
-  bool fit = false;    // also print the models chosen by error budgets, with the measurements
-  double error = 0.0;  // [1] budget of every surface and soft body; 0: each one's own
-  double unit = 1.0;   // [m] unit of a bare mesh
+  bool fit = false;            // also print the models chosen by error budgets, with the measurements
+  double error = 0.0;          // [1] budget of every surface and soft body; 0: each one's own
+  std::optional<double> unit;  // [m] of a bare mesh; empty: not said
 };
 int inspect(const InspectOptions& options);
 
@@ -26,8 +26,8 @@ struct ConvertOptions {
   int draco_bits = 0;  // 0: as the input
   bool no_draco = false;
   bool reorder = false;
-  double unit = 1.0;   // [m] unit of the input
-  bool force = false;  // replace existing files
+  std::optional<double> unit;  // [m] of the input; empty: not said
+  bool force = false;          // replace existing files
 };
 int convert(const ConvertOptions& options);
 
@@ -38,12 +38,17 @@ struct AuthorOptions {
   std::string pin = "bottom";              // a Side, or none
   std::string tool;                        // an Instrument, or none; empty: rod where something is soft
   bool probe = false;
-  double unit = 1.0;   // [m] unit of the input
-  bool force = false;  // replace existing files
+  std::optional<double> unit;  // [m] of the input; empty: not said
+  bool force = false;          // replace existing files
 };
 int author(const AuthorOptions& options);
 
-int validate(const std::string& level);
+struct ValidateOptions {
+  std::string level;
+  std::optional<double> unit;  // [m] of a bare mesh; empty: not said
+  bool json = false;
+};
+int validate(const ValidateOptions& options);
 
 int devices(bool json);
 

@@ -2,15 +2,8 @@
 // field on the GPU and the field on the CPU agree to rounding. Needs shape.glsl before it. methods.md 1.3, 1.4.
 //
 // A source is three vec4: place = (center [m], 1/R^2), push = (unit normal, amplitude [m]), kind = (parameter, shape,
-// 0, 0), with shapes numbered as in components/deformable.h. Returned: (nx, ny, nz, h), added to N0 and along N0.
-
-SHARED vec2 field_profile(int shape, float u, float parameter) {
-  if (shape == 4) return shape_volume(u, parameter);
-  if (shape == 3) return shape_wendland(u);
-  if (shape == 2) return shape_gaussian(u);
-  if (shape == 1) return shape_hertz(u, parameter);
-  return shape_punch(u, parameter);
-}
+// 0, 0), with shapes numbered by their lines in components/built_in.h. Returned: (nx, ny, nz, h), added to N0 and along
+// N0.
 
 // A radial shape: d from the contact to the vertex [m], N the vertex's normal, M the contact's.
 SHARED vec4 field_radial(vec3 d, vec3 N, vec3 M, float inv_reach2, float amplitude, vec2 f) {
@@ -42,12 +35,12 @@ SHARED vec4 field_kelvinlet(vec3 d, vec3 N, vec3 M, float inv_reach2, float ampl
   return vec4(amplitude * gradient, -amplitude * f * w.x);
 }
 
+// The target of a shape at offset d, by its number: chosen by the list of shapes (shape_list.glsl; shape.h in C++).
+SHARED vec4 field_of_shape(int shape, vec3 d, vec3 N, vec3 M, float inv_reach2, float amplitude, float parameter);
+
 // The same with offset d instead of the positions of source and vertex, and M instead of the source's normal.
 SHARED vec4 field_target_at(vec4 place, vec4 push, vec4 kind, vec3 d, vec3 N, vec3 M) {
-  int shape = int(kind.y);
-  if (shape == 5) return field_kelvinlet(d, N, M, place.w, push.w, kind.x);
-  float u = min(dot(d, d) * place.w, 1.0f);
-  return field_radial(d, N, M, place.w, push.w, field_profile(shape, u, kind.x));
+  return field_of_shape(int(kind.y), d, N, M, place.w, push.w, kind.x);
 }
 
 SHARED vec4 field_target(vec4 place, vec4 push, vec4 kind, vec3 P, vec3 N) {

@@ -4,7 +4,8 @@
 // f(rho) is the displacement of a vertex at distance r = rho R from the contact, as a share of the amplitude; f(0) = 1.
 // Each function takes u = rho^2 in [0, 1] and returns (f, df/du). The gradient along the surface is 2 (df/du) d / R^2,
 // with d the vector from the contact, so no square root is needed where f is a polynomial in u. SHARED is `inline` in
-// C++ and nothing in GLSL.
+// C++ and nothing in GLSL. To add one, write shape_NAME(u, parameter) here and its line in components/built_in.h; a shape
+// without a parameter calls it unused.
 
 // Volume-preserving: (1-u)^3 (1 - c u). On a flat surface c = 5 leaves no net volume; force_field solves for c on the
 // mesh.
@@ -15,7 +16,7 @@ SHARED vec2 shape_volume(float u, float c) {
 }
 
 // Wendland C2: (1-rho)^4 (4 rho + 1).
-SHARED vec2 shape_wendland(float u) {
+SHARED vec2 shape_wendland(float u, float unused) {
   float rho = sqrt(u);
   float w = 1.0f - rho;
   float w3 = w * w * w;
@@ -45,7 +46,7 @@ SHARED float shape_exp(float x) {
 }
 
 // exp(-(3 rho)^2), windowed.
-SHARED vec2 shape_gaussian(float u) {
+SHARED vec2 shape_gaussian(float u, float unused) {
   float e = shape_exp(-9.0f * u);
   return shape_windowed(vec2(e, -9.0f * e), u);
 }

@@ -30,7 +30,7 @@ dmat3 block(const Matrix6& m, int row, int column) {
 
 // Valid where pose and handle are of the same time (tool_feedback.cpp: pull_device).
 void add_coupling(const World& world, const ToolTouchState& tool, Slopes& slopes) {
-  if (!tool.placed || !tool.sensing) return;
+  if (!tool.placed() || !tool.sensing) return;
   const HandleModel& model = tool.model.read();
   const RigidMotion target = tool.sensed.at(model.centre);
   const CouplingForce bond = coupling_force(settings_of(world, tool), tool.handle, target);

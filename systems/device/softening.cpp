@@ -26,7 +26,7 @@ double steepest(const Contact& contact) {
 template <class Stiffness>
 double stiffness_of(const World& world, Entity effector, const Stiffness& of) {
   double stiffness = 0.0;
-  if (const ToolTouchState* const tool = find_tool(world, effector); tool && tool->placed && tool->sensing)
+  if (const ToolTouchState* const tool = find_tool(world, effector); tool && tool->placed() && tool->sensing)
     stiffness += settings_of(world, *tool).translation[0];
   if (!world.registry.has<Probe>(effector)) return stiffness;
   dmat3 sum(0.0);

@@ -129,7 +129,8 @@ Status prepare_tools(World& world) {
     const Pose pose{probe.position, probe.rotation};
     world.tools->tools.push_back(make_tool(entity, probe.device, &pose));
     ToolTouchState& tool = *world.tools->tools.back();
-    tool.is_probe = tool.away = true;
+    tool.is_probe = true;
+    tool.state = HandleState::kSetBack;
     tool.settings = probe_handle(probe, world.registry.get<HapticDevice>(probe.device));
   }
   return Done{};

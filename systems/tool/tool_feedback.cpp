@@ -62,15 +62,15 @@ int settle_ticks(const HandleModel& model) {
 
 void adopt(ToolTouchState& tool, const HandleModel& model) {
   if (model.aside) return;
-  if (model.set_backs != tool.models_set_back) tool.placed = tool.away = false;  // the soft clock has moved the tool
+  const bool moved = model.set_backs != tool.models_set_back;  // by the soft clock
   tool.models_set_back = model.set_backs;
-  if (tool.away) return;
-  if (!tool.placed) {
-    tool.handle = model.handle;
-    if (tool.returns && tool.sensing) tool.handle = tool.sensed.at(model.centre);  // no initial stretch of the spring
-    tool.returns = false;
+  const bool waits = tool.state == HandleState::kSetBack || tool.state == HandleState::kReturns;
+  if (waits && !moved) return;
+  if (moved || !tool.placed()) {
+    const bool at_device = tool.state == HandleState::kReturns && tool.sensing;  // no initial stretch of the spring
+    tool.handle = at_device ? tool.sensed.at(model.centre) : model.handle;
     tool.wrench = model.force;
-    tool.placed = true;
+    tool.state = HandleState::kFollows;
   }
   tool.displacement = displacement(model.handle, tool.handle);
   tool.contacts.start(model.contacts);
@@ -188,9 +188,9 @@ bool got_away(const ToolTouchState& tool, const HandleModel& model) {
          length(linear(speed)) > kRunaway || length(angular(speed)) > kRunawayTurn;
 }
 
-// A non-finite model must not enter the handle: the force is zero until the next one.
-void forget(ToolTouchState& tool) {
-  tool.placed = false;
+// The force is zero until the handle is placed again.
+void unplace(ToolTouchState& tool, HandleState state) {
+  tool.state = state;
   tool.handle = tool.sensed;
   tool.gained.setZero();
   tool.fade.setZero();
@@ -207,8 +207,7 @@ bool stands_aside(const World& world, ToolTouchState& tool) {
   tool.aside = hold.hovers || !(hold.body == kNoEntity);
   if (!tool.aside && !was) return false;
   ++tool.set_backs;
-  forget(tool);
-  tool.away = tool.returns = true;
+  unplace(tool, HandleState::kReturns);
   return tool.aside;
 }
 
@@ -227,10 +226,10 @@ void feel_pull(const World& world, ToolTouchState& tool, const HandleModel& mode
 void tell_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
   ToolInput& input = tool.input.write();
   input.status = tool.sensing ? DeviceStatus::kReady : DeviceStatus::kLost;
-  input.time = tool.placed ? tick.time + tick.dt : tick.time;
+  input.time = tool.placed() ? tick.time + tick.dt : tick.time;
   input.tick = tick.dt;
   input.device = tool.sensed;
-  input.placed = tool.placed;
+  input.placed = tool.placed();
   input.handle = tool.handle;
   input.impulse = tool.impulse;
   input.set_backs = tool.set_backs;
@@ -240,7 +239,7 @@ void tell_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
     input.max_force = world.registry.get<HapticDevice>(tool.device).max_force;
   }
   tool.input.publish();
-  if (tool.placed) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
+  if (tool.placed()) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
 }
 
 // The device between two poses `elapsed` [s] apart, `since` [s] after the first. Over a short time: constant
@@ -292,18 +291,17 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
   if (tool.is_probe && sensing && tool.set_backs == 0) tool.set_backs = 1;  // moves its shell to its device
   if (stands_aside(world, tool)) {
     if (sensing) feel_pull(world, tool, model, settings, tick);
-  } else if (tool.placed && sensing) {
+  } else if (tool.placed() && sensing) {
     catch_up(tool, model, settings, before, missed, tick);
     pull_device(tool, model, settings);
     step(tool, model, settings, tick);
     if (!motion_is_finite(tool.handle)) {
       world.dropped |= kDroppedNonFinite;
-      forget(tool);
+      unplace(tool, HandleState::kNew);  // a non-finite model must not enter the handle
     } else if (got_away(tool, model)) {
       world.dropped |= kDroppedSetBack;
       ++tool.set_backs;
-      forget(tool);
-      tool.away = true;
+      unplace(tool, HandleState::kSetBack);
     }
   } else {  // without a device the handle stays at its pose
     tool.handle.velocity.setZero();

@@ -21,7 +21,7 @@ dvec3 pushed_by(const CondensedContacts& contacts, const CondensedState& state) 
 bool read_contact(const ToolTouchState& tool, double least, ProbeReading& out) {
   const HandleModel& model = tool.model.read();
   const dvec3 push = pushed_by(model.contacts, tool.contacts);
-  if (!tool.placed || !(length(push) > least)) return false;
+  if (!tool.placed() || !(length(push) > least)) return false;
   out.in_contact = true;
   out.normal = normalize(push);
   out.depth = tool.sensing ? length(tool.sensed.at(model.centre).pose.position - tool.handle.pose.position) : 0.0;

@@ -66,6 +66,14 @@ struct Pull {
   double held_for = 0.0;     // [s]
 };
 
+// Where the handle is in its life; adopt() in tool_feedback.cpp makes each step towards kFollows.
+enum class HandleState : std::uint8_t {
+  kNew,      // without a model, or with one that was not finite: the next model places it
+  kFollows,  // placed: it moves in every tick
+  kSetBack,  // too far from its device: waits until the soft clock has moved the tool there
+  kReturns,  // of a probe that hovered or pulled: as kSetBack, then placed at its device's pose of that tick
+};
+
 struct ToolTouchState {
   Entity entity;  // has a Handle6 and a SoftBody or RigidBody; or a Probe
   bool is_probe = false;
@@ -89,8 +97,10 @@ struct ToolTouchState {
   ToolForce wanted = ToolForce::kContacts;  // Handle6::force
   SweepLimits limits;                       // of a tick; in lockstep budget_ns is 0: no wall time, always the same bits
 
-  // Valid since the first model.
-  bool placed = false;
+  HandleState state = HandleState::kNew;
+  bool placed() const { return state == HandleState::kFollows; }
+
+  // Valid while placed.
   ToolForce used = ToolForce::kHeld;       // kContacts until late
   int late = 0;                            // ticks in a row
   RigidMotion handle;                      // of its centre
@@ -108,9 +118,7 @@ struct ToolTouchState {
   double sensed_at = 0.0;                   // [s] beginning of the tick that sensed it
   Vector6 wrench = Vector6::Zero();         // [N], [N m] tissue and contacts on the handle, over the last tick
   Vector6 impulse = Vector6::Zero();        // [N s], [N m s] its sum over time
-  bool away = false;                        // waits to be set back to the device
   bool aside = false;                       // of a probe: it hovers or pulls, without contacts with bodies
-  bool returns = false;                     // it was aside, and returns at its device's current pose
   std::uint32_t set_backs = 0;              // number of requests to be set back
   std::uint32_t models_set_back = 0;        // HandleModel::set_backs of the model in use
   Vector6 device_wrench = Vector6::Zero();  // [N], [N m] wanted, on the device at its origin

@@ -45,7 +45,7 @@ Result<FieldCost> measure_field_cost(const World& world, double frame_rate) {
   const float reach = static_cast<float>(deformable->reach > 0 ? deformable->reach : default_reach(*mesh));
   source.inv_reach2 = 1 / (reach * reach);
   source.shape = deformable->shape;
-  source.parameter = source.shape == Shape::kVolume ? 5.0f : 0.04f;
+  source.parameter = shape_parameter(source.shape, 0.2 * double(reach), double(reach), 1.0);
 
   FieldCost cost;
   std::vector<std::uint32_t> zones;

@@ -23,7 +23,7 @@ std::vector<float> coefficients_of(const Motion& motion, const PaintedMotion& pa
     if (motion.nonlinear()) {
       out.push_back(painted.empty() ? static_cast<float>(motion.mass) : painted.mass[v]);
       out.push_back(painted.empty() ? static_cast<float>(motion.damping) : painted.damping[v]);
-    } else if (motion.law.kind == SpringLaw::kStandardLinearSolid) {
+    } else if (motion.arm()) {
       for (std::size_t i = 0; i < 9; ++i)
         out.push_back(painted.empty() ? static_cast<float>(motion.solid[i / 3][i % 3]) : painted.solid[v][i]);
       out.push_back(arm_stiffness(motion, mesh, v));
@@ -67,7 +67,7 @@ FieldReplay::FieldReplay(const Mesh& mesh, const Deformable& deformable, double 
   const std::vector<float> coefficients = coefficients_of(motion_, painted, mesh);
   coefficients_ = gpu::Buffer::fixed(std::span<const float>(coefficients));
   stride_ = painted.empty() ? 0 : static_cast<std::uint32_t>(coefficients.size() / mesh.vertex_count);
-  const bool solid = motion_.law.kind == SpringLaw::kStandardLinearSolid;
+  const bool solid = motion_.arm();
   state_ = gpu::Buffer::writable(nullptr, std::size_t{vertices_} * (solid ? 4 : 2) * sizeof(vec4));
   clear_ = true;
 }
@@ -250,6 +250,7 @@ std::size_t FieldReplay::evaluate(const ReplayProgram& program, const gpu::Buffe
   };
   whole("vertex_count", vertices_);
   whole("law", static_cast<std::uint32_t>(motion_.law.kind));
+  whole("way", static_cast<std::uint32_t>(row_of(motion_.law.kind).step));
   whole("lags", lag_);
   whole("has_offsets", has_offsets_);
   whole("stride", stride_);

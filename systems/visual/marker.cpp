@@ -26,6 +26,7 @@ constexpr float kNormalLength = 0.045f, kNormalRadius = 0.004f, kThinArrow = 0.4
 constexpr float kWantedBall = 0.008f, kShortestCoupling = 1e-4f;
 constexpr std::size_t kMostInstances = 9 + 2 * kMostShownContacts;  // per probe: ball, stylus, arrow (2), frame (3),
                                                                     // shaft and its end, arrows (2 each)
+constexpr std::size_t kMostOfPart = 3;                              // two balls, shaft
 constexpr std::size_t kMostOfContact = 3;                           // normal, arrow (2)
 constexpr std::size_t kMostOfHandle = 7;                            // frame (3), coupling, the device's end, arrow (2)
 const vec3 kFrameColors[3] = {{0.85f, 0.06f, 0.04f}, {0.08f, 0.75f, 0.06f}, {0.05f, 0.15f, 0.90f}};
@@ -57,8 +58,7 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
                             probe.force,
                             dvec3(0),
                             probe.rotation,
-                            static_cast<float>(probe.length),
-                            probe.points,
+                            probe_parts(probe),
                             0,
                             {}});
 
@@ -77,10 +77,10 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
   for ([[maybe_unused]] auto [entity, soft] : world.registry.view<SoftBody>()) made.most_contacts_ = kMaxShownContacts;
   for ([[maybe_unused]] auto [entity, rigid] : world.registry.view<RigidBody>())
     made.most_contacts_ = kMaxShownContacts;
-  std::size_t tips = 0;
-  for (const Known& probe : made.probes_) tips += probe.points.size();
-  const std::size_t most = made.probes_.size() * kMostInstances + tips + made.most_contacts_ * kMostOfContact +
-                           made.most_handles_ * kMostOfHandle;
+  std::size_t parts = 0;
+  for (const Known& probe : made.probes_) parts += probe.parts.size();
+  const std::size_t most = made.probes_.size() * kMostInstances + kMostOfPart * parts +
+                           made.most_contacts_ * kMostOfContact + made.most_handles_ * kMostOfHandle;
   made.instances_ = gpu::Buffer::writable(nullptr, most * sizeof(Instance));
 
   made.layout_ = gpu::VertexArray::make();
@@ -152,7 +152,8 @@ void Markers::place(Kind kind, vec3 from, vec3 to, float radius, vec3 color, flo
 
 void Markers::lay_out_probe(const Known& probe, vec3 ball, float radius, const Viewpoint& viewpoint) {
   const vec3 out = outward(probe);
-  if (probe.length > 0 || !probe.points.empty()) return lay_out_tips(probe, radius);
+  const ProbePart& only = probe.parts.front();
+  if (probe.parts.size() > 1 || !only.is_sphere() || only.from != dvec3(0)) return lay_out_parts(probe, radius);
   place(kBall, ball, ball + radius * out, radius, probe.color, 0.25f);
   // The stylus leans away from the arrow, clockwise as seen, and upwards the more the arrow points at the eye, so that
   // both are distinguishable. It leans elsewhere if it would cover the arrow of one of several contacts.
@@ -171,15 +172,17 @@ void Markers::lay_out_probe(const Known& probe, vec3 ball, float radius, const V
   place(kRod, ball, ball + (radius + kRodLength * diagonal_) * lean, kRodRadius * radius, kRodColor, 0.35f);
 }
 
-// A capsule's shaft between its two ends, and a ball at every tip of a set.
-void Markers::lay_out_tips(const Known& probe, float radius) {
-  const vec3 from(probe.position), up(probe.rotation * dvec3(0, 1, 0));
-  const auto ball = [&](vec3 at) { place(kBall, at, at + radius * up, radius, probe.color, 0.25f); };
-  for (const vec3& point : probe.points) ball(from + vec3(probe.rotation * dvec3(point)));
-  if (!(probe.length > 0)) return;
-  ball(from);
-  ball(from + probe.length * up);
-  place(kRod, from, from + probe.length * up, radius, kRodColor, 0.35f);
+// A ball at every sphere, and a capsule's shaft between its two balls.
+void Markers::lay_out_parts(const Known& probe, float radius) {
+  const vec3 up(probe.rotation * dvec3(0, 1, 0));
+  const auto at = [&](dvec3 place) { return vec3(probe.position + probe.rotation * place); };
+  const auto ball = [&](vec3 center) { place(kBall, center, center + radius * up, radius, probe.color, 0.25f); };
+  for (const ProbePart& part : probe.parts) {
+    ball(at(part.from));
+    if (part.is_sphere()) continue;
+    ball(at(part.to));
+    place(kRod, at(part.from), at(part.to), radius, kRodColor, 0.35f);
+  }
 }
 
 // An arrow at `from` along the force; its length is proportional to the force, up to a limit.

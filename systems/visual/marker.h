@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "components/probe_shape.h"
 #include "components/world.h"
 #include "runtime/result.h"
 #include "systems/visual/gpu/buffer.h"
@@ -39,8 +40,7 @@ class Markers {
     dvec3 force{0};     // [N] world
     dvec3 normal{0};    // [1] of the surface it touches, world; 0: none
     dquat rotation{1, 0, 0, 0};
-    float length = 0.0f;       // [m] of a capsule
-    std::vector<vec3> points;  // [m] of tips, probe frame
+    std::vector<ProbePart> parts;
     std::uint32_t contact_count = 0;
     std::array<ProbeContact, kMostShownContacts> contacts;
   };
@@ -56,7 +56,7 @@ class Markers {
   vec3 outward(const Known& probe) const;
   void lay_out_probe(const Known& probe, vec3 ball, float radius, const Viewpoint& viewpoint);
   void lay_out_force(const Known& probe, vec3 ball, float radius);
-  void lay_out_tips(const Known& probe, float radius);
+  void lay_out_parts(const Known& probe, float radius);
   void lay_out_frame(const Known& probe);
   void lay_out_contact(const ContactMark& contact);
   void lay_out_handle(const HandleMark& handle);

@@ -89,7 +89,7 @@ TEST(CarriedParts, WhatIsLeftBehindIsNamed) {
   bool warned = false;
   for (const Finding& finding : validate_level(level, {}))
     warned = warned ||
-             (finding.severity == Severity::kWarning && finding.message.find("leaves behind") != std::string::npos);
+             (finding.severity == Severity::kWarning && finding.message().find("leaves behind") != std::string::npos);
   EXPECT_TRUE(warned);
 }
 

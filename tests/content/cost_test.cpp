@@ -26,7 +26,7 @@ std::string found(const Gltf& gltf) {
   const Bytes bytes = gltf.glb();
   if (open_gltf(bytes, true, {}, findings)) return "";
   for (const Finding& each : findings)
-    if (each.severity == Severity::kError) return each.pointer + ": " + each.message;
+    if (each.severity == Severity::kError) return each.pointer + ": " + each.message();
   return "nothing";
 }
 
@@ -118,7 +118,7 @@ TEST(Cost, APlaceholderOfAnySizeAllowsNothing) {
     Findings findings;
     const bool opened =
         open_gltf({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, false, {}, findings).has_value();
-    return opened ? std::string() : findings.back().pointer + ": " + findings.back().message;
+    return opened ? std::string() : findings.back().pointer + ": " + findings.back().message();
   };
   const Lowered lowered(kEightMiB);
   const std::string alone = found_beside(nullptr);

@@ -118,7 +118,7 @@ TEST(DeviceRequest, ValidateSaysWhatIsAskedForAndWhatIsRefused) {
   const auto said = [](const std::string& id, Severity severity) {
     std::string text;
     for (const Finding& finding : validate_level(level_with(id)))
-      if (finding.severity == severity) text += finding.message + "\n";
+      if (finding.severity == severity) text += finding.message() + "\n";
     return text;
   };
   EXPECT_THAT(said("network:10.0.0.7:1", Severity::kError), HasSubstr("talks to an address of the network"));

@@ -41,7 +41,7 @@ class HostileFiles : public ::testing::Test {
     const bool sound =
         open_gltf({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, false, folder_, findings)
             .has_value();
-    return sound || findings.empty() ? "" : findings.back().pointer + ": " + findings.back().message;
+    return sound || findings.empty() ? "" : findings.back().pointer + ": " + findings.back().message();
   }
 
   const fs::path folder_ = fs::temp_directory_path() / ("pliant_hostile_" + std::to_string(::getpid()));
@@ -162,7 +162,7 @@ TEST_F(HostileFiles, ValidateRefusesALevelThatIsTooLargeBeforeItBuildsAMesh) {
   const fs::path file = write("many.glb", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   const auto says = [](const Findings& findings, const char* what) {
     return std::any_of(findings.begin(), findings.end(),
-                       [&](const Finding& each) { return each.message.find(what) != std::string::npos; });
+                       [&](const Finding& each) { return each.message().find(what) != std::string::npos; });
   };
   EXPECT_TRUE(says(validate_level(file), "is open along"));
   const Lowered lowered(4.0 / limits::kSurfaces.most);

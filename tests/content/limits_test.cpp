@@ -55,10 +55,10 @@ TEST(Limits, EachHasAUnitAndAReasonAndOnlyThoseThatMayAreScaled) {
 }
 
 TEST(Limits, ASentenceSaysHowMuchIsAllowedWhyAndWhatAllowsIt) {
-  EXPECT_EQ(beyond({100, "apples", "they rot"}, 250, "eat some"),
-            "250 apples, more than the 100 that are taken (they rot); eat some, or allow it with --limits 3");
-  EXPECT_EQ(beyond({100, "apples", "they rot", false}, 250, "eat some"),
-            "250 apples, more than the 100 that are taken (they rot); eat some")
+  EXPECT_EQ(beyond("has", {100, "apples", "they rot"}, 250, "eat some").message(),
+            "has 250 apples, more than the 100 that are taken (they rot); eat some, or allow it with --limits 3");
+  EXPECT_EQ(beyond("has", {100, "apples", "they rot", false}, 250, "eat some").message(),
+            "has 250 apples, more than the 100 that are taken (they rot); eat some")
       << "what does not scale is not promised";
 }
 

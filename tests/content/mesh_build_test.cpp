@@ -274,7 +274,7 @@ TEST(MeshBuild, RefusesWhatIsNoSurfaceWithOneSentence) {
     Result<BuiltMesh> built = build_mesh("bad", {&bad, 1}, mat4(1.0f));
     ASSERT_FALSE(built.ok());
     EXPECT_THAT(built.error().message(), testing::HasSubstr("mesh `bad`: "));
-    EXPECT_THAT(built.error().what, testing::HasSubstr(";"));
+    EXPECT_NE(built.error().cure, "");
   }
 }
 

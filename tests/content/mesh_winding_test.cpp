@@ -132,7 +132,7 @@ TEST(MeshWinding, APartInsideOutThatCrossesAnotherIsLeftAndNamed) {
   const BuiltMesh built = build(joined({icosphere(3), inside_out(placed(icosphere(2), 0.6f, {0.9f, 0.05f, 0.02f}))}));
   EXPECT_EQ(built.report.turned_parts, 0u);
   EXPECT_EQ(built.report.undecided_parts, 1u);
-  EXPECT_THAT(winding_doubt(built.report), testing::StartsWith("1 part may be inside out"));
+  EXPECT_THAT(winding_doubt(built.report)->message(), testing::StartsWith("1 part may be inside out"));
 }
 
 TEST(MeshWinding, AMoebiusStripIsLeftAsItIsAndNamed) {
@@ -153,8 +153,8 @@ TEST(MeshWinding, AMoebiusStripIsLeftAsItIsAndNamed) {
   const BuiltMesh built = build(p);
   EXPECT_EQ(built.report.unorientable_parts, 1u);
   EXPECT_EQ(built.report.turned_triangles + built.report.turned_parts, 0u);
-  EXPECT_THAT(winding_doubt(built.report), testing::StartsWith("1 part has one side only"));
-  EXPECT_EQ(winding_note(built.report), "");
+  EXPECT_THAT(winding_doubt(built.report)->message(), testing::StartsWith("1 part has one side only"));
+  EXPECT_FALSE(winding_note(built.report));
 }
 
 TEST(MeshWinding, AnOpenPartFollowsTheFilesNormalsWhereTheyAgree) {
@@ -205,7 +205,7 @@ TEST(MeshWinding, ValidateNamesWhatWasTurnedAndWhatCouldNotBeDecided) {
   const auto messages = [&](const Primitive& p) {
     EXPECT_TRUE(save_level(level_of(p), file).ok());
     std::string all;
-    for (const Finding& finding : validate_level(file)) all += finding.message + "\n";
+    for (const Finding& finding : validate_level(file)) all += finding.message() + "\n";
     return all;
   };
   EXPECT_THAT(messages(inside_out(icosphere(2))), testing::HasSubstr("1 part that was inside out is turned over"));

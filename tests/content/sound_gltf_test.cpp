@@ -31,7 +31,7 @@ class SoundGltf : public ::testing::Test {
     std::string all;
     for (const Finding& finding : validate_level(write(gltf)))
       if (finding.severity != Severity::kNote)
-        all += (finding.severity == Severity::kError ? "E " : "W ") + finding.pointer + ": " + finding.message + "\n";
+        all += (finding.severity == Severity::kError ? "E " : "W ") + finding.pointer + ": " + finding.message() + "\n";
     return all;
   }
   const fs::path folder_ = fs::temp_directory_path() / ("pliant-sound-gltf-" + std::to_string(::getpid()));
@@ -119,7 +119,7 @@ TEST_F(SoundGltf, ARealOrganWithAZeroNormalIsConvertedWithoutOne) {
   if (!fs::exists(kidney)) GTEST_SKIP() << "the corpus is not beside the project";
   const auto zeros = [](const Findings& found) {
     return std::count_if(found.begin(), found.end(), [](const Finding& finding) {
-      return finding.message.find("of length 0") != std::string::npos;
+      return finding.message().find("of length 0") != std::string::npos;
     });
   };
   Findings before, after;
@@ -193,7 +193,7 @@ TEST_F(SoundGltf, WhatPreparingARunRefusesIsSaidOfTheNode) {
   });
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.back().pointer, "/nodes/0");
-  EXPECT_EQ(found.back().message, "cannot be prepared");
+  EXPECT_EQ(found.back().message(), "cannot be prepared");
 }
 
 TEST_F(SoundGltf, AnExtensionInTheWrongPlaceIsToldTheRightOne) {

@@ -3,11 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <random>
 
 #include "content/mesh/mesh_build.h"
+#include "content/openable.h"
 #include "content/tets/lattice.h"
 #include "content/tets/tet_boundary.h"
 #include "content/tets/tet_quality.h"
@@ -121,7 +125,7 @@ TEST(TetFile, FaultsAreToldInOneSentenceWithTheirPlace) {
     const Result<TetFile> file = parse(text.replace(at, std::strlen(from), to));
     ASSERT_FALSE(file.ok()) << to;
     EXPECT_THAT(file.error().where, HasSubstr(where)) << file.error().message();
-    EXPECT_THAT(file.error().what, HasSubstr(what));
+    EXPECT_THAT(file.error().sentence(), HasSubstr(what));
     EXPECT_THAT(file.error().message(), testing::Not(HasSubstr("\n")));
   };
   const std::string two = test::msh_2(kOne, false, false), four = test::msh_4(kOne, false, false),
@@ -206,6 +210,21 @@ TEST(TetQuality, AgreesWithClosedForms) {
   EXPECT_NEAR(right.smallest_dihedral, std::acos(1.0 / std::sqrt(3.0)), 1e-12);
   EXPECT_NEAR(right.largest_dihedral, std::acos(0.0), 1e-12);
   EXPECT_NEAR(right.median_ratio, 6.0 / (std::sqrt(3.0) * (3.0 + std::sqrt(3.0))), 1e-12);
+}
+
+// One list for readers, the file browser, dropped files and messages.
+TEST(TetFile, EveryEndingIsReadOpenedAndDocumented) {
+  std::ifstream file(std::string(PLIANT_SOURCE_DIR) + "/docs/level-format.md");
+  const std::string docs(std::istreambuf_iterator<char>(file), {});
+  for (const std::string& ending : tet_endings()) {
+    std::string upper = ending;
+    std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return std::toupper(c); });
+    EXPECT_TRUE(is_tet_file("a" + ending) && is_tet_file("a" + upper)) << ending;
+    EXPECT_TRUE(has_ending("a" + upper, openable_endings())) << ending;
+    EXPECT_THAT(docs, HasSubstr("`" + ending + "`"));
+    EXPECT_THAT(load_tets("mesh.obj").error().message(), HasSubstr(ending));
+  }
+  for (const std::string& ending : mesh_endings()) EXPECT_FALSE(is_tet_file("a" + ending)) << ending;
 }
 
 }  // namespace

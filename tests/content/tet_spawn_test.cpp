@@ -182,7 +182,7 @@ TEST(SpawnSoft, ValidateTellsContradictionsNotesOfFilesAndTissueThatFallsApart) 
     EXPECT_TRUE(save_level(level, saved.path).ok());
     std::string all;
     for (const Finding& finding : validate_level(saved.path))
-      all += (finding.severity == Severity::kError ? "error " : "other ") + finding.pointer + ": " + finding.message +
+      all += (finding.severity == Severity::kError ? "error " : "other ") + finding.pointer + ": " + finding.message() +
              "\n";
     return all;
   };

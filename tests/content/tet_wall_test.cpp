@@ -18,6 +18,7 @@ namespace {
 
 using test::icosphere;
 using testing::Contains;
+using testing::Field;
 using testing::HasSubstr;
 
 constexpr double kBall = 4.0 / 3.0 * std::numbers::pi;  // [m3] of radius 1
@@ -80,7 +81,7 @@ TEST(Wall, OfADoubleWallTheInsideIsFilledWhetherItIsClosedOrOpen) {
     EXPECT_GT(mesh.tets.size(), 1600u);
     EXPECT_LT(mesh.tets.size(), 2400u);
     EXPECT_NEAR(mesh.report.wall, 0.01, 0.002);
-    EXPECT_THAT(mesh.report.findings, Contains(HasSubstr("is a wall of")));
+    EXPECT_THAT(mesh.report.notes, Contains(Field(&Note::what, HasSubstr("is a wall of"))));
   }
 }
 
@@ -110,7 +111,7 @@ TEST(Wall, ThickWallsStayHollowAndSolidsAreNoWalls) {
     EXPECT_EQ(filled(built(capsule(0.5f)), {cell}).report.wall, 0.0);
     const TetMesh ball = filled(built({icosphere(4)}), {cell});
     EXPECT_EQ(ball.report.wall, 0.0);
-    EXPECT_THAT(ball.report.findings, testing::IsEmpty());
+    EXPECT_THAT(ball.report.notes, testing::IsEmpty());
   }
 }
 
@@ -184,7 +185,7 @@ TEST(Parts, CrumbsAreDroppedUnlessTheyAreHeldAndThatIsSaid) {
   EXPECT_EQ(count_parts(free->tets), 1u);
   EXPECT_EQ(free->group.size(), free->tets.nodes.size());
   for (const dvec3& node : free->tets.nodes) EXPECT_LT(node.x, 1.1);
-  EXPECT_THAT(free->tets.report.findings, Contains(HasSubstr("lost 1 part too small to keep")));
+  EXPECT_THAT(free->tets.report.notes, Contains(Field(&Note::what, HasSubstr("lost 1 part too small to keep"))));
   body.pinned = Box{vec3(1.5f, -1, -1), vec3(2, 1, 1)};
   const Result<FilledBody> held = make_tissue(surface, body, nullptr);
   ASSERT_TRUE(held) << held.error().message();
@@ -195,10 +196,11 @@ TEST(Thin, AFinIsWarnedOfWithACellThatHoldsItAndWithThatNoLonger) {
   const BuiltMesh finned =
       built({icosphere(4), moved(test::box(vec3(0.7f, 0.7f, 0.07f), false), 1.0f, vec3(0, 1.5f, 0))});
   const TetMesh mesh = filled(finned);
-  EXPECT_THAT(mesh.report.findings, Contains(testing::AllOf(HasSubstr("is thin over"), HasSubstr("14 cm"))));
+  EXPECT_THAT(mesh.report.notes,
+              Contains(Field(&Note::what, testing::AllOf(HasSubstr("is thin over"), HasSubstr("14 cm")))));
   EXPECT_NEAR(mesh.report.least_thickness, 0.14, 1e-3);
   EXPECT_GT(mesh.report.thinnest.y, 0.8f);
-  EXPECT_EQ(filled(finned, {0.07}).report.findings.size(), 0u);
+  EXPECT_EQ(filled(finned, {0.07}).report.notes.size(), 0u);
 }
 
 TEST(Preview, SaysWhatARunWouldMakeAndEndsWhenAsked) {
@@ -212,7 +214,7 @@ TEST(Preview, SaysWhatARunWouldMakeAndEndsWhenAsked) {
   EXPECT_EQ(preview->tetrahedra, tissue->tets.tets.size());
   EXPECT_EQ(preview->nodes.size(), tissue->tets.nodes.size());
   EXPECT_GT(preview->pinned, 10u);
-  EXPECT_THAT(preview->findings, Contains(HasSubstr("is a wall of")));
+  EXPECT_THAT(preview->notes, Contains(Field(&Note::what, HasSubstr("is a wall of"))));
   EXPECT_GT(preview->step_ms, 0.0);
   // Euler: nodes - edges + faces - tetrahedra of one solid part without holes.
   const std::size_t faces = (4 * preview->tetrahedra + boundary_triangles(tissue->tets.tets).size()) / 2;

@@ -30,16 +30,16 @@ void take(Editor& editor, const Level& level, const std::filesystem::path& folde
 void expect_mended(Editor& editor, const std::string& text, const std::string& node) {
   bool there = false;
   for (const EditorFinding& each : found_in(editor)) {
-    if (each.finding.message.find(text) == std::string::npos) continue;
+    if (each.finding.message().find(text) == std::string::npos) continue;
     there = true;
     EXPECT_EQ(each.node, id_of(editor.document, node));
-    ASSERT_TRUE(each.fix) << each.finding.message;
+    ASSERT_TRUE(each.fix) << each.finding.message();
     ASSERT_TRUE(editor.apply(each.fix->label, each.fix->fix(editor.state(), editor.document.next_id())));
     break;
   }
   ASSERT_TRUE(there) << "nothing is said of " << text;
   for (const EditorFinding& each : found_in(editor))
-    EXPECT_EQ(each.finding.message.find(text), std::string::npos) << each.finding.message;
+    EXPECT_EQ(each.finding.message().find(text), std::string::npos) << each.finding.message();
 }
 
 // As written by another program: an edit would reject the name of a node without a device.

@@ -80,7 +80,7 @@ TEST(SessionOpen, WhatATemporaryHoldsMayBeWalkedOver) {
   Session session = opened(press_scene());
   press(session, 0.02);
   int sentences = 0;
-  for (const std::string& each : session.findings().value()) sentences += each.empty() ? 0 : 1;
+  for (const Note& each : session.findings().value()) sentences += each.message().empty() ? 0 : 1;
   EXPECT_GT(sentences, 0) << "the force was clipped";
   int points = 0;
   for (const ContactReading& contact : session.reading("finger").value().contact) points += contact.depth > 0.0;

@@ -121,6 +121,52 @@ const std::vector<Source>& sources() {
   return all;
 }
 
+// A program goes by codes (docs/codes.md): the words of an error, finding or note are for people, and change.
+TEST(House, NoSourceLooksIntoASentence) {
+  const std::regex search(
+      R"(\b(message|sentence|what|cure)(\(\))?\s*\.\s*(find|rfind|starts_with|ends_with|contains|compare|substr)\s*\()"
+      R"(|find\(\s*"; ")");
+  // Libraries whose exceptions have words and nothing else; their words are shortened, not understood.
+  const std::set<std::string> third_party{"content/files/exr.cpp", "content/gltf/form/gltf_container.cpp",
+                                          "player/verbs/command_line.cpp"};
+  EXPECT_TRUE(std::regex_search(std::string("if (error.what.find(\"x\") == 0)"), search));
+  EXPECT_TRUE(std::regex_search(std::string("text.find(\"; \")"), search));
+  EXPECT_TRUE(std::regex_search(std::string("each.message().starts_with(a)"), search));
+  std::size_t checked = 0;
+  for (const Source& source : sources()) {
+    if (source.folder == "tests" || third_party.count(source.path)) continue;
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(source.text, found, search))
+        << source.path << " looks into words: " << found.str() << "...; go by a code";
+    ++checked;
+  }
+  EXPECT_GT(checked, 50u) << "the sources were not found";
+}
+
+// Codes are of one form, so that a search finds each, and are in the list.
+TEST(House, EveryCodeIsInTheDocument) {
+  std::ifstream in(fs::path(PLIANT_SOURCE_DIR) / "docs/codes.md");
+  std::stringstream text;
+  text << in.rdbuf();
+  const std::string document = text.str();
+  const std::regex code(
+      R"re("((?:disk|dropped|file|force|gltf|key|level|limit|mesh|name|panorama|run|script|soft|surface|tets|tissue|tool|torque|device)\.[a-z_]+)")re");
+  std::size_t found = 0;
+  for (const Source& source : sources()) {
+    if (source.folder != "content" && source.folder != "engine" && source.folder != "components" &&
+        source.folder != "devices" && source.path.rfind("player/", 0) != 0)
+      continue;
+    for (std::sregex_iterator at(source.text.begin(), source.text.end(), code), end; at != end; ++at) {
+      const std::string name = (*at)[1], family = name.substr(0, name.find('.'));
+      EXPECT_TRUE(document.find('`' + name + '`') != std::string::npos ||
+                  document.find("`." + name.substr(family.size() + 1) + '`') != std::string::npos)
+          << source.path << ": " << name << " is not in docs/codes.md";
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 50u);
+}
+
 TEST(House, EveryIncludePointsTowardsTheFoundation) {
   const std::regex include("(?:^|\\n)#include\\s+\"([^\"]+)\"");
   std::size_t checked = 0;

@@ -96,7 +96,8 @@ TEST_F(Sweep, AFullDiskIsNoFailureOfARun) {
                  {"status", "failed"},
                  {"axes", line["axes"]},
                  {"timing", line["timing"]},
-                 {"exit", 1},
+                 {"exit", 3},
+                 {"code", "disk.full"},
                  {"error", "out/forces.csv: No space left on device; free some space"}}
                 .dump() +
             "\n";

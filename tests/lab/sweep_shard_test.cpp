@@ -72,7 +72,7 @@ TEST(SweepShard, EveryRunHasOneShardWhateverTheEnvironment) {
         {{"PMI_RANK", "3"}, {"PMI_SIZE", "3"}}}) {
     const auto shard = choose(wrong);
     ASSERT_FALSE(shard);
-    EXPECT_NE(shard.error().what.find("--shard I/N"), std::string::npos) << shard.error().message();
+    EXPECT_NE(shard.error().message().find("--shard I/N"), std::string::npos) << shard.error().message();
   }
   // srun without an MPI plugin: a step of four tasks in a job of eight.
   Variables step{{"SLURM_STEP_ID", "1"}, {"SLURM_PROCID", "2"}, {"SLURM_NTASKS", "8"}, {"SLURM_STEP_NUM_TASKS", "4"}};

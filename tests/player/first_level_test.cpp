@@ -87,14 +87,44 @@ TEST_F(FirstLevel, ASurfaceGetsAProbeThatTouchesIt) {
   EXPECT_GT(report("out")["probes"][0]["max_force_N"].get<double>(), 0.05);
 }
 
-TEST_F(FirstLevel, AMeshInMillimetresIsSaidToBeLargeAndReadWithItsUnit) {
+// A mesh over 5 m across from a format without a unit: 5.2 m and 4.8 m at the two sides of it.
+TEST_F(FirstLevel, AMeshLargerThanARoomIsRefusedUntilItsUnitIsSaid) {
   write_text(folder / "organ.obj", organ_obj(1000.0));
-  const Said large = pliant({"author", "organ.obj", "--surface", "liver", "-o", "large.glb"});
-  EXPECT_EQ(large.status, 0);
-  EXPECT_NE(large.err.find("--unit mm"), std::string::npos) << large.err;
+  const std::string refused = "m across; say its unit, e.g. `--unit mm`";
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"author", "organ.obj", "--surface", "liver", "-o", "large.glb"},
+        {"run", "organ.obj", "--probe", "p=orbit", "--seconds", "0.01", "--frames", "0", "--out", "large"}}) {
+    const Said large = pliant(words);
+    EXPECT_EQ(large.status, 1) << words[0];
+    EXPECT_NE(large.err.find(refused), std::string::npos) << words[0] << ": " << large.err;
+  }
+  const Said invalid = pliant({"validate", "organ.obj", "--json"});
+  EXPECT_EQ(invalid.status, 1);
+  const Json findings = Json::parse(invalid.out);
+  ASSERT_EQ(findings.size(), 1u) << invalid.out;
+  EXPECT_EQ(findings[0]["code"], "mesh.unit");
+  EXPECT_EQ(findings[0]["severity"], "error");
+  EXPECT_EQ(findings[0]["cure"], "say its unit, e.g. `--unit mm`");
+  EXPECT_FALSE(fs::exists(folder / "large.glb"));
   const Said right = pliant({"author", "organ.obj", "--unit", "mm", "--surface", "liver", "-o", "right.glb"});
   EXPECT_EQ(right.status, 0);
   EXPECT_EQ(right.err, "");
+  for (const char* unit : {"mm", "m"})  // whoever says metres gets them
+    EXPECT_EQ(pliant({"validate", "organ.obj", "--unit", unit}).status, 0) << unit;
+  // A cube's diagonal is sqrt(3) times its edge.
+  const auto cube = [&](double edge) {
+    std::string text;
+    for (int i = 0; i < 8; ++i)
+      text += "v " + std::to_string(i & 1 ? edge : 0) + ' ' + std::to_string(i & 2 ? edge : 0) + ' ' +
+              std::to_string(i & 4 ? edge : 0) + '\n';
+    write_text(folder / "cube.obj", text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+    return pliant({"validate", "cube.obj"});
+  };
+  EXPECT_EQ(cube(4.99 / std::sqrt(3.0)).status, 0);
+  EXPECT_EQ(cube(5.01 / std::sqrt(3.0)).status, 1);
+  // glTF is in metres.
+  ASSERT_EQ(pliant({"convert", "cube.obj", "cube.glb"}).status, 0);
+  EXPECT_EQ(pliant({"validate", "cube.glb"}).status, 0);
 }
 
 TEST_F(FirstLevel, WhatCannotBeAuthoredIsRefusedAndNothingIsWritten) {

@@ -59,7 +59,7 @@ TEST_P(ShippedLevel, RunsAndEveryProbeTouchesWithoutGettingEnergy) {
     return begun && (sentence.find("never touched anything") != std::string::npos ||
                      sentence.find("and the run ends at") != std::string::npos);
   };
-  for (const Json& sentence : json["dropped"]) EXPECT_TRUE(of_beginning(sentence.get<std::string>())) << sentence;
+  for (const Json& note : json["notes"]) EXPECT_TRUE(of_beginning(note["what"].get<std::string>())) << note;
   for (const Json& probe : json["probes"]) EXPECT_EQ(probe["withheld"]["ticks"], 0) << probe;
   ASSERT_FALSE(json["probes"].empty());
   for (const Json& probe : json["probes"]) {

@@ -35,11 +35,17 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(Exit, PointsAtAHelpThatKnowsMore) {
-  EXPECT_EQ(sentence_of(kFailed, {"a.obj", "has no faces; export it again"}), "a.obj: has no faces; export it again");
+  EXPECT_EQ(sentence_of(kFailed, {"a.obj", "has no faces", "export it again"}), "a.obj: has no faces; export it again");
   EXPECT_EQ(sentence_of(kFailed, {"a.obj", "has no faces"}), "a.obj: has no faces") << "`validate` would say no more";
-  EXPECT_NE(sentence_of(kFailed, {"a.glb /nodes/0", "has no mesh", -1, "/nodes/0"}).find("; mend the level: `pliant v"),
+  EXPECT_NE(sentence_of(kFailed, {.where = "a.glb /nodes/0", .what = "has no mesh", .pointer = "/nodes/0"})
+                .find("; mend the level: `pliant v"),
             std::string::npos);
-  EXPECT_NE(sentence_of(kFailed, {"node `a`", "has no mesh", 0}).find("`pliant validate`"), std::string::npos);
+  EXPECT_NE(sentence_of(kFailed, {.where = "node `a`", .what = "has no mesh", .node = 0}).find("`pliant validate`"),
+            std::string::npos);
+  EXPECT_EQ(sentence_of(kUsage, {"--rate", "must be above 0; got 0", "give more"}),
+            "--rate: must be above 0; got 0; give more")
+      << "a semicolon means nothing";
+  EXPECT_EQ(fail(kFailed, {"forces.csv", "cannot be written", "free some space", "disk.full"}), kNoRoom);
   EXPECT_NE(sentence_of(kUsage, {"--rate", "is no number"}).find("; see `pliant --help`"), std::string::npos);
 }
 
@@ -245,7 +251,7 @@ TEST(Keeper, TicksWithAnOldModelOrLateContactsAreCountedAndSaidWithTheirCure) {
   auto keeper = Keeper::create(world, journal.probes(), {"script"}, csv);
   ASSERT_TRUE(keeper);
   for (std::uint64_t i = 0; i < 50; ++i) {  // before the handle is placed there is no model to be stale
-    state.placed = i >= 10;
+    state.state = i >= 10 ? HandleState::kFollows : HandleState::kNew;
     if (i == 20 || i == 21) ++state.ticks_late;
     journal.note(world, {i, 1e-3, 1e-3 * static_cast<double>(i)});
   }
@@ -254,12 +260,16 @@ TEST(Keeper, TicksWithAnOldModelOrLateContactsAreCountedAndSaidWithTheirCure) {
   const ProbeSummary& summary = keeper->summaries()[0];
   EXPECT_EQ(summary.late_ticks, 2u);
   EXPECT_EQ(summary.stale_ticks, 19u) << "ticks 31 to 49: older than 0.03 s";
-  const std::vector<std::string> said = explain_tool(world, summary);
+  const std::vector<Note> said = explain_tool(world, summary);
   ASSERT_EQ(said.size(), 2u);
-  EXPECT_NE(said[0].find("`hand`: the contact solve exceeded its time budget in 2 ticks"), std::string::npos)
-      << said[0];
-  EXPECT_NE(said[0].find("--tool-force linear"), std::string::npos) << said[0];
-  EXPECT_NE(said[1].find("in 19 ticks its model was older than 3 soft steps"), std::string::npos) << said[1];
+  EXPECT_NE(said[0].message().find("`hand`: the contact solve exceeded its time budget in 2 ticks"), std::string::npos)
+      << said[0].message();
+  EXPECT_NE(said[0].message().find("--tool-force linear"), std::string::npos) << said[0].message();
+  EXPECT_NE(said[1].message().find("in 19 ticks its model was older than 3 soft steps"), std::string::npos)
+      << said[1].message();
+  EXPECT_EQ(said[0].code, "tool.late");
+  EXPECT_EQ(said[1].code, "tool.stale");
+  EXPECT_EQ(said[1].of, "hand");
   EXPECT_TRUE(explain_tool(world, {}).empty());
 }
 
@@ -272,16 +282,21 @@ TEST(SoftClock, WhatStepsLeaveImperfectIsSaidWithItsCure) {
   SoftFigures figures;
   figures.steps = 20;
   figures.time_lost = 1.5;
-  const std::vector<std::string> said = explain_soft_steps(world, figures);
+  const std::vector<Note> said = explain_soft_steps(world, figures);
   ASSERT_EQ(said.size(), 4u);
-  EXPECT_NE(said[0].find("7 contacts were dropped"), std::string::npos) << said[0];
-  EXPECT_NE(said[1].find("stopped for 0.02 s"), std::string::npos) << said[1];
-  EXPECT_NE(said[2].find("1 of 20 soft steps ended unconverged (residual at most 0.25 m/s)"), std::string::npos)
-      << said[2];
-  EXPECT_NE(said[3].find("1.50 s behind after 20 steps"), std::string::npos) << said[3];
+  EXPECT_NE(said[0].message().find("7 contacts were dropped"), std::string::npos) << said[0].message();
+  EXPECT_NE(said[1].message().find("stopped for 0.02 s"), std::string::npos) << said[1].message();
+  EXPECT_NE(said[2].message().find("1 of 20 soft steps ended unconverged (residual at most 0.25 m/s)"),
+            std::string::npos)
+      << said[2].message();
+  EXPECT_NE(said[3].message().find("1.50 s behind after 20 steps"), std::string::npos) << said[3].message();
   figures.time_lost = 0.005;  // of 0.33 s
   EXPECT_EQ(explain_soft_steps(world, figures).size(), 3u) << "the report has it, the console does not";
-  for (const std::string& sentence : said) EXPECT_NE(sentence.find("; "), std::string::npos) << "no cure: " << sentence;
+  for (const Note& note : said) EXPECT_NE(note.cure, "") << note.what;
+  EXPECT_EQ(said[0].code, "soft.contacts_cut");
+  EXPECT_EQ(said[1].code, "soft.halted");
+  EXPECT_EQ(said[2].code, "soft.unconverged");
+  EXPECT_EQ(said[3].code, "soft.time_lost");
 }
 
 TEST(Trace, KeepsEveryPeakHoweverLongTheRun) {

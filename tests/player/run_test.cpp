@@ -44,7 +44,7 @@ TEST_F(Run, WritesReportForcesAndPlotAsPromised) {
   ASSERT_EQ(json["probes"].size(), 1u);
   EXPECT_EQ(json["probes"][0]["name"], "tip");
   EXPECT_EQ(json["probes"][0]["source"], "script:press.csv");
-  EXPECT_TRUE(json["dropped"].is_array());
+  EXPECT_TRUE(json["notes"].is_array());
 
   const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
   EXPECT_EQ(forces.columns,
@@ -117,7 +117,11 @@ TEST_F(Run, WhatLimitsTheForceIsCountedSaidAndCured) {
   EXPECT_EQ(json["probes"][0]["withheld"]["ticks"], 0);
   EXPECT_NE(clipped.err.find("probe `tip`: the force was clipped at max_force 0.3 N in "), std::string::npos)
       << clipped.err;
-  EXPECT_NE(json["dropped"].dump().find("clipped at max_force 0.3 N"), std::string::npos);
+  EXPECT_NE(json["notes"].dump().find("clipped at max_force 0.3 N"), std::string::npos);
+  EXPECT_EQ(std::count_if(json["notes"].begin(), json["notes"].end(),
+                          [](const Json& note) { return note["code"] == "force.clipped" && note["of"] == "tip"; }),
+            1)
+      << json["notes"];
 }
 
 TEST_F(Run, AProbeThatTouchesNothingSaysByHowMuchItMissed) {
@@ -131,7 +135,7 @@ TEST_F(Run, AProbeThatTouchesNothingSaysByHowMuchItMissed) {
   EXPECT_NEAR(json["probes"][0]["missed_by_m"], 0.015, 2e-4);
   EXPECT_NE(said.err.find("`tip` never touched anything"), std::string::npos) << said.err;
   EXPECT_NE(said.err.find("`plate` (1681 vertices, 141.4 mm across)"), std::string::npos) << said.err;
-  EXPECT_NE(json["dropped"].dump().find("never touched anything"), std::string::npos);
+  EXPECT_NE(json["notes"].dump().find("never touched anything"), std::string::npos);
 }
 
 // Every ray through the centre of a horizontal ring misses it.
@@ -183,13 +187,16 @@ TEST_F(Run, AMeshInMillimetresIsHintedAtAndTouchedInItsUnit) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return pliant(arguments);
   };
-  const Said wrong = touch("wrong", {}), said = touch("mm", {"--unit", "mm"}), number = touch("f", {"--unit", "0.001"});
-  ASSERT_EQ(wrong.status, 0) << wrong.err;
+  const Said wrong = touch("wrong", {}), metres = touch("m", {"--unit", "m"}), said = touch("mm", {"--unit", "mm"}),
+             number = touch("f", {"--unit", "0.001"});
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_NE(wrong.err.find("m across; say its unit, e.g. `--unit mm`"), std::string::npos) << wrong.err;
+  ASSERT_EQ(metres.status, 0) << metres.err;
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(wrong.err.find("unusual for metres"), std::string::npos) << wrong.err;
-  EXPECT_NE(wrong.err.find(Json::parse(pliant({"inspect", "big.obj", "--json"}).out)["unit_hint"].get<std::string>()),
+  EXPECT_NE(metres.err.find("unusual for metres"), std::string::npos) << metres.err;
+  EXPECT_NE(metres.err.find(Json::parse(pliant({"inspect", "big.obj", "--json"}).out)["unit_hint"].get<std::string>()),
             std::string::npos)
-      << "one sentence for both: " << wrong.err;
+      << "one sentence for both: " << metres.err;
   EXPECT_EQ(said.err.find("unusual for metres"), std::string::npos) << said.err;
   EXPECT_NEAR(report("mm")["probes"][0]["max_depth_m"], 0.002, 1e-6);
   ASSERT_EQ(number.status, 0) << number.err;

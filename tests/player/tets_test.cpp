@@ -36,7 +36,7 @@ TEST_F(Tets, ARunSaysWhatWasMendedOfTheFileThatItsLevelNames) {
   ASSERT_EQ(said.status, 0) << said.err;
   for (const char* note : {"one.vtk: 1 inverted tetrahedron", "one.vtk: 1 node that no tetrahedron names"}) {
     EXPECT_NE(said.err.find("pliant: note: " + std::string(note)), std::string::npos) << said.err;
-    EXPECT_NE(report("out")["dropped"].dump().find(note), std::string::npos) << report("out")["dropped"];
+    EXPECT_NE(report("out")["notes"].dump().find(note), std::string::npos) << report("out")["notes"];
   }
 }
 

@@ -97,7 +97,7 @@ TEST_F(ToolRun, AToolIsReportedLikeAProbeAndTheSoftClockBesideIt) {
   EXPECT_GT(soft["contacts"]["max"].get<double>(), soft["contacts"]["mean"].get<double>());
   for (const char* key : {"p50", "p99", "max"}) EXPECT_GT(soft["step_ms"][key].get<double>(), 0.0) << key;
   for (const char* key : {"sweeps", "residual"}) EXPECT_GE(soft[key].get<double>(), 0.0) << key;
-  EXPECT_TRUE(json["dropped"].empty()) << json["dropped"];
+  EXPECT_TRUE(json["notes"].empty()) << json["notes"];
 
   const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
   ASSERT_EQ(forces.rows.size(), 1000u);
@@ -187,7 +187,7 @@ TEST_F(ToolRun, TissueThatLocksIsSaidByValidateInspectAndOnceByRun) {
   const std::size_t first = said.err.find("`hand` " + sentence);
   EXPECT_NE(first, std::string::npos) << said.err;
   EXPECT_EQ(said.err.find(sentence, first + 10), std::string::npos) << "once";
-  EXPECT_NE(report("out")["dropped"].dump().find(sentence), std::string::npos);
+  EXPECT_NE(report("out")["notes"].dump().find(sentence), std::string::npos);
   for (const char* verb : {"validate", "inspect"})
     EXPECT_EQ(pliant({verb, "block.glb"}).out.find("Poisson"), std::string::npos) << verb;
 }
@@ -343,7 +343,7 @@ TEST_F(ToolRun, AnOrbitWithoutASurfaceHoldsItsProbeAndSaysSo) {
   ASSERT_EQ(said.status, 0) << said.err;
   EXPECT_NE(said.err.find("`finger` found no deformable surface"), std::string::npos) << said.err;
   const Json json = report("out");
-  EXPECT_NE(json["dropped"].dump().find("finger"), std::string::npos);
+  EXPECT_NE(json["notes"].dump().find("finger"), std::string::npos);
   const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
   for (std::size_t i = 0; i < forces.rows.size(); ++i)
     if (forces.rows[i].at("probe") == "finger")

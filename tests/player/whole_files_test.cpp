@@ -171,7 +171,7 @@ TEST_F(WholeFiles, AScriptIsFollowedToItsEndOrItsCutIsSaid) {
   EXPECT_NE(said.err.find("the script of `tip` lasts 82 s, and the run ends at 2 s; --seconds 82 has all of it"),
             std::string::npos)
       << said.err;
-  EXPECT_NE(report("cut")["dropped"].dump().find("lasts 82 s"), std::string::npos);
+  EXPECT_NE(report("cut")["notes"].dump().find("lasts 82 s"), std::string::npos);
 }
 
 TEST_F(WholeFiles, WhatConvertWritesIsWhatValidateTakes) {

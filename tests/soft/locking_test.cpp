@@ -75,7 +75,8 @@ TEST(Locking, IsSaidFromTheBoundOnAndLaterOfManyTetrahedra) {
   SoftBody body;
   const auto said = [&](double poisson, std::size_t tetrahedra) {
     body.poisson = poisson;
-    return locking_doubt(body, tetrahedra);
+    const std::optional<Note> doubt = locking_doubt(body, tetrahedra);
+    return doubt ? doubt->message() : std::string();
   };
   EXPECT_EQ(said(0.469, kUsualTets), "");
   EXPECT_NE(said(0.47, kUsualTets).find("0.47 on its 2000 tetrahedra lock"), std::string::npos);

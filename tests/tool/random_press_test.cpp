@@ -100,7 +100,7 @@ Felt press(World world, double speed, bool jumps, unsigned seed) {
     touch.run(world, {tick, kPressTick, time});
     hash_forces(world, hash);
     out.most_force = std::max(out.most_force, length(device.force_sent));
-    if (!tool.placed) continue;
+    if (!tool.placed()) continue;
     const dvec3 wanted = tool.sensed.at(tool.model.read().centre).pose.position;
     out.most_stretch = std::max(out.most_stretch, length(wanted - tool.handle.pose.position));
     for (const auto& body : world.soft->bodies)

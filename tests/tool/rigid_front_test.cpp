@@ -94,7 +94,7 @@ void expect_the_coupling_is_felt_on_a_floor(Rigid rigid, double young, double de
   double deepest = 0.0;
   const auto look = [&] {
     watch.look(stage);
-    if (front_state(stage, watch.tool).placed)
+    if (front_state(stage, watch.tool).placed())
       deepest = std::max(deepest, 0.015 - (stage.device_of(watch.tool).position.y - behind(stage, watch.tool)));
   };
   stage.lead(watch.tool, dvec3(0, 0.02, 0), 0.1, look);

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "scenes/scenes.h"
+#include "scenes/touch_laws.h"
 #include "systems/touch/model/nonlinear_step.h"
 #include "systems/touch/model/shape.h"
 
@@ -18,8 +19,7 @@ using scenes::Stage;
 TEST(FieldKernels, TargetsOfAZoneAreThoseOfItsVerticesForEveryShape) {
   Stage stage;
   const Mesh& mesh = stage.mesh(stage.add(scenes::sphere(24, 0.1), {}));
-  for (const Shape shape :
-       {Shape::kPunch, Shape::kHertz, Shape::kGaussian, Shape::kWendland, Shape::kVolume, Shape::kKelvinlet}) {
+  for (const Shape shape : kEveryShape) {
     for (const float reach : {0.02f, 0.05f, 0.3f}) {
       for (const float parameter : {0.01f, 0.2f, 5.0f}) {
         FieldSource source;
@@ -28,7 +28,8 @@ TEST(FieldKernels, TargetsOfAZoneAreThoseOfItsVerticesForEveryShape) {
         source.amplitude = 0.004f;
         source.inv_reach2 = 1 / (reach * reach);
         source.shape = shape;
-        source.parameter = shape == Shape::kKelvinlet ? parameter * reach : parameter;
+        const bool is_length = row_of(shape).parameter == ShapeParameter::kContactLength;
+        source.parameter = is_length ? parameter * reach : parameter;
         float height = 0, normal = 0, steepest = source.amplitude / reach;
         for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {
           ZoneTargets targets;
@@ -73,22 +74,27 @@ struct Zone {
   std::vector<vec4> state = std::vector<vec4>(kZoneSize, vec4(0)), rate = state;
 };
 
-Motion motion_of(SpringLaw law, double mass, double damping, double hardening) {
+Motion motion_of(SpringLaw law, double mass, double damping, double stiffening) {
   Motion m;
   m.mass = mass;
   m.damping = damping;
-  m.law = {law, hardening, hardening};
+  m.law = {law, 1e5, stiffening};
   return m;
 }
 
-// Stiffening and softening.
-constexpr std::pair<SpringLaw, double> kHardening[] = {
-    {SpringLaw::kCubic, 1e5}, {SpringLaw::kExponential, 150.0}, {SpringLaw::kExponential, -80.0}};
+// Every law with a passive step, stiffening and softening.
+std::vector<std::pair<SpringLaw, double>> hardening_laws() {
+  std::vector<std::pair<SpringLaw, double>> all;
+  for (const SpringLaw law : kLaws)
+    for (const double stiffening : {150.0, -80.0})
+      if (row_of(law).step == SpringStep::kPassive) all.emplace_back(law, stiffening);
+  return all;
+}
 
 TEST(FieldKernels, NonLinearStepsOfAZoneAreThoseOfItsVertices) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(-1, 1);
-  for (const auto& [law, hardening] : kHardening) {
+  for (const auto& [law, hardening] : hardening_laws()) {
     for (const double mass : {1e-8, 4e-7, 1e-4, 1.0}) {  // from far too stiff for the step to nearly free
       for (const double damping : {0.0, 1e-3, 0.1}) {
         for (const float size : {1e-9f, 1e-5f, 0.004f, 0.05f}) {  // [m]
@@ -131,11 +137,11 @@ TEST(FieldKernels, NonLinearStepsOfAZoneAreThoseOfItsVertices) {
 }
 
 TEST(FieldKernels, ANonLinearZoneAtRestStaysAtRestToTheBit) {
-  for (const SpringLaw law : {SpringLaw::kCubic, SpringLaw::kExponential}) {
+  for (const auto& [law, hardening] : hardening_laws()) {
     Zone zone;
     zone.state[5].w = -0.003f;
     for (int n = 0; n < 10; ++n)
-      step_nonlinear(motion_of(law, 1e-4, 1e-3, 100), {}, 0, zone.state.data(), zone.rate.data(), nullptr);
+      step_nonlinear(motion_of(law, 1e-4, 1e-3, hardening), {}, 0, zone.state.data(), zone.rate.data(), nullptr);
     for (std::uint32_t i = 0; i < kZoneSize; ++i) {
       if (i == 5) continue;
       EXPECT_EQ(zone.state[i], vec4(0));
@@ -148,7 +154,7 @@ TEST(FieldKernels, ANonLinearZoneAtRestStaysAtRestToTheBit) {
 TEST(FieldKernels, UndampedNonLinearZonesKeepTheirEnergyAndDampedOnesOnlyLose) {
   std::mt19937 random(6);
   std::uniform_real_distribution<float> unit(-1, 1);
-  for (const auto& [law, hardening] : kHardening) {
+  for (const auto& [law, hardening] : hardening_laws()) {
     for (const double damping : {0.0, 1e-3}) {
       const Motion m = motion_of(law, 1e-4, damping, hardening);
       Zone zone;

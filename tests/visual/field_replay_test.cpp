@@ -7,6 +7,7 @@
 #include <random>
 
 #include "scenes/scenes.h"
+#include "scenes/touch_laws.h"
 #include "systems/touch/feed/publish.h"
 #include "systems/touch/prepare/touch_state.h"
 #include "systems/visual/gpu/context.h"
@@ -136,13 +137,12 @@ TEST_P(FieldReplayTest, StepsWhatTheProcessorSteps) {
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const SpringLaw law :
-       {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential, SpringLaw::kStandardLinearSolid})
+  for (const SpringLaw law : kLaws)
     for (const Response response : {Response::kFollow, Response::kLag})
       for (const Distance distance : {Distance::kChord, Distance::kSurface})
         for (const bool painted : {false, true}) {
-          const bool closed =
-              law == SpringLaw::kLinear && response == Response::kFollow && distance == Distance::kChord && !painted;
+          const bool closed = row_of(law).step == SpringStep::kExact && response == Response::kFollow &&
+                              distance == Distance::kChord && !painted;
           if (!closed) all.push_back({law, response, distance, painted});
         }
   all.push_back({SpringLaw::kExponential, Response::kFollow, Distance::kChord, false, -60.0});
@@ -150,9 +150,8 @@ std::vector<Case> cases() {
 }
 
 std::string name_of(const ::testing::TestParamInfo<Case>& info) {
-  const char* const laws[] = {"Linear", "Cubic", "Exponential", "Solid"};
   const Case& c = info.param;
-  return std::string(laws[static_cast<int>(c.law)]) + (c.response == Response::kLag ? "Lag" : "Follow") +
+  return std::string(word_of(c.law)) + (c.response == Response::kLag ? "Lag" : "Follow") +
          (c.distance == Distance::kSurface ? "Surface" : "Chord") + (c.painted ? "Painted" : "Plain") +
          (c.stiffening < 0 ? "Softening" : "");
 }

@@ -58,7 +58,7 @@ bool take_typed(ImGuiID id, std::string_view label, double& value, double least,
   if (std::strcmp(g_typed.text.data(), g_typed.before.data()) == 0) return false;
   const Result<double> read = parse_quantity(g_typed.text.data(), unit.parsed);
   if (!read) {
-    refuse(id, label, read.error().what);
+    refuse(id, label, read.error().sentence());
     return false;
   }
   // A limit typed as displayed is the limit itself.

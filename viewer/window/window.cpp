@@ -50,9 +50,9 @@ bool Window::display_is_there() {
 
 Result<std::unique_ptr<Window>> Window::create(int width, int height, const std::string& otherwise) {
   if (!display_is_there())
-    return Error{"--window", "there is no display: neither DISPLAY nor WAYLAND_DISPLAY is set; set one" + otherwise};
+    return Error{"--window", "there is no display: neither DISPLAY nor WAYLAND_DISPLAY is set", "set one" + otherwise};
   watch_display();
-  if (!glfwInit()) return Error{"--window", "the display cannot be reached" + reason() + "; check DISPLAY" + otherwise};
+  if (!glfwInit()) return Error{"--window", "the display cannot be reached" + reason(), "check DISPLAY" + otherwise};
   std::unique_ptr<Window> window(new Window());
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
@@ -64,8 +64,8 @@ Result<std::unique_ptr<Window>> Window::create(int width, int height, const std:
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "pliant");
   window->handle_ = glfwCreateWindow(width, height, "Pliant", nullptr, nullptr);
   if (!window->handle_)
-    return Error{"--window", "the display gives no OpenGL 4.5 core context" + reason() +
-                                 "; install libgl1-mesa-dri or the GPU's driver" + otherwise};
+    return Error{"--window", "the display gives no OpenGL 4.5 core context" + reason(),
+                 "install libgl1-mesa-dri or the GPU's driver" + otherwise};
   watch_display();  // again, because GLFW has restored the previous handlers
   glfwMakeContextCurrent(window->handle_);
   glfwSwapInterval(1);
@@ -164,7 +164,7 @@ Result<std::unique_ptr<SharedContext>> Window::share() {
   std::unique_ptr<SharedContext> context(new SharedContext());
   context->handle_ = glfwCreateWindow(1, 1, "Pliant", nullptr, handle_);
   if (!context->handle_)
-    return Error{"window", "the display gives no second OpenGL context" + reason() + "; update the GPU's driver"};
+    return Error{"window", "the display gives no second OpenGL context" + reason(), "update the GPU's driver"};
   return context;
 }
 

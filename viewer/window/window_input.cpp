@@ -92,11 +92,11 @@ Result<InputScript> InputScript::load(const std::string& file) {
   for (std::size_t row = 1; std::getline(in, line); ++row) {
     const std::string where = file + ":" + std::to_string(row);
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.size() > kLongestLine) return Error{where, "is too long; shorten it"};
+    if (line.size() > kLongestLine) return Error{where, "is too long", "shorten it"};
     if (row > most(limits::kInputRows))
-      return Error{file, "has " + beyond(limits::kInputRows, static_cast<double>(row), "shorten it")};
+      return error_at(file, beyond("has", limits::kInputRows, static_cast<double>(row), "shorten it"));
     if (row == 1) {
-      if (line != "time_s,event,args") return Error{where, "is not the header; begin with time_s,event,args"};
+      if (line != "time_s,event,args") return Error{where, "is not the header", "begin with time_s,event,args"};
       continue;
     }
     if (line.empty()) continue;
@@ -105,9 +105,9 @@ Result<InputScript> InputScript::load(const std::string& file) {
     const std::string name = comma == std::string::npos ? "" : line.substr(comma + 1, second - comma - 1);
     const std::optional<InputEvent> event =
         parse_event(name, second == std::string::npos ? std::string() : line.substr(second + 1));
-    if (!time || !event) return Error{where, "is not an event; write, say, 0.5,move,320 200"};
+    if (!time || !event) return Error{where, "is not an event", "write, say, 0.5,move,320 200"};
     if (!script.rows_.empty() && *time < script.rows_.back().time)
-      return Error{where, "goes back in time; put events in order"};
+      return Error{where, "goes back in time", "put events in order"};
     script.rows_.push_back({*time, *event});
   }
   return script;

@@ -70,7 +70,7 @@ class Cost {
   bool within(double beyond_the_multiple, const std::string& pointer, const char* what) {
     if (beyond_the_multiple <= static_cast<double>(most(limits::kDecoded))) return true;
     findings_.push_back(
-        {Severity::kError, pointer, what + beyond(limits::kDecoded, beyond_the_multiple, "split the level")});
+        finding_of(beyond(what, limits::kDecoded, beyond_the_multiple, "split the level"), Severity::kError, pointer));
     return false;
   }
 

@@ -25,13 +25,13 @@ void check_images(const Json& json, Meaning& check) {
       if (!extension || !extension->contains("source")) continue;
       if (value_of<std::string>(images[(*extension)["source"].get<std::size_t>()], "mimeType", type) != type)
         check.error(fmt::format("/textures/{}/extensions/{}/source", i, name),
-                    std::string("is of another type than ") + type + "; convert the picture");
+                    std::string("is of another type than ") + type, "convert the picture");
     }
     if (!textures[i].contains("source")) continue;
     const std::string mime =
         value_of<std::string>(images[textures[i]["source"].get<std::size_t>()], "mimeType", "image/png");
     if (mime != "image/png" && mime != "image/jpeg")
-      check.error(fmt::format("/textures/{}/source", i), "is neither PNG nor JPEG; convert the picture");
+      check.error(fmt::format("/textures/{}/source", i), "is neither PNG nor JPEG", "convert the picture");
   }
 }
 
@@ -64,8 +64,8 @@ void check_materials(const Json& json, Meaning& check) {
   for (std::size_t i = 0; i < materials.size(); ++i)
     if (const Json* extension = extension_of(materials[i], "KHR_materials_ior"))
       if (const double ior = value_of(*extension, "ior", 1.5); ior > 0.0 && ior < 1.0)
-        check.error(fmt::format("/materials/{}/extensions/KHR_materials_ior/ior", i),
-                    "is between 0 and 1; give 1 or more, or 0 for none");
+        check.error(fmt::format("/materials/{}/extensions/KHR_materials_ior/ior", i), "is between 0 and 1",
+                    "give 1 or more, or 0 for none");
 }
 
 void check_lights_and_variants(const Json& json, Meaning& check) {

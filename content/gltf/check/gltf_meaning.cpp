@@ -29,9 +29,9 @@ void check_asset(const Json& json, Meaning& check) {
   };
   int major = 2, minor = 0, least_major = 2, least_minor = 0;
   if (!parse("version", major, minor) || !parse("minVersion", least_major, least_minor)) return;
-  if (major != 2) check.error("/asset/version", fmt::format("is {}.{}; export glTF 2.0", major, minor));
+  if (major != 2) check.error("/asset/version", fmt::format("is {}.{}", major, minor), "export glTF 2.0");
   if (least_major > 2 || (least_major == 2 && least_minor > 0))
-    check.error("/asset/minVersion", "needs a newer reader than glTF 2.0; export glTF 2.0");
+    check.error("/asset/minVersion", "needs a newer reader than glTF 2.0", "export glTF 2.0");
   if (least_major > major || (least_major == major && least_minor > minor))
     check.error("/asset/minVersion", "is newer than /asset/version");
 }
@@ -44,7 +44,7 @@ void check_extension_lists(const Json& json, Meaning& check) {
   for (const Json& name : array_of(json, "extensionsUsed")) used.insert(name.get<std::string>());
   for (std::size_t i = 0; i < required.size(); ++i)
     if (!used.count(required[i].get<std::string>()))
-      check.error(fmt::format("/extensionsRequired/{}", i), "is not among extensionsUsed; add it there");
+      check.error(fmt::format("/extensionsRequired/{}", i), "is not among extensionsUsed", "add it there");
 }
 
 void check_buffer_views(const Json& json, Meaning& check) {
@@ -187,9 +187,9 @@ void check_nodes(const Json& json, Meaning& check) {
     const std::string pointer = fmt::format("/nodes/{}", i);
     if (node.contains("matrix")) {
       if (node.contains("translation") || node.contains("rotation") || node.contains("scale"))
-        check.error(pointer + "/matrix", "stands beside translation, rotation or scale; keep one of the two");
+        check.error(pointer + "/matrix", "stands beside translation, rotation or scale", "keep one of the two");
       else if (!is_trs(node["matrix"]))
-        check.error(pointer + "/matrix", "is not a product of translation, rotation and scale; apply it to the mesh");
+        check.error(pointer + "/matrix", "is not a product of translation, rotation and scale", "apply it to the mesh");
     }
     if (node.contains("rotation")) {
       double sum = 0.0;
@@ -235,13 +235,6 @@ void check_skins(const Json& json, const std::vector<std::int32_t>& parent, Mean
 }
 
 }  // namespace
-
-void Meaning::error(std::string pointer, std::string message) {
-  if (findings_.size() < 1000) findings_.push_back({Severity::kError, std::move(pointer), std::move(message)});
-}
-void Meaning::warn(std::string pointer, std::string message) {
-  if (findings_.size() < 1000) findings_.push_back({Severity::kWarning, std::move(pointer), std::move(message)});
-}
 
 void Meaning::use(std::size_t accessor, BufferUse use, const std::string& pointer) {
   const auto found = accessor_use_.emplace(accessor, use);

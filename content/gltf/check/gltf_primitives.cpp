@@ -84,7 +84,7 @@ class MeshCheck {
     std::string semantic;
     int set;
     if (!split_attribute(name, semantic, set))
-      return check_.error(pointer, "unknown attribute '" + name.substr(0, 100) + "'; prefix your own with _");
+      return check_.error(pointer, "unknown attribute '" + name.substr(0, 100) + "'", "prefix your own with _");
     if (!layout.known || !format_is_allowed(semantic, layout, quantized_, target))
       return check_.error(
           pointer, fmt::format("cannot be of {} {}", accessor["type"].get<std::string>(), layout.component_type));
@@ -114,7 +114,7 @@ class MeshCheck {
     for (const auto& [name, value] : attributes.items())
       if (name.rfind("WEIGHTS_", 0) == 0 && !seen.insert(value.get<std::size_t>()).second)
         return check_.error(pointer + "/attributes/" + escaped(name),
-                            "is the accessor of another set of weights as well; remove one of the sets");
+                            "is the accessor of another set of weights as well", "remove one of the sets");
   }
 
   void indices(const Json& primitive, const std::string& pointer) {
@@ -235,7 +235,7 @@ void check_animations(const Json& json, Meaning& check) {
       check.use(output, BufferUse::kValues, here + "/output");
       const bool cubic = value_of<std::string>(samplers[s], "interpolation", "LINEAR") == "CUBICSPLINE";
       if (const auto [seen, is_new] = splines.emplace(output, cubic); !is_new && seen->second != cubic)
-        check.error(here + "/output", "is an accessor of both splines and plain values; give each its own");
+        check.error(here + "/output", "is an accessor of both splines and plain values", "give each its own");
     }
     std::set<std::pair<std::int64_t, std::string>> targets;
     std::set<std::string> aims;
@@ -258,8 +258,8 @@ void check_animations(const Json& json, Meaning& check) {
         check.error(here + "/target", "is the target of an earlier channel too");
       if (const bool moves = path == "translation" || path == "rotation" || path == "scale";
           moves && target.contains("node") && json["nodes"][target["node"].get<std::size_t>()].contains("matrix"))
-        check.error(here + "/target/node",
-                    "is placed by a matrix, which cannot be animated; give it translation, rotation and scale");
+        check.error(here + "/target/node", "is placed by a matrix, which cannot be animated",
+                    "give it translation, rotation and scale");
       const Json& sampler = samplers[channel["sampler"].get<std::size_t>()];
       const AccessorLayout output = layout_of(json["accessors"][sampler["output"].get<std::size_t>()]);
       const std::map<std::string, std::size_t> widths = {

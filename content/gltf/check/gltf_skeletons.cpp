@@ -70,7 +70,7 @@ void check_skeletons(const Json& json, const std::vector<std::int32_t>& parent, 
                                   [&](const Json& joint) { return bool(shown[joint.get<std::size_t>()]); });
       if (!whole[skin])
         check.error(fmt::format("/nodes/{}/skin", i),
-                    fmt::format("has joints that are not in /scenes/{}, which shows this node; add them there", s));
+                    fmt::format("has joints that are not in /scenes/{}, which shows this node", s), "add them there");
     }
   }
 }

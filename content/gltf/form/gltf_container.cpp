@@ -36,10 +36,11 @@ bool json_is_bounded(std::span<const std::uint8_t> text, Findings& findings) {
   }
   const auto within = [&](const Limit& limit, std::size_t found, const char* what) {
     if (found <= most(limit)) return true;
-    add_error(findings, "", what + beyond(limit, static_cast<double>(found), "simplify the file"));
+    findings.push_back(
+        finding_of(beyond(what, limit, static_cast<double>(found), "simplify the file"), Severity::kError, ""));
     return false;
   };
-  return within(limits::kJsonDepth, deepest, "nests ") && within(limits::kJsonValues, values, "has ");
+  return within(limits::kJsonDepth, deepest, "nests") && within(limits::kJsonValues, values, "has");
 }
 
 // The objects built from the elements of these lists take far more memory than their text.
@@ -51,7 +52,8 @@ bool lists_are_bounded(const Json& json, Findings& findings) {
     const std::string name = key;
     const Limit& limit = name == "accessors" || name == "bufferViews" ? limits::kAccessors : limits::kElements;
     if (!list.is_array() || list.size() <= most(limit)) continue;
-    add_error(findings, "/" + name, "has " + beyond(limit, static_cast<double>(list.size()), "simplify the file"));
+    findings.push_back(finding_of(beyond("has", limit, static_cast<double>(list.size()), "simplify the file"),
+                                  Severity::kError, "/" + name));
     return false;
   }
   return true;
@@ -62,25 +64,26 @@ bool lists_are_bounded(const Json& json, Findings& findings) {
 // GLB: a 12-byte header, then chunks {length, type, data}: JSON first, BIN second, unknown ones ignored
 // (glTF 2.0, 4.4).
 bool split_glb(std::span<const std::uint8_t> file, Container& out, Findings& findings) {
-  const auto fail = [&](std::string what) {
-    add_error(findings, "", std::move(what));
+  const auto fail = [&](std::string what, std::string cure = {}) {
+    add_error(findings, "", std::move(what), std::move(cure));
     return false;
   };
-  if (file.size() < 12) return fail("ends within the 12-byte GLB header; the file is cut off");
+  if (file.size() < 12) return fail("ends within the 12-byte GLB header", "the file is cut off");
   if (std::memcmp(file.data(), "glTF", 4) != 0)
-    return fail("does not begin with glTF, as a .glb must; check the format");
-  if (read_u32(file, 4) != 2) return fail(fmt::format("is GLB version {}, not 2; export glTF 2.0", read_u32(file, 4)));
+    return fail("does not begin with glTF, as a .glb must", "check the format");
+  if (read_u32(file, 4) != 2)
+    return fail(fmt::format("is GLB version {}, not 2", read_u32(file, 4)), "export glTF 2.0");
   const std::uint64_t declared = read_u32(file, 8);
   if (declared < 20) return fail(fmt::format("declares a length of {} bytes, too few for any content", declared));
   if (declared > file.size())
-    return fail(fmt::format("declares {} bytes but has {}; the file is cut off", declared, file.size()));
+    return fail(fmt::format("declares {} bytes but has {}", declared, file.size()), "the file is cut off");
   if (declared < file.size()) add_warning(findings, "", "has data after its declared end, which is ignored");
   file = file.first(declared);
   out.glb = file;
   bool has_json = false;
   std::size_t at = 12;
   for (std::size_t chunk = 0; at < file.size(); ++chunk) {
-    if (file.size() - at < 8) return fail("ends within a chunk's header; the file is cut off");
+    if (file.size() - at < 8) return fail("ends within a chunk's header", "the file is cut off");
     const std::uint64_t length = read_u32(file, at);
     const std::uint32_t type = read_u32(file, at + 4);
     at += 8;
@@ -104,7 +107,7 @@ bool split_glb(std::span<const std::uint8_t> file, Container& out, Findings& fin
 
 bool parse_json(std::span<const std::uint8_t> text, Json& json, Findings& findings) {
   if (text.size() >= 3 && text[0] == 0xef && text[1] == 0xbb && text[2] == 0xbf) {
-    add_error(findings, "", "begins with a byte order mark, which glTF forbids; save it as UTF-8 without one");
+    add_error(findings, "", "begins with a byte order mark, which glTF forbids", "save it as UTF-8 without one");
     return false;
   }
   if (!json_is_bounded(text, findings)) return false;
@@ -115,7 +118,7 @@ bool parse_json(std::span<const std::uint8_t> text, Json& json, Findings& findin
     std::string what = e.what();
     if (const std::size_t tag = what.find("] "); tag != std::string::npos) what.erase(0, tag + 2);
     std::replace(what.begin(), what.end(), '\n', ' ');
-    add_error(findings, "", "is not valid JSON: " + what.substr(0, 200) + "; export it again");
+    add_error(findings, "", "is not valid JSON: " + what.substr(0, 200), "export it again");
     return false;
   }
   return lists_are_bounded(json, findings);

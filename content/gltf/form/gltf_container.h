@@ -13,11 +13,11 @@ struct Container {
   bool has_bin = false;
 };
 
-inline void add_error(Findings& findings, std::string pointer, std::string message) {
-  findings.push_back({Severity::kError, std::move(pointer), std::move(message)});
+inline void add_error(Findings& findings, std::string pointer, std::string what, std::string cure = {}) {
+  findings.push_back({Severity::kError, std::move(pointer), std::move(what), std::move(cure), "gltf.file"});
 }
-inline void add_warning(Findings& findings, std::string pointer, std::string message) {
-  findings.push_back({Severity::kWarning, std::move(pointer), std::move(message)});
+inline void add_warning(Findings& findings, std::string pointer, std::string what, std::string cure = {}) {
+  findings.push_back({Severity::kWarning, std::move(pointer), std::move(what), std::move(cure), "gltf.file"});
 }
 
 // Splits a GLB into its chunks; false after an error.

@@ -19,6 +19,9 @@
 
 namespace pliant {
 
+// Code of a finding: the file is sound, and the library that reads its data cannot.
+inline constexpr const char* kTinygltfFailed = "gltf.tinygltf";
+
 using Json = nlohmann::json;
 
 // Hashes of a mesh as it was read. A different hash means that the mesh has changed since.

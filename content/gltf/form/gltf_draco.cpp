@@ -87,7 +87,7 @@ std::uint64_t claimed_elements(std::span<const std::uint8_t> blob) {
 }
 
 Error refuse(const std::string& what) {
-  return Error{"Draco data", what + "; compress the mesh again"};
+  return Error{"Draco data", what, "compress the mesh again"};
 }
 
 // Decodes a mesh and checks that every index is in range.
@@ -103,7 +103,7 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::span<const std::uint8_t> b
     const auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
     if (!type.ok()) return refuse(std::string("cannot be read: ") + type.status().error_msg());
     if (type.value() != draco::TRIANGULAR_MESH)
-      return Error{"Draco data", "is a point cloud, which has no surface to touch; use a triangle mesh"};
+      return Error{"Draco data", "is a point cloud, which has no surface to touch", "use a triangle mesh"};
     draco::Decoder decoder;
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
     if (!decoded.ok()) return refuse(std::string("cannot be decoded: ") + decoded.status().error_msg());
@@ -228,7 +228,7 @@ Result<DracoMesh> decode_here(std::span<const std::uint8_t> blob, const Wanted& 
 }
 
 Error in_draco(const Error& error) {
-  return error.where.empty() ? Error{"Draco data", error.what} : error;
+  return error.where.empty() ? error.at("Draco data") : error;
 }
 
 Result<NamedAttributes> with_ids(const draco::Mesh& mesh, const std::vector<std::uint32_t>& ids) {
@@ -318,13 +318,13 @@ Result<Bytes> encode_draco(DracoMesh& in, int bits) {
     draco::EncoderBuffer buffer;
     const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer);
     if (!status.ok())
-      return Error{"Draco",
-                   std::string("could not compress the mesh: ") + status.error_msg() + "; save it without --draco"};
+      return Error{"Draco", std::string("could not compress the mesh: ") + status.error_msg(),
+                   "save it without --draco"};
     in.vertices = encoder.num_encoded_points();
     in.index.resize(encoder.num_encoded_faces() * 3);
     return Bytes(buffer.data(), buffer.data() + buffer.size());
   } catch (const std::exception& e) {
-    return Error{"Draco", std::string("could not compress the mesh: ") + e.what() + "; save it without --draco"};
+    return Error{"Draco", std::string("could not compress the mesh: ") + e.what(), "save it without --draco"};
   }
 }
 

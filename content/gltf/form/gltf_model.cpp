@@ -104,9 +104,9 @@ void read_model(SourceDocument& document, const Container& container, FetchedByt
                                       reinterpret_cast<const char*>(container.json.data()),
                                       static_cast<unsigned>(container.json.size()), "");
   if (!read || !is_complete(document.json, document.model))
-    return add_error(
-        findings, "",
-        "is sound glTF that tinygltf cannot read (" + errors.substr(0, errors.find('\n')) + "); export it anew");
+    return findings.push_back({Severity::kError, "",
+                               "is sound glTF that tinygltf cannot read (" + errors.substr(0, errors.find('\n')) + ")",
+                               "export it anew", kTinygltfFailed});
   restore_rewritten(document.json, document.model);
   for (std::size_t i = 0; i < document.model.buffers.size(); ++i)
     document.buffers.push_back(fetched.is_placeholder[i] ? Bytes{} : std::move(document.model.buffers[i].data));

@@ -61,8 +61,8 @@ class AnimationReader {
     }
     keys_ += std::max(document_.model.accessors[input].count, document_.model.accessors[output].count);
     if (keys_ > most(limits::kKeys))
-      return Error{pointer, "brings the level to " + beyond(limits::kKeys, static_cast<double>(keys_),
-                                                            "sample its animations more coarsely")};
+      return error_at(pointer, beyond("brings the level to", limits::kKeys, static_cast<double>(keys_),
+                                      "sample its animations more coarsely"));
     LevelChannel channel{node_of_[static_cast<std::size_t>(from.target_node)], *property, {}};
     channel.track.interpolation = interpolation_of(sampler);
     if (const std::string fault = fill(channel, read_floats(document_, input), read_floats(document_, output));

@@ -124,7 +124,7 @@ Status read_images(const SourceDocument& document, Level& level) {
   std::uint64_t decoded = 0;
   for (const Bytes& image : document.images) decoded += decoded_size(image);
   if (decoded > most(limits::kPictures))
-    return Error{"/images", "make " + beyond(limits::kPictures, static_cast<double>(decoded), "shrink the pictures")};
+    return error_at("/images", beyond("make", limits::kPictures, static_cast<double>(decoded), "shrink the pictures"));
   for (std::size_t i = 0; i < document.images.size(); ++i) {
     std::string name = value_of<std::string>(document.json["images"][i], "name", "");
     if (document.images[i].empty()) {

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 std::optional<SourceDocument> open_gltf(const fs::path& path, Findings& findings) {
   Result<Bytes> bytes = read_file(path);
   if (!bytes) {
-    add_error(findings, "", bytes.error().what);
+    findings.push_back(finding_of(bytes.error(), "", "file.unreadable"));
     return std::nullopt;
   }
   std::string extension = path.extension().string();

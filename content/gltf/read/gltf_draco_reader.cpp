@@ -72,7 +72,7 @@ Result<std::vector<DracoMesh>> DracoReader::decode(const std::vector<Key>& keys)
 
 // Decodes this blob together with the next small ones of the document.
 Status DracoReader::decode(const Key& key, const std::string& where) {
-  if (bytes_of(key).empty()) return Error{where, "stands on a buffer without data; add its bytes"};
+  if (bytes_of(key).empty()) return Error{where, "stands on a buffer without data", "add its bytes"};
   std::vector<Key> keys;
   std::size_t size = 0;
   for (std::size_t i = place_.at(key); i < order_.size() && keys.size() < kTogether; ++i) {
@@ -91,7 +91,7 @@ Status DracoReader::decode(const Key& key, const std::string& where) {
     if (keys.size() == 1) return Error{where, meshes.error().message()};
     keys.resize(1);  // another blob is damaged; its error is reported when it is read
   }
-  return Error{where, "takes too long to read with the Draco data before it; split the level"};
+  return Error{where, "takes too long to read with the Draco data before it", "split the level"};
 }
 
 Result<DracoMesh> DracoReader::take(const Key& key, const std::string& where) {
@@ -129,8 +129,8 @@ Result<DracoMesh> DracoReader::read(const Json& primitive, const std::string& po
           ? layout_of(document_.json["accessors"][primitive["indices"].get<std::size_t>()]).count
           : mesh->vertices;
   if (mesh->index.size() > most_draco_corners(declared, mesh->vertices))
-    return Error{here, fmt::format("holds {} corners, its accessor of indices says {}; compress the mesh again",
-                                   mesh->index.size(), declared)};
+    return Error{here, fmt::format("holds {} corners, its accessor of indices says {}", mesh->index.size(), declared),
+                 "compress the mesh again"};
   return mesh;
 }
 

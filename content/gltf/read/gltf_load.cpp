@@ -165,8 +165,8 @@ Status fill(SourceDocument& document, Level& level) {
     const bool known = wanted.rfind("PLIANT_", 0) == 0 ||
                        std::find(std::begin(kSupported), std::end(kSupported), wanted) != std::end(kSupported);
     if (!known)
-      return Error{"/extensionsRequired",
-                   "asks for " + wanted.substr(0, 100) + ", which is not supported; export without it"};
+      return Error{"/extensionsRequired", "asks for " + wanted.substr(0, 100) + ", which is not supported",
+                   "export without it"};
   }
   if (const Status status = read_images(document, level); !status) return status;
   for (std::size_t m = 0; m < document.model.materials.size(); ++m)
@@ -220,7 +220,7 @@ std::string about_of(const Json& root) {
 Result<std::string> read_about(const fs::path& path) {
   Findings findings;
   const std::optional<SourceDocument> document = open_gltf(path, findings);
-  if (!document) return Error{path.string(), "cannot be read; `pliant validate` says why"};
+  if (!document) return Error{path.string(), "cannot be read", "`pliant validate` says why"};
   return about_of(document->json);
 }
 
@@ -230,29 +230,32 @@ namespace {
 Result<Level> from_file(Result<Level> level, const fs::path& path) {
   if (!level) {
     const std::string where = level.error().where;
-    if (where.empty() || where == path.string()) return Error{path.string(), level.error().what};
-    return Error{path.string() + " " + where, level.error().what, -1, where};
+    if (where.empty() || where == path.string()) return level.error().at(path.string());
+    Error error = level.error().at(path.string() + " " + where);
+    error.pointer = where;
+    return error;
   }
   level->name = path.stem().string();
   level->path = path;
   return level;
 }
 
-// A finding about the whole file has no remedy in its text; add one.
-std::string with_cure(const Finding& finding) {
-  const bool needs = finding.pointer.empty() && finding.message.find("; ") == std::string::npos;
-  return finding.message + (needs ? "; export or save it again" : "");
-}
-
 Result<Level> level_of(SourceDocument document, const Findings& findings) {
   Level level;
   for (const Finding& finding : findings)
     if (finding.severity == Severity::kWarning)
-      level.notes.push_back(finding.pointer.empty() ? finding.message : finding.pointer + ": " + finding.message);
+      level.notes.push_back(finding.pointer.empty() ? finding.message() : finding.pointer + ": " + finding.message());
   level.document_notes = level.notes.size();
   if (const Status status = fill(document, level); !status) return status.error();
   level.source = std::make_shared<SourceDocument>(std::move(document));
   return level;
+}
+
+// Formats whose files may name their unit; importers scale by it.
+bool says_unit(const std::string& extension) {
+  for (const char* each : {".dae", ".fbx", ".3mf", ".amf", ".ifc", ".step", ".stp", ".usd", ".usda", ".usdc", ".usdz"})
+    if (extension == each) return true;
+  return false;
 }
 
 // Catches exceptions of failed allocations, and of faults that the checks have missed.
@@ -260,7 +263,7 @@ Result<Level> guarded(const std::function<Result<Level>()>& read) {
   try {
     return read();
   } catch (const std::bad_alloc&) {
-    return Error{"", "needs more memory than there is; split the level"};
+    return Error{"", "needs more memory than there is", "split the level"};
   } catch (const Json::exception& e) {
     return Error{"", std::string("cannot be read: ") + e.what()};
   }
@@ -273,9 +276,13 @@ Result<Level> load_gltf(std::span<const std::uint8_t> bytes, bool expect_glb, co
     Findings findings;
     std::optional<SourceDocument> document = open_gltf(bytes, expect_glb, folder, findings);
     if (document) return level_of(std::move(*document), findings);
-    for (const Finding& finding : findings)
-      if (finding.severity == Severity::kError) return Error{finding.pointer, with_cure(finding)};
-    return Error{"", "cannot be read; export it again"};
+    for (const Finding& finding : findings) {
+      if (finding.severity != Severity::kError) continue;
+      Error error = error_of(finding);
+      if (error.where.empty() && error.cure.empty()) error.cure = "export or save it again";
+      return error;
+    }
+    return Error{"", "cannot be read", "export it again"};
   });
 }
 
@@ -287,8 +294,11 @@ Result<Level> load_level(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  if (extension != ".gltf" && extension != ".glb")
-    return from_file(is_tet_file(path) ? import_tets(path) : import_mesh(path), path);
+  if (extension != ".gltf" && extension != ".glb") {
+    Result<Level> level = from_file(is_tet_file(path) ? import_tets(path) : import_mesh(path), path);
+    if (level) level->unitless = !says_unit(extension);
+    return level;
+  }
   Result<Bytes> bytes = read_file(path);
   if (!bytes) return bytes.error();
   return from_file(load_gltf(*bytes, extension == ".glb", path.parent_path()), path);

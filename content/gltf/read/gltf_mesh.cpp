@@ -102,8 +102,8 @@ Result<Primitive> MeshReader::read_primitive(std::size_t mesh, std::size_t numbe
     if (accessor.bufferView >= 0 && !has_data(document_, position)) {
       const int buffer = document_.model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].buffer;
       if (document_.json["buffers"][buffer].contains("uri"))
-        return Error{fmt::format("/buffers/{}/uri", buffer),
-                     "lies on another machine and is not fetched; download it beside the level"};
+        return Error{fmt::format("/buffers/{}/uri", buffer), "lies on another machine and is not fetched",
+                     "download it beside the level"};
       notes_.insert("primitives whose buffer has no data are left out");
       return out;
     }
@@ -121,7 +121,7 @@ Result<Primitive> MeshReader::read_primitive(std::size_t mesh, std::size_t numbe
   if (!primitive.targets.empty()) notes_.insert("morph targets are ignored: the mesh is read at rest");
   for (const std::uint32_t index : source.index)
     if (index >= source.vertices)
-      return Error{pointer, fmt::format("refers to vertex {} of {}; export the mesh again", index, source.vertices)};
+      return Error{pointer, fmt::format("refers to vertex {} of {}", index, source.vertices), "export the mesh again"};
   out.index = as_triangles(source.draco ? TINYGLTF_MODE_TRIANGLES : primitive.mode, std::move(source.index));
   const auto not_finite = [&](const char* name) {
     return Error{pointer, fmt::format("has a number in {} that is not finite", name)};
@@ -146,7 +146,7 @@ Result<Primitive> MeshReader::read_primitive(std::size_t mesh, std::size_t numbe
       return Error{pointer, fmt::format("has {} with {} numbers a vertex instead of one", painted.name, width)};
     for (const float value : values)
       if (!kPaintedRange.holds(static_cast<double>(value)))
-        return Error{pointer, fmt::format("has a negative factor {} in {}; use 0 or more", value, painted.name)};
+        return Error{pointer, fmt::format("has a negative factor {} in {}", value, painted.name), "use 0 or more"};
     out.*painted.values = std::move(values);
   }
   return out;

@@ -127,27 +127,26 @@ Bytes fetch_buffer(const SourceDocument& document, std::size_t number, const Con
   const std::uint64_t length = buffer["byteLength"].get<std::uint64_t>();
   const auto enough = [&](std::size_t size) {
     if (size < length)
-      add_error(findings, pointer, fmt::format("declares {} bytes but has {}; the file is cut off", length, size));
+      add_error(findings, pointer, fmt::format("declares {} bytes but has {}", length, size), "the file is cut off");
     return size >= length;
   };
   if (is_remote(value_of<std::string>(buffer, "uri", ""))) {
-    add_warning(findings, pointer, "lies on another machine and is not fetched; download it beside the level");
+    add_warning(findings, pointer, "lies on another machine and is not fetched", "download it beside the level");
   } else if (buffer.contains("uri")) {
     std::optional<DataUri> data = fetch(buffer["uri"].get_ref<const std::string&>(), document.folder, pointer + "/uri",
                                         limits::kFile, length, findings);
     if (!data) return {};
     if (is_data_uri(buffer["uri"]) && data->mime != "application/octet-stream" &&
         data->mime != "application/gltf-buffer")
-      add_error(
-          findings, pointer + "/uri",
-          "has the media type '" + data->mime + "'; a buffer's is application/octet-stream or application/gltf-buffer");
+      add_error(findings, pointer + "/uri", "has the media type '" + data->mime + "'",
+                "a buffer's is application/octet-stream or application/gltf-buffer");
     else if (enough(data->bytes.size()))
       data->bytes.resize(length);
     return std::move(data->bytes);
   } else if (number == 0 && container.has_bin) {
     enough(container.bin.size());
   } else {
-    add_warning(findings, pointer, "has no data: a placeholder; what it would hold is read as absent");
+    add_warning(findings, pointer, "has no data: a placeholder", "what it would hold is read as absent");
   }
   return {};
 }
@@ -161,7 +160,7 @@ Bytes fetch_picture(const SourceDocument& document, std::size_t number, Findings
   if (is_remote(uri) || is_foreign(uri)) return {};
   // A surface can be touched without its picture: a missing one is only a warning.
   if (is_missing(document, uri)) {
-    add_warning(findings, pointer, "names " + uri.substr(0, 100) + ", which does not exist; shown as plain white");
+    add_warning(findings, pointer, "names " + uri.substr(0, 100) + ", which does not exist", "shown as plain white");
     return {};
   }
   std::optional<DataUri> data = fetch(uri, document.folder, pointer, limits::kPictureFile, UINT64_MAX, findings);
@@ -180,8 +179,8 @@ FetchedBytes fetch_bytes(const SourceDocument& document, const Container& contai
     if (in_bin || (buffers[i].contains("uri") && !is_remote(buffers[i]["uri"])))
       total += buffers[i]["byteLength"].get<double>();
     if (total > static_cast<double>(most(limits::kFile))) {
-      add_error(findings, fmt::format("/buffers/{}", i),
-                "makes the buffers " + beyond(limits::kFile, total, "split the level"));
+      findings.push_back(finding_of(beyond("makes the buffers", limits::kFile, total, "split the level"),
+                                    Severity::kError, fmt::format("/buffers/{}", i)));
       return out;
     }
     out.buffers.push_back(fetch_buffer(document, i, container, findings));
@@ -196,8 +195,9 @@ FetchedBytes fetch_bytes(const SourceDocument& document, const Container& contai
     if (images[i].contains("bufferView"))
       total += document.json["bufferViews"][images[i]["bufferView"].get<std::size_t>()]["byteLength"].get<double>();
     if (total > static_cast<double>(most(limits::kPictureFile)))
-      add_error(findings, fmt::format("/images/{}", i),
-                "makes the files of pictures " + beyond(limits::kPictureFile, total, "shrink the pictures"));
+      findings.push_back(
+          finding_of(beyond("makes the files of pictures", limits::kPictureFile, total, "shrink the pictures"),
+                     Severity::kError, fmt::format("/images/{}", i)));
   }
   return out;
 }
@@ -217,21 +217,21 @@ void check_pictures(SourceDocument& document, Findings& findings) {
         claimed == "image/webp" || embedded == "image/webp" ||
         (bytes.size() >= 12 && std::memcmp(bytes.data(), "RIFF", 4) == 0 && std::memcmp(&bytes[8], "WEBP", 4) == 0);
     if (webp && !extension_is_used(document.json, "EXT_texture_webp"))
-      add_error(findings, pointer, "is WebP, which needs EXT_texture_webp in extensionsUsed; use PNG or JPEG");
+      add_error(findings, pointer, "is WebP, which needs EXT_texture_webp in extensionsUsed", "use PNG or JPEG");
     const std::string ktx2 = "image/ktx2";
     if ((claimed == ktx2 || embedded == ktx2 || ending_of(uri) == ".ktx2") &&
         !extension_is_used(document.json, "KHR_texture_basisu"))
-      add_error(findings, pointer, "is KTX2, which needs KHR_texture_basisu in extensionsUsed; use PNG or JPEG");
+      add_error(findings, pointer, "is KTX2, which needs KHR_texture_basisu in extensionsUsed", "use PNG or JPEG");
     const bool is_png = format == ImageFormat::kPng, is_jpeg = format == ImageFormat::kJpeg;
     // Both the member and a data URI may declare the type.
     for (const std::string& mime : {claimed, embedded})
       if (!mime.empty() && ((is_png && mime != "image/png") || (is_jpeg && mime != "image/jpeg")))
-        add_error(findings, pointer, fmt::format("claims to be {} but is not; correct its type", mime.substr(0, 60)));
+        add_error(findings, pointer, fmt::format("claims to be {} but is not", mime.substr(0, 60)), "correct its type");
     if (!is_png && !is_jpeg) {
       if (is_data_uri(uri) && bytes.empty())
         add_error(findings, pointer + "/uri", "holds no picture");
       else
-        add_warning(findings, pointer, "is neither PNG nor JPEG and is shown as plain white; convert it");
+        add_warning(findings, pointer, "is neither PNG nor JPEG and is shown as plain white", "convert it");
       bytes.clear();
     }
   }

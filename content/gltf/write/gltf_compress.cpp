@@ -164,7 +164,8 @@ void split_buffers(SourceDocument& document) {
 
 Status compress_document(SourceDocument& document, int bits) {
   constexpr Range kBits = SaveOptions::kDracoBits;
-  if (!kBits.holds(bits)) return Error{"--draco", fmt::format("is {}; use {} to {} bits", bits, kBits.min, kBits.max)};
+  if (!kBits.holds(bits))
+    return Error{"--draco", fmt::format("is {}", bits), fmt::format("use {} to {} bits", kBits.min, kBits.max)};
   if (!document.json.contains("meshes")) return Done{};
   bool any = false;
   for (std::size_t m = 0; m < document.json["meshes"].size(); ++m)

@@ -84,7 +84,7 @@ Status decompress_document(SourceDocument& document, bool all) {
   drop_unused_data(document);
   Findings findings;
   reread_model(document, findings);
-  if (any_error(findings)) return Error{findings.back().pointer, findings.back().message};
+  if (any_error(findings)) return error_of(findings.back());
   return Done{};
 }
 

@@ -64,7 +64,8 @@ Status check_readable(const std::string& text) {
   if (!any_error(findings)) check_meaning(json, findings);
   for (const Finding& finding : findings)
     if (finding.severity == Severity::kError)
-      return Error{finding.pointer, finding.message + "; nothing was saved, for it could not be read again"};
+      return Error{finding.pointer, finding.message(), "nothing was saved, for it could not be read again",
+                   finding.code};
   return Done{};
 }
 
@@ -78,8 +79,8 @@ Status check_unrelated(const fs::path& bin, const fs::path& gltf) {
     for (const Json& buffer : array_of(json, "buffers"))
       if (buffer.is_object() && buffer.contains("uri") && buffer["uri"] == as_uri(bin.filename().string()))
         return Done{};
-  return Error{bin.string(), "is there already and belongs to something else than " + gltf.filename().string() +
-                                 "; move it away, or name another file"};
+  return Error{bin.string(), "is there already and belongs to something else than " + gltf.filename().string(),
+               "move it away, or name another file"};
 }
 
 }  // namespace
@@ -185,7 +186,7 @@ Result<std::string> json_text(const Json& json, int indent) {
   try {
     return json.dump(indent);
   } catch (const Json::exception&) {
-    return Error{"", "holds a name or a text that is not UTF-8; type it anew"};
+    return Error{"", "holds a name or a text that is not UTF-8", "type it anew"};
   }
 }
 
@@ -193,17 +194,16 @@ Result<std::string> json_text(const Json& json, int indent) {
 Status check_opens(Json json, const Bytes& bin, std::size_t size, const fs::path& path) {
   if (!bin.empty()) json["buffers"][0].erase("uri");
   const Result<std::string> text = json_text(json, -1);
-  if (!text) return Error{path.string(), text.error().what};
-  const auto cannot = [&](const std::string& where, const std::string& why) {
-    return Error{path.string(), fmt::format("is not written, as it could not be opened again: {}{}{}", where,
-                                            where.empty() ? "" : " ", why)};
-  };
+  if (!text) return text.error().at(path.string());
+  const std::string cannot = "is not written, as it could not be opened again: ";
   if (size > most(limits::kFile))
-    return cannot("", "it " + beyond(limits::kFile, static_cast<double>(size), "split the level"));
+    return error_at(path.string(), beyond(cannot + "it", limits::kFile, static_cast<double>(size), "split the level"));
   const Result<Level> again = load_gltf(as_glb(*text, bin), true, path.parent_path());
   if (again) return Done{};
-  const std::string& what = again.error().what;
-  return cannot(again.error().where, what + (what.find("; ") == std::string::npos ? "; undo what was set last" : ""));
+  Error error = again.error();
+  error.what = cannot + error.where + (error.where.empty() ? "" : " ") + error.what;
+  if (error.cure.empty()) error.cure = "undo what was set last";
+  return error.at(path.string());
 }
 
 }  // namespace
@@ -213,9 +213,9 @@ Result<std::vector<MadeFile>> make_level_files(const Level& level, const fs::pat
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   if (extension != ".gltf" && extension != ".glb")
-    return Error{path.string(), "is neither .gltf nor .glb; name one of them"};
+    return Error{path.string(), "is neither .gltf nor .glb", "name one of them"};
   Result<SourceDocument> made = level.source ? merge_document(level) : build_document(level);
-  if (!made) return Error{path.string() + " " + made.error().where, made.error().what};
+  if (!made) return made.error().at(path.string() + " " + made.error().where);
   SourceDocument& document = *made;
   if (!level.source) {
     std::vector<std::int32_t> number(level.nodes.size());
@@ -225,7 +225,7 @@ Result<std::vector<MadeFile>> make_level_files(const Level& level, const fs::pat
   if (options.no_draco || options.draco_bits != 0) {
     Findings findings;
     if (level.source) reread_model(document, findings);
-    if (any_error(findings)) return Error{path.string() + " " + findings.back().pointer, findings.back().message};
+    if (any_error(findings)) return error_of(findings.back()).at(path.string() + " " + findings.back().pointer);
     if (const Status status = decompress_document(document, options.no_draco); !status) return status.error();
   }
   if (options.draco_bits != 0)
@@ -240,10 +240,10 @@ Result<std::vector<MadeFile>> make_level_files(const Level& level, const fs::pat
   const fs::path beside = fs::path(path).replace_extension(".bin");
   if (!glb && !bin.empty()) document.json["buffers"][0]["uri"] = as_uri(beside.filename().string());
   Result<std::string> text = json_text(document.json, glb ? -1 : 2);
-  if (!text) return Error{path.string(), text.error().what};
+  if (!text) return text.error().at(path.string());
   if (!glb) *text += "\n";
   if (const Status status = check_readable(*text); !status)
-    return Error{path.string() + " " + status.error().where, status.error().what};
+    return status.error().at(path.string() + " " + status.error().where);
   std::vector<MadeFile> files;
   if (glb) {
     files.push_back({path, as_glb(*text, bin)});

@@ -196,7 +196,7 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
   for (auto [entity, probe] : world->registry.view<const Probe>())
     if (world->registry.get<HapticDevice>(probe.device).path.valid())
       if (const Status added = hands.add(*world, entity, words); !added) return added.error();
-  if (hands.empty()) return Error{level, "has no probe on a script; choose a level with PLIANT_probe"};
+  if (hands.empty()) return Error{level, "has no probe on a script", "choose a level with PLIANT_probe"};
   std::vector<Held> held;
   for (SimulatedHands::Held& one : hands.held()) {
     Held h{one.hand, device_of(*world, one.hand), one.device, one.middle, nullptr, {}, nullptr, {}, {}};

@@ -101,9 +101,9 @@ void judge(Judged& judged, const fs::path& file, bool sound, bool bodies) {
   const std::string name = file.filename().string();
   auto loaded = load_level(file);
   if (!loaded) {
-    const std::string message = loaded.error().message();
-    judged.worst.need(!sound, message);
-    judged.worst.need(message.find(name) != std::string::npos, name + ": " + message);
+    const Error& error = loaded.error();
+    judged.worst.need(!sound, error.message());
+    judged.worst.need(error.where.starts_with(file.string()), name + ": " + error.message());
     ++judged.refused;
     return;
   }

@@ -124,9 +124,7 @@ Level everything() {
 }
 
 bool is_said(const Status& status, const std::string& key, const std::string& name) {
-  if (status) return false;
-  const std::string message = status.error().message();
-  return message.find(key) != std::string::npos && message.find(name) != std::string::npos;
+  return !status && status.error().where == "`" + name + "`: " + key;
 }
 
 constexpr double kBadNumbers[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),

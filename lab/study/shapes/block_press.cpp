@@ -18,8 +18,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kRim = 1.5;         // [1] > 1: cells get smaller towards the rim
-constexpr int kMostIterations = 60;  // co-rotational iterations per depth
+constexpr double kRim = 1.5;              // [1] > 1: cells get smaller towards the rim
+constexpr int kMostBlockIterations = 60;  // co-rotational iterations per depth
 
 // Coordinates from 0 to `end` in `parts * cells` cells: t^kRim near 0, then increasing. The curve is the same for all
 // `cells`, so that errors decrease uniformly with their number.
@@ -140,7 +140,7 @@ Result<std::vector<PressedBlock>> press_block(const BlockPress& press, const std
   material.poisson = press.poisson;
   material.strain = press.strain;
   TissueStep settle;
-  if (press.strain == Strain::kCorotational) settle.iterations = kMostIterations, settle.tolerance = 1e-7;
+  if (press.strain == Strain::kCorotational) settle.iterations = kMostBlockIterations, settle.tolerance = 1e-7;
   Tissue tissue(mesh, material, mesh.free_count);
   const auto solver = make_solver(SolverKind::kBlockCholesky, tissue.inner().size);
   solver->analyse(tissue.inner());
@@ -155,10 +155,10 @@ Result<std::vector<PressedBlock>> press_block(const BlockPress& press, const std
     for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i) tissue.position()[i].y -= depth - before;
     const TissueReport report = settle_tissue(tissue, *solver, dvec3(0), settle);
     if (!report.solved || (press.strain == Strain::kCorotational && !(report.change <= settle.tolerance)))
-      return Error{"study",
-                   fmt::format("a block of {} tetrahedra, pressed {:g} mm deep, was not solved; this is a defect "
-                               "of the study",
-                               out.tets, 1000 * depth)};
+      return Error{
+          "study",
+          fmt::format("a block of {} tetrahedra, pressed {:g} mm deep, was not solved", out.tets, 1000 * depth),
+          "this is a defect of the study"};
     out.solves = report.iterations;
     tissue.assemble(1.0, dvec3(0));
     for (std::uint32_t i = mesh.free_count; i < mesh.pinned_begin(); ++i)

@@ -60,4 +60,11 @@ void AutoSolver::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const 
   iterative_.solve_gram(b, gram);
 }
 
+// Small systems are always factorised: conjugate gradients are not faster there (auto_solver.h), and a factor is exact.
+std::unique_ptr<LinearSolver> make_auto(std::uint32_t block_rows) {
+  constexpr std::uint32_t kSmall = 400;  // block rows
+  if (block_rows > kSmall) return std::make_unique<AutoSolver>();
+  return std::make_unique<BlockCholesky>();
+}
+
 }  // namespace pliant

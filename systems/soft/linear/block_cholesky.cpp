@@ -314,4 +314,8 @@ void BlockCholesky::give_columns(Eigen::Ref<Rows> some) const {
     }
 }
 
+std::unique_ptr<LinearSolver> make_block_cholesky(std::uint32_t) {
+  return std::make_unique<BlockCholesky>();
+}
+
 }  // namespace pliant

@@ -1,4 +1,6 @@
 #include "systems/soft/linear/cholmod.h"
+
+#include "systems/soft/linear/linear_solver.h"
 #ifdef PLIANT_CHOLMOD
 
 namespace pliant {
@@ -69,6 +71,19 @@ void Cholmod::solve_many(Eigen::Ref<Rows> columns) const {
   cholmod_dense* solved = cholmod_solve(CHOLMOD_A, factor_, &dense, &common_);
   columns = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(solved->x), right.rows(), right.cols());
   cholmod_free_dense(&solved, &common_);
+}
+
+std::unique_ptr<LinearSolver> make_cholmod(std::uint32_t) {
+  return std::make_unique<Cholmod>();
+}
+
+}  // namespace pliant
+#else
+
+namespace pliant {
+
+std::unique_ptr<LinearSolver> make_cholmod(std::uint32_t) {
+  return nullptr;
 }
 
 }  // namespace pliant

@@ -85,4 +85,8 @@ void ConjugateGradient::solve_many(Eigen::Ref<Rows> columns) const {
   iterations_ = most;
 }
 
+std::unique_ptr<LinearSolver> make_conjugate_gradient(std::uint32_t) {
+  return std::make_unique<ConjugateGradient>();
+}
+
 }  // namespace pliant

@@ -7,4 +7,8 @@ bool DenseSolver::factorise(const BlockMatrix& a) {
   return factor_.info() == Eigen::Success && factor_.matrixLLT().diagonal().allFinite();
 }
 
+std::unique_ptr<LinearSolver> make_dense(std::uint32_t) {
+  return std::make_unique<DenseSolver>();
+}
+
 }  // namespace pliant

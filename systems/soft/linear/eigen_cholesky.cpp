@@ -33,4 +33,8 @@ void EigenCholesky::solve_many(Eigen::Ref<Rows> columns) const {
   columns = factor_.solve(right);
 }
 
+std::unique_ptr<LinearSolver> make_eigen_cholesky(std::uint32_t) {
+  return std::make_unique<EigenCholesky>();
+}
+
 }  // namespace pliant

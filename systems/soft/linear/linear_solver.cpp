@@ -2,41 +2,18 @@
 
 #include "components/registered.h"
 #include "runtime/assert.h"
-#include "systems/soft/linear/auto_solver.h"
-#include "systems/soft/linear/block_cholesky.h"
-#include "systems/soft/linear/cholmod.h"
-#include "systems/soft/linear/conjugate_gradient.h"
-#include "systems/soft/linear/dense_solver.h"
-#include "systems/soft/linear/eigen_cholesky.h"
 #include "systems/soft/linear/registered_solver.h"
 
 namespace pliant {
 
-// Small systems are always factorised: conjugate gradients are not faster there (auto_solver.h), and a factor is exact.
-constexpr std::uint32_t kSmall = 400;  // block rows
-
 std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t block_rows) {
   if (const SolverFactory* factory = registered_solver(kind)) return make_registered(*factory);
-  switch (kind) {
-    case SolverKind::kDense:
-      return std::make_unique<DenseSolver>();
-    case SolverKind::kAuto:
-      if (block_rows > kSmall) return std::make_unique<AutoSolver>();
-      return std::make_unique<BlockCholesky>();
-    case SolverKind::kBlockCholesky:
-      return std::make_unique<BlockCholesky>();
-    case SolverKind::kEigenCholesky:
-      return std::make_unique<EigenCholesky>();
-    case SolverKind::kCholmod:
-#ifdef PLIANT_CHOLMOD
-      return std::make_unique<Cholmod>();
-#else
-      return nullptr;
-#endif
-    case SolverKind::kConjugateGradient:
-      return std::make_unique<ConjugateGradient>();
-  }
-  UNREACHABLE();
+#define PLIANT_SOLVER(word, ...) make_##word,
+  constexpr std::unique_ptr<LinearSolver> (*kMake[])(std::uint32_t) = {PLIANT_SOLVERS(PLIANT_SOLVER)};
+#undef PLIANT_SOLVER
+  const auto place = static_cast<std::size_t>(kind);
+  ASSERT(place < std::size(kMake));
+  return kMake[place](block_rows);
 }
 
 void LinearSolver::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const {
@@ -53,9 +30,10 @@ void LinearSolver::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) cons
 
 std::vector<SolverKind> available_solvers() {
   std::vector<SolverKind> kinds;
-  for (const SolverKind kind : {SolverKind::kBlockCholesky, SolverKind::kEigenCholesky, SolverKind::kCholmod,
-                                SolverKind::kConjugateGradient, SolverKind::kDense})
-    if (make_solver(kind, 1) != nullptr) kinds.push_back(kind);
+  for (std::size_t i = 0; i < std::size(kSolverRows); ++i) {
+    const auto kind = static_cast<SolverKind>(i);
+    if (kind != SolverKind::kAuto && make_solver(kind, 1) != nullptr) kinds.push_back(kind);
+  }
   return kinds;
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "components/built_in.h"
 #include "components/math.h"
 #include "pliant/parameters.h"
 #include "systems/soft/linear/block_columns.h"
@@ -33,8 +34,13 @@ class LinearSolver {
   virtual void solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const;
 };
 
+// Of each solver that ships, in its own file (components/built_in.h). Null if the build lacks it.
+#define PLIANT_SOLVER(word, ...) std::unique_ptr<LinearSolver> make_##word(std::uint32_t block_rows);
+PLIANT_SOLVERS(PLIANT_SOLVER)
+#undef PLIANT_SOLVER
+
 // Null if the build lacks that kind, or its factory returned nothing.
 std::unique_ptr<LinearSolver> make_solver(SolverKind kind, std::uint32_t block_rows);
-std::vector<SolverKind> available_solvers();
+std::vector<SolverKind> available_solvers();  // that ship, but `auto`
 
 }  // namespace pliant

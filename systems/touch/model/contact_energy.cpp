@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "components/registered.h"
-#include "runtime/assert.h"
 #include "systems/touch/model/shape.h"
 
 namespace pliant {
@@ -166,42 +165,23 @@ ShareKernel fitted_kernel(const Value& value) {
 
 }  // namespace
 
-// Minimax fits; the comments give the remaining error as a share of the dent's depth. A punch has a flat bottom, which
-// no positive definite function has.
 ShareKernel share_kernel(Shape shape, double reach, double volume, double contact) {
-  const auto kernel = [reach](double weight, double inner, double outer) {
-    return ShareKernel{weight, inner * reach, outer * reach};
-  };
-  const auto fitted = [&kernel](const auto& value) {
+  const auto fitted = [reach](const auto& value) {
     const ShareKernel found = fitted_kernel(value);
-    return kernel(found.weight, found.inner, found.outer);
+    return ShareKernel{found.weight, found.inner * reach, found.outer * reach};
   };
   if (const ShapeFunction* own = registered_shape(shape)) return fitted([own](double u) { return own->value(u); });
-  if (std::abs(contact - 0.2) > 1e-6 && depends_on_contact(shape)) {
+  const auto& [weight, inner, outer, weight_by, inner_by, outer_by] = row_of(shape).kernel;
+  if (outer == 0.0 || (std::abs(contact - 0.2) > 1e-6 && depends_on_contact(shape))) {
     FieldSource source;
     source.amplitude = 1.0f;
     source.shape = shape;
-    source.parameter = static_cast<float>(shape == Shape::kKelvinlet ? contact : contact * contact);
+    source.parameter = shape_parameter(shape, contact, 1.0, volume);
     return fitted([&source](double u) {
       return static_cast<double>(share_at(source, {static_cast<float>(std::sqrt(u)), 0, 0}, source.normal));
     });
   }
-  switch (shape) {
-    case Shape::kPunch:
-      return kernel(0.2, 1.0, 1.3);  // 0.18
-    case Shape::kHertz:
-      return kernel(0.7, 0.55, 1.45);  // 0.053
-    case Shape::kGaussian:
-      return kernel(0.15, 0.8, 0.9);  // 0.019
-    case Shape::kWendland:
-      return kernel(1.0, 1.0, 1.0);  // none
-    case Shape::kVolume:
-      // (1-u)^3 (1 - 5 chi u): from 0.059 (no rim) to 0.10.
-      return kernel(0.05 + 0.75 * volume, 0.9 - 0.15 * volume, 1.4 - 0.55 * volume);
-    case Shape::kKelvinlet:
-      return kernel(0.5, 0.4, 1.4);  // 0.029
-  }
-  UNREACHABLE();
+  return {weight + weight_by * volume, (inner + inner_by * volume) * reach, (outer + outer_by * volume) * reach};
 }
 
 double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel) {

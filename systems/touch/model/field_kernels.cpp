@@ -48,33 +48,10 @@ inline __attribute__((always_inline)) void radial(const Mesh& mesh, std::uint32_
   fresh ? add_radial<true>(mesh, begin, s, out, profile) : add_radial<false>(mesh, begin, s, out, profile);
 }
 
-PLIANT_KERNEL void add_volume(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
-                              ZoneTargets& out) {
-  const float c = s.parameter;
-  radial(mesh, begin, s, fresh, out, [c](float u) { return shared::shape_volume(u, c); });
-}
-PLIANT_KERNEL void add_wendland(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
-                                ZoneTargets& out) {
-  radial(mesh, begin, s, fresh, out, [](float u) { return shared::shape_wendland(u); });
-}
-
-PLIANT_KERNEL void add_punch(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
-                             ZoneTargets& out) {
-  const float inner = s.parameter;
-  radial(mesh, begin, s, fresh, out, [inner](float u) { return shared::shape_punch(u, inner); });
-}
-PLIANT_KERNEL void add_hertz(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
-                             ZoneTargets& out) {
-  const float inner = s.parameter;
-  radial(mesh, begin, s, fresh, out, [inner](float u) { return shared::shape_hertz(u, inner); });
-}
-PLIANT_KERNEL void add_gaussian(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
-                                ZoneTargets& out) {
-  radial(mesh, begin, s, fresh, out, [](float u) { return shared::shape_gaussian(u); });
-}
-
-PLIANT_KERNEL void add_kelvinlet(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
-                                 ZoneTargets& out) {
+// A shape that gives the target itself.
+template <class Target>
+inline __attribute__((always_inline)) void add_whole(const Mesh& mesh, std::uint32_t begin, const FieldSource& s,
+                                                     bool fresh, ZoneTargets& out, Target target) {
   const float* __restrict px = mesh.px.data() + begin;
   const float* __restrict py = mesh.py.data() + begin;
   const float* __restrict pz = mesh.pz.data() + begin;
@@ -82,17 +59,35 @@ PLIANT_KERNEL void add_kelvinlet(const Mesh& mesh, std::uint32_t begin, const Fi
   const float* __restrict ny = mesh.ny.data() + begin;
   const float* __restrict nz = mesh.nz.data() + begin;
   const vec3 center = s.center, normal = s.normal;
-  const float inv = s.inv_reach2, alpha = s.amplitude, e = s.parameter;
+  const float inv = s.inv_reach2, alpha = s.amplitude;
   if (fresh) out = {};
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
     const vec3 d(px[i] - center.x, py[i] - center.y, pz[i] - center.z), n(nx[i], ny[i], nz[i]);
-    const vec4 t = shared::field_kelvinlet(d, n, normal, inv, alpha, e);
+    const vec4 t = target(d, n, normal, inv, alpha);
     out.nx[i] += t.x;
     out.ny[i] += t.y;
     out.nz[i] += t.z;
     out.h[i] += t.w;
   }
 }
+
+// One kernel for each shape that ships.
+#define PLIANT_ADD_radial(word) \
+  radial(mesh, begin, s, fresh, out, [parameter](float u) { return shared::shape_##word(u, parameter); })
+#define PLIANT_ADD_whole(word)                                                                            \
+  add_whole(mesh, begin, s, fresh, out, [parameter](vec3 d, vec3 n, vec3 m, float inv, float amplitude) { \
+    return shared::field_##word(d, n, m, inv, amplitude, parameter);                                      \
+  })
+#define PLIANT_SHAPE(word, form, ...)                                                                    \
+  PLIANT_KERNEL void add_##word(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh, \
+                                ZoneTargets& out) {                                                      \
+    [[maybe_unused]] const float parameter = s.parameter;                                                \
+    PLIANT_ADD_##form(word);                                                                             \
+  }
+PLIANT_SHAPES(PLIANT_SHAPE)
+#undef PLIANT_SHAPE
+#undef PLIANT_ADD_whole
+#undef PLIANT_ADD_radial
 
 vec2 profile_of(const ShapeFunction& shape, float u) {
   return {static_cast<float>(shape.value(u)), static_cast<float>(shape.slope(u))};
@@ -261,20 +256,11 @@ void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source
   const std::uint32_t begin = mesh.zone_begin(zone);
   if (const ShapeFunction* own = registered_shape(source.shape))
     return add_registered(*own, mesh, begin, source, fresh, targets);
-  switch (source.shape) {
-    case Shape::kPunch:
-      return add_punch(mesh, begin, source, fresh, targets);
-    case Shape::kHertz:
-      return add_hertz(mesh, begin, source, fresh, targets);
-    case Shape::kGaussian:
-      return add_gaussian(mesh, begin, source, fresh, targets);
-    case Shape::kWendland:
-      return add_wendland(mesh, begin, source, fresh, targets);
-    case Shape::kVolume:
-      return add_volume(mesh, begin, source, fresh, targets);
-    case Shape::kKelvinlet:
-      return add_kelvinlet(mesh, begin, source, fresh, targets);
-  }
+  int place = 0;
+#define PLIANT_SHAPE(word, ...) \
+  if (static_cast<int>(source.shape) == place++) return add_##word(mesh, begin, source, fresh, targets);
+  PLIANT_SHAPES(PLIANT_SHAPE)
+#undef PLIANT_SHAPE
   UNREACHABLE();
 }
 
@@ -292,7 +278,7 @@ ZoneRest step_residual(const Motion& motion, const PaintedMotion& painted, Heigh
     step_solid(&state->x, &rate->x, &field.arm[first].x, painted.solid.data() + first);
   } else if (!painted.linear.empty()) {
     step_linear(&state->x, &rate->x, painted.linear.data() + first);
-  } else if (motion.law.kind == SpringLaw::kStandardLinearSolid) {
+  } else if (motion.arm()) {
     float m[9];
     solid_matrix(motion, m);
     step_solid(&state->x, &rate->x, &field.arm[first].x, m);

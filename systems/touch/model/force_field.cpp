@@ -113,9 +113,7 @@ void aim(FieldSource& source, const Contact& contact, const Deformable& deformab
   source.normal = vec3(contact.normal);
   source.inv_reach2 = static_cast<float>(1 / (reach * reach));
   source.shape = deformable.shape;
-  source.parameter = deformable.shape == Shape::kKelvinlet ? static_cast<float>(inner)
-                     : deformable.shape == Shape::kVolume  ? static_cast<float>(5 * deformable.volume)
-                                                           : static_cast<float>(inner * inner / (reach * reach));
+  source.parameter = shape_parameter(deformable.shape, inner, reach, deformable.volume);
 }
 
 void force_field(World& world, Tick tick) {
@@ -168,7 +166,7 @@ void force_field(World& world, Tick tick) {
       const std::array<std::uint32_t, 3> own{corner.x / kZoneSize, corner.y / kZoneSize, corner.z / kZoneSize};
       flood(mesh, vec3(contact.foot), 1 / std::sqrt(double(source.now.inv_reach2)), own, object, source.zones);
       if (!source.offset.empty()) march_distance(mesh, contact, source.now, source.offset, source.heap);
-      if (source.now.shape == Shape::kVolume) {
+      if (row_of(source.now.shape).parameter == ShapeParameter::kVolume) {
         VolumeSums sums;
         for (const std::uint32_t zone : source.zones) {
           if (source.offset.empty()) {

@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "components/registered.h"
+#include "runtime/assert.h"
+#include "systems/touch/model/spring_arithmetic.h"
 
 namespace pliant {
 
@@ -114,94 +115,33 @@ double damping_of(const Deformable& d) {
 
 namespace {
 
-// The discrete gradient of a law given by its values: the difference of its potential. Where that would cancel, the
-// mean of its force over the interval (Gauss-Legendre, four points).
-double mean_force(const RestoringLaw& law, double h0, double h1) {
-  const double d = h1 - h0;
-  if (std::abs(d) > 1e-3 * (std::abs(h0) + std::abs(h1))) return (law.potential(h1) - law.potential(h0)) / d;
-  constexpr double kAt[2] = {0.3399810435848563, 0.8611363115940526};
-  constexpr double kWeight[2] = {0.6521451548625461, 0.3478548451374538};
-  const double middle = 0.5 * (h0 + h1);
-  double sum = 0.0;
-  for (int i = 0; i < 2; ++i)
-    sum += kWeight[i] * (law.force(middle - 0.5 * d * kAt[i]) + law.force(middle + 0.5 * d * kAt[i]));
-  return 0.5 * sum;
-}
+// The laws that ship, behind the interface of registered ones.
+#define PLIANT_LAW(word, of, ...)                                                                               \
+  struct word##_spring final : SpringFunction {                                                                 \
+    static law_exact::LawConstants at(const SpringConstants& c) { return {c.cubic, c.stiffening}; }             \
+    double force(double h, const SpringConstants& c) const override { return law_exact::of##_force(h, at(c)); } \
+    double potential(double h, const SpringConstants& c) const override {                                       \
+      return law_exact::of##_potential(h, at(c));                                                               \
+    }                                                                                                           \
+    double slope(double h, const SpringConstants& c) const override { return law_exact::of##_slope(h, at(c)); } \
+    double mean_force(double h0, double h1, const SpringConstants& c) const override {                          \
+      return law_exact::of##_between(h0, h1 - h0, law_exact::of##_keep(h0, at(c)), at(c)).gradient;             \
+    }                                                                                                           \
+  };
+PLIANT_SPRING_LAWS(PLIANT_LAW)
+#undef PLIANT_LAW
 
 }  // namespace
 
-double RestoringLaw::force(double h) const {
-  if (own) return own->force(h, {cubic, stiffening});
-  switch (kind) {
-    case SpringLaw::kLinear:
-    case SpringLaw::kStandardLinearSolid:
-      return h;
-    case SpringLaw::kCubic:
-      return h + cubic * h * h * h;
-    case SpringLaw::kExponential:
-      return h < 0 ? -std::expm1(-stiffening * h) / stiffening : h;
-  }
-  UNREACHABLE();
-}
-
-double RestoringLaw::potential(double h) const {
-  if (own) return own->potential(h, {cubic, stiffening});
-  switch (kind) {
-    case SpringLaw::kLinear:
-    case SpringLaw::kStandardLinearSolid:
-      break;
-    case SpringLaw::kCubic:
-      return h * h * (0.5 + 0.25 * cubic * h * h);
-    case SpringLaw::kExponential:
-      if (h < 0) {
-        const double x = -stiffening * h;
-        // (e^x - 1 - x) / alpha^2; its series where the difference would cancel.
-        const double d = std::abs(x) < 1e-3 ? x * x * (0.5 + x / 6 + x * x / 24) : std::expm1(x) - x;
-        return d / (stiffening * stiffening);
-      }
-      break;
-  }
-  return 0.5 * h * h;
-}
-
-double RestoringLaw::slope(double h) const {
-  if (own) return own->slope(h, {cubic, stiffening});
-  switch (kind) {
-    case SpringLaw::kLinear:
-    case SpringLaw::kStandardLinearSolid:
-      return 1.0;
-    case SpringLaw::kCubic:
-      return 1 + 3 * cubic * h * h;
-    case SpringLaw::kExponential:
-      return h < 0 ? std::exp(-stiffening * h) : 1.0;
-  }
-  UNREACHABLE();
-}
-
-double RestoringLaw::discrete_gradient(double h0, double h1) const {
-  if (own) return mean_force(*this, h0, h1);
-  switch (kind) {
-    case SpringLaw::kLinear:
-    case SpringLaw::kStandardLinearSolid:
-      break;
-    case SpringLaw::kCubic:
-      return 0.5 * (h0 + h1) + 0.25 * cubic * (h0 + h1) * (h0 * h0 + h1 * h1);
-    case SpringLaw::kExponential:
-      if (h0 < 0 || h1 < 0) {
-        const double d = h1 - h0;
-        if (h0 < 0 && h1 < 0) {
-          // -(1/alpha) (e^(-alpha h0) (1 + rise) - 1), 1 + rise = expm1(-alpha d) / (-alpha d), without cancellation.
-          const double x = -stiffening * d, em0 = std::expm1(-stiffening * h0);
-          const double rise =
-              std::abs(x) < 1e-3 ? x * (0.5 + x * (1.0 / 6 + x * (1.0 / 24 + x / 120))) : (std::expm1(x) - x) / x;
-          return -(em0 * (1 + rise) + rise) / stiffening;
-        }
-        if (std::abs(d) < 1e-12 * (std::abs(h0) + std::abs(h1))) return force(0.5 * (h0 + h1));
-        return (potential(h1) - potential(h0)) / d;  // across the kink: opposite signs, no cancellation
-      }
-      break;
-  }
-  return 0.5 * (h0 + h1);
+const SpringFunction& spring_function(SpringLaw law) {
+#define PLIANT_LAW(word, ...) new word##_spring,
+  static const SpringFunction* const kShipped[] = {PLIANT_SPRING_LAWS(PLIANT_LAW)};
+#undef PLIANT_LAW
+  const auto place = static_cast<std::size_t>(law);
+  if (place < std::size(kShipped)) return *kShipped[place];
+  const SpringFunction* const own = registered_spring(law);
+  ASSERT(own != nullptr);
+  return *own;
 }
 
 double exponential_alpha(double stiffening) {
@@ -210,8 +150,7 @@ double exponential_alpha(double stiffening) {
 }
 
 RestoringLaw restoring_law(const Deformable& deformable) {
-  return {deformable.spring, deformable.cubic / deformable.stiffness, exponential_alpha(deformable.stiffening),
-          registered_spring(deformable.spring)};
+  return {deformable.spring, deformable.cubic / deformable.stiffness, exponential_alpha(deformable.stiffening)};
 }
 
 HeightState step_restoring(const RestoringLaw& law, HeightState state, double m, double b, double k, double f,
@@ -258,7 +197,7 @@ Motion motion(const Deformable& deformable, double dt) {
   result.damping = 2 * damping_of(deformable) / w0;
   result.law = restoring_law(deformable);
   result.linear = exact_step(result.mass, result.damping, 1.0, dt);
-  if (deformable.spring == SpringLaw::kStandardLinearSolid) {
+  if (has_arm(deformable.spring)) {
     result.arm_stiffness = deformable.relaxation_stiffness / deformable.stiffness;
     result.arm_time = deformable.relaxation_time;
     result.arm_decay = std::exp(-dt / deformable.relaxation_time);

@@ -9,7 +9,7 @@
 #include <array>
 
 #include "components/deformable.h"
-#include "pliant/surface_law.h"
+#include "components/registered.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -47,21 +47,24 @@ double creep_ratio(double w0, double settling_time);
 // The effective damping ratio: the authored one, or the one required by the settling time.
 double damping_of(const Deformable& deformable);
 
+// The function of a law, built in or registered.
+const SpringFunction& spring_function(SpringLaw law);
+
 // The restoring law per unit of small-depth stiffness: F(h) = k * restoring(h). Odd, except that the exponential law
 // stiffens only under compression (a bulge is linear). [m]
 struct RestoringLaw {
   SpringLaw kind = SpringLaw::kLinear;
-  double cubic = 0.0;                   // [1/m2] k3 / k
-  double stiffening = 0.0;              // [1/m] alpha
-  const SpringFunction* own = nullptr;  // of a registered law: it supplies all functions below
+  double cubic = 0.0;       // [1/m2] k3 / k
+  double stiffening = 0.0;  // [1/m] alpha, not 0 of the exponential law
+  const SpringFunction* function = &spring_function(kind);
 
-  // True for laws other than linear and standard linear solid.
-  bool curved() const { return own != nullptr || kind == SpringLaw::kCubic || kind == SpringLaw::kExponential; }
-  double force(double h) const;      // [m]
-  double potential(double h) const;  // [m2] its integral from 0
-  double slope(double h) const;      // [1]
+  // True for laws whose step is the passive one.
+  bool curved() const { return row_of(kind).step == SpringStep::kPassive; }
+  double force(double h) const { return function->force(h, {cubic, stiffening}); }          // [m]
+  double potential(double h) const { return function->potential(h, {cubic, stiffening}); }  // [m2] its integral from 0
+  double slope(double h) const { return function->slope(h, {cubic, stiffening}); }          // [1]
   // (U(h1) - U(h0)) / (h1 - h0), without cancellation; it makes the step passive.
-  double discrete_gradient(double h0, double h1) const;
+  double discrete_gradient(double h0, double h1) const { return function->mean_force(h0, h1, {cubic, stiffening}); }
 };
 RestoringLaw restoring_law(const Deformable& deformable);
 // [1/m] `stiffening`, made non-zero: the exponential law divides by it.
@@ -84,6 +87,7 @@ struct Motion {
   double arm_decay = 1.0;    // e^(-T/tau)
   std::array<std::array<double, 3>, 3> solid{};
   bool nonlinear() const { return law.curved(); }
+  bool arm() const { return has_arm(law.kind); }
 };
 Motion motion(const Deformable& deformable, double dt);
 

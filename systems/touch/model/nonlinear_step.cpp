@@ -1,11 +1,12 @@
 #include "systems/touch/model/nonlinear_step.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <type_traits>
 
 #include "runtime/kernel.h"
 #include "systems/touch/model/field_kernels.h"
+#include "systems/touch/model/spring_arithmetic.h"
 
 // Every loop here runs over the vertices of a zone in double, without branches, so that the compiler vectorises it.
 // Newton's method takes the same steps as step_restoring(). Vertices that have not converged after kSteps (a bracket
@@ -26,85 +27,33 @@ PLIANT_INLINE double select(bool first, double a, double b) {
   return first ? a : b;
 }
 
-// e^x - 1 to a few ulp. x is clamped to the range of double; beyond it the bracket decides.
-PLIANT_INLINE double expm1_of(double x) {
-  x = select(x < 700.0, x, 700.0);
-  x = select(x > -700.0, x, -700.0);
-  constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: its last bit has value 1
-  const double shifted = x * 1.4426950408889634 + kRound, n = shifted - kRound;
-  const double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
-  // The series in pairs (Estrin's scheme): Horner's would be a chain of twelve dependent operations.
-  const double r2 = r * r, r4 = r2 * r2;
-  const double p0 = 0.5 + r * (1.0 / 6), p1 = 1.0 / 24 + r * (1.0 / 120), p2 = 1.0 / 720 + r * (1.0 / 5040),
-               p3 = 1.0 / 40320 + r * (1.0 / 362880), p4 = 1.0 / 3628800 + r * (1.0 / 39916800);
-  const double tail = (p2 + r2 * p3) + r4 * (p4 + r2 * (1.0 / 479001600));
-  const double p = r + r2 * ((p0 + r2 * p1) + r4 * tail);
-  const double power = std::bit_cast<double>((std::bit_cast<std::uint64_t>(shifted) + 1023) << 52);
-  return power * p + (power - 1.0);
-}
-
-// Each law: force and slope at h0, the precomputed value keep(h0), and force, slope and discrete gradient at h1 = h0 +
-// d.
-struct Spring {
-  double force, slope;              // at h1
-  double gradient, gradient_slope;  // discrete gradient between h0 and h1, and its derivative by h1
-};
-
-struct Cubic {
-  double c;
-  PLIANT_INLINE double force(double h) const { return h + c * h * h * h; }
-  PLIANT_INLINE double slope(double h) const { return 1 + 3 * c * h * h; }
-  PLIANT_INLINE double keep(double) const { return 0.0; }
-  PLIANT_INLINE double slope_between(double h0, double d, double) const { return slope(h0 + 0.5 * d); }
-  PLIANT_INLINE Spring at(double h0, double d, double) const {
-    const double h1 = h0 + d, sum = h0 + h1, squares = h0 * h0 + h1 * h1;
-    return {force(h1), slope(h1), 0.5 * sum + 0.25 * c * sum * squares, 0.5 + 0.25 * c * (squares + 2 * sum * h1)};
-  }
-};
-
-// Differences of exponentials are written with e^x - 1 throughout, to avoid cancellation near rest.
-struct Exponential {
-  double alpha, inv;  // [1/m] [m]
-  PLIANT_INLINE double force(double h) const { return select(h < 0, -expm1_of(-alpha * h) * inv, h); }
-  PLIANT_INLINE double slope(double h) const { return select(h < 0, 1 + expm1_of(-alpha * h), 1.0); }
-  PLIANT_INLINE double keep(double h0) const { return expm1_of(-alpha * h0); }
-  PLIANT_INLINE double slope_between(double h0, double d, double) const { return slope(h0 + 0.5 * d); }
-  // (e^x - 1 - x) / x^2, by its series where that cancels.
-  PLIANT_INLINE static double second(double x, double em1) {
-    const double x2 = x * x, x4 = x2 * x2;
-    const double series = ((0.5 + x * (1.0 / 6)) + x2 * (1.0 / 24 + x * (1.0 / 120))) +
-                          x4 * ((1.0 / 720 + x * (1.0 / 5040)) + x2 * (1.0 / 40320));
-    const bool small = std::abs(x) < 0.03;
-    return select(small, series, (em1 - x) / select(small, 1.0, x2));
-  }
-  PLIANT_INLINE Spring at(double h0, double d, double em0) const {
-    const double h1 = h0 + d, x = -alpha * d, em = expm1_of(x);
-    const double em1 = em0 * (1 + em) + em;  // e^(-alpha h1) - 1
-    const double force1 = select(h1 < 0, -em1 * inv, h1), slope1 = select(h1 < 0, 1 + em1, 1.0);
-    // Both below zero: -(1/alpha) (e^(-alpha h0) (e^x - 1)/x - 1). Across the kink: (U1 - U0)/d, where one U is
-    // exponential. Both above: linear. One evaluation of `second` serves all cases.
-    const double curved = second(select(h0 < 0, select(h1 < 0, x, -alpha * h0), -alpha * h1),
-                                 select(h0 < 0, select(h1 < 0, em, em0), em1));
-    const double rise = x * curved;
-    const double below = -(em0 * (1 + rise) + rise) * inv, above = 0.5 * (h0 + h1);
-    const double over_d = 1.0 / select(d == 0.0, 1.0, d);
-    const double U0 = h0 * h0 * select(h0 < 0, curved, 0.5), U1 = h1 * h1 * select(h1 < 0, curved, 0.5);
-    const double across = (U1 - U0) * over_d;
-    const double gradient = select(h0 < 0, select(h1 < 0, below, across), select(h1 < 0, across, above));
-    const bool short_step = std::abs(d) <= 1e-7 * (std::abs(h0) + std::abs(h1));
-    const double gradient_slope = select(short_step, 0.5 * slope1, (force1 - gradient) * over_d);
-    return {force1, slope1, gradient, gradient_slope};
-  }
-};
+// A law that ships, in lanes.
+#define PLIANT_LAW(word, ...) k_##word,
+enum LawPlace : std::size_t { PLIANT_SPRING_LAWS(PLIANT_LAW) };
+#undef PLIANT_LAW
+#define PLIANT_LAW(word, of, step, ...)                                                \
+  struct word##_in_lanes {                                                             \
+    static constexpr std::size_t kPlace = k_##word;                                    \
+    static constexpr SpringStep kStep = SpringStep::step;                              \
+    law_lanes::LawConstants k;                                                         \
+    PLIANT_INLINE double force(double h) const { return law_lanes::of##_force(h, k); } \
+    PLIANT_INLINE double slope(double h) const { return law_lanes::of##_slope(h, k); } \
+    PLIANT_INLINE double keep(double h0) const { return law_lanes::of##_keep(h0, k); } \
+    PLIANT_INLINE law_lanes::LawAt at(double h0, double d, double kept) const {        \
+      return law_lanes::of##_between(h0, d, kept, k);                                  \
+    }                                                                                  \
+  };
+PLIANT_SPRING_LAWS(PLIANT_LAW)
+#undef PLIANT_LAW
 
 // A registered law: one vertex at a time, without SIMD.
 struct Own {
+  static constexpr SpringStep kStep = SpringStep::kPassive;
   RestoringLaw law;
   double force(double h) const { return law.force(h); }
   double slope(double h) const { return law.slope(h); }
   double keep(double) const { return 0.0; }
-  double slope_between(double h0, double d, double) const { return law.slope(h0 + 0.5 * d); }
-  Spring at(double h0, double d, double) const {
+  law_lanes::LawAt at(double h0, double d, double) const {
     const double h1 = h0 + d, force1 = law.force(h1), slope1 = law.slope(h1), gradient = law.discrete_gradient(h0, h1);
     const bool short_step = std::abs(d) <= 1e-7 * (std::abs(h0) + std::abs(h1));
     return {force1, slope1, gradient, short_step ? 0.5 * slope1 : (force1 - gradient) / d};
@@ -145,7 +94,7 @@ template <class Law>
 PLIANT_INLINE void newton(const Law& law, Work& w) {
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
     const double d = w.d[i], h0 = w.h0[i];
-    const Spring s = law.at(h0, d, w.kept[i]);
+    const law_lanes::LawAt s = law.at(h0, d, w.kept[i]);
     const bool stiff = w.stiff[i] > 0;
     const double r = w.inertia[i] * d + select(stiff, s.force, s.gradient) + w.constant[i];
     const double slope = w.inertia[i] + select(stiff, s.slope, s.gradient_slope);
@@ -181,7 +130,7 @@ PLIANT_INLINE void finish(const Law& law, const Motion& motion, Work& w, float* 
     const double d = w.d[i], rate = d / T;
     h[i] = static_cast<float>(w.h0[i] + d);
     v[i] = static_cast<float>(select(w.stiff[i] > 0, rate, 2 * rate - w.v0[i]));
-    w.f[i] = law.slope_between(w.h0[i], d, w.kept[i]);
+    w.f[i] = law.slope(w.h0[i] + 0.5 * d);
   }
 }
 
@@ -227,32 +176,16 @@ PLIANT_KERNEL void step_normals(const Motion& motion, const Work& w, const float
   }
 }
 
-PLIANT_KERNEL void begin_cubic(const Cubic& law, const Motion& motion, Work& w, bool forced) {
+template <class Law>
+PLIANT_KERNEL void begin_lanes(const Law& law, const Motion& motion, Work& w, bool forced) {
   begin(law, motion, w, forced);
 }
-PLIANT_KERNEL void newton_cubic(const Cubic& law, Work& w) {
+template <class Law>
+PLIANT_KERNEL void newton_lanes(const Law& law, Work& w) {
   newton(law, w);
 }
-PLIANT_KERNEL void finish_cubic(const Cubic& law, const Motion& motion, Work& w, float* h, float* v) {
-  finish(law, motion, w, h, v);
-}
-PLIANT_KERNEL void begin_exponential(const Exponential& law, const Motion& motion, Work& w, bool forced) {
-  begin(law, motion, w, forced);
-}
-PLIANT_KERNEL void newton_exponential(const Exponential& law, Work& w) {
-  newton(law, w);
-}
-PLIANT_KERNEL void finish_exponential(const Exponential& law, const Motion& motion, Work& w, float* h, float* v) {
-  finish(law, motion, w, h, v);
-}
-
-void begin_own(const Own& law, const Motion& motion, Work& w, bool forced) {
-  begin(law, motion, w, forced);
-}
-void newton_own(const Own& law, Work& w) {
-  newton(law, w);
-}
-void finish_own(const Own& law, const Motion& motion, Work& w, float* h, float* v) {
+template <class Law>
+PLIANT_KERNEL void finish_lanes(const Law& law, const Motion& motion, Work& w, float* h, float* v) {
   finish(law, motion, w, h, v);
 }
 
@@ -286,23 +219,29 @@ void step_nonlinear(const Motion& motion, const PaintedMotion& painted, std::uin
     std::copy_n(painted.damping.data() + std::size_t{zone} * kZoneSize, kZoneSize, w.damping);
   }
   const bool forced = targets != nullptr;
-  const auto step = [&](const auto& law, auto first, auto next, auto last) {
-    first(law, motion, w, forced);
-    bool settled = false;
-    for (int round = 0; round < kSteps && !settled; ++round) {
-      next(law, w);
-      settled = all_settled(w);
-    }
-    if (!settled) settle(motion, targets, w);
-    last(law, motion, w, s.h, r.h);
-  };
   const RestoringLaw& law = motion.law;
-  if (law.own) {
-    step(Own{law}, begin_own, newton_own, finish_own);
-  } else if (law.kind == SpringLaw::kCubic) {
-    step(Cubic{law.cubic}, begin_cubic, newton_cubic, finish_cubic);
-  } else {
-    step(Exponential{law.stiffening, 1 / law.stiffening}, begin_exponential, newton_exponential, finish_exponential);
+  const auto step = [&](const auto& its) {
+    if constexpr (std::decay_t<decltype(its)>::kStep == SpringStep::kPassive) {
+      begin_lanes(its, motion, w, forced);
+      bool settled = false;
+      for (int round = 0; round < kSteps && !settled; ++round) {
+        newton_lanes(its, w);
+        settled = all_settled(w);
+      }
+      if (!settled) settle(motion, targets, w);
+      finish_lanes(its, motion, w, s.h, r.h);
+    }
+  };
+  const law_lanes::LawConstants constants{law.cubic, {law.stiffening, 1 / law.stiffening}};
+  switch (static_cast<std::size_t>(law.kind)) {
+#define PLIANT_LAW(word, ...)         \
+  case word##_in_lanes::kPlace:       \
+    step(word##_in_lanes{constants}); \
+    break;
+    PLIANT_SPRING_LAWS(PLIANT_LAW)
+#undef PLIANT_LAW
+    default:
+      step(Own{law});
   }
   for (int c = 0; c < 3; ++c) step_normals(motion, w, goal[c], s.n[c], r.n[c]);
   join(s, &state->x);

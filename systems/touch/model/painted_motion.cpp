@@ -26,7 +26,7 @@ Motion paint(const Motion& motion, double stiffness, double damping, double rela
   out.mass /= stiffness;
   out.damping *= damping / stiffness;
   out.arm_stiffness *= relaxation;
-  if (motion.law.kind == SpringLaw::kStandardLinearSolid)
+  if (motion.arm())
     out.solid = solid_step(out.mass, out.damping, 1.0, out.arm_stiffness, out.arm_time, out.dt);
   out.linear = exact_step(out.mass, out.damping, 1.0, out.dt);
   return out;
@@ -49,7 +49,7 @@ float arm_stiffness(const Motion& motion, const Mesh& mesh, std::uint32_t vertex
 
 PaintedMotion paint_motion(const Motion& motion, const Mesh& mesh) {
   PaintedMotion out;
-  const bool solid = motion.law.kind == SpringLaw::kStandardLinearSolid;
+  const bool solid = motion.arm();
   if (mesh.stiffness_factor.empty() && mesh.damping_factor.empty() && (!solid || mesh.relaxation_factor.empty()))
     return out;
   const std::size_t size = std::size_t{mesh.zone_count()} * kZoneSize;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -11,12 +12,52 @@
 #include <sstream>
 #include <string_view>
 
+#include "components/built_in.h"
 #include "systems/visual/gpu/embedded_shaders.h"
 
 namespace pliant::gpu {
 namespace {
 
+// The functions of law.glsl that choose among the laws.
+std::string law_list() {
+  std::string out;
+  for (const auto& [type, head, call] :
+       {std::array{"float", "law_force(float h)", "force(h, "},
+        {"float", "law_slope(float h)", "slope(h, "},
+        {"float", "law_keep(float h0)", "keep(h0, "},
+        {"LawAt", "law_between(float h0, float d, float kept)", "between(h0, d, kept, "}}) {
+    out += fmt::format("{} {} {{\n", type, head);
+    int number = 0;
+#define PLIANT_LAW(word, of, ...) \
+  out += fmt::format("  if (law == {}u) return {}_{}law_constants());\n", number++, #of, call);
+    PLIANT_SPRING_LAWS(PLIANT_LAW)
+#undef PLIANT_LAW
+    out += fmt::format("  return linear_{}law_constants());\n}}\n", call);
+  }
+  return out;
+}
+
+// field_of_shape of shared/field.glsl.
+std::string shape_list() {
+  std::string out =
+      "vec4 field_of_shape(int shape, vec3 d, vec3 N, vec3 M, float inv_reach2, float amplitude, float parameter) {\n"
+      "  float u = min(dot(d, d) * inv_reach2, 1.0);\n";
+  constexpr const char* kRadial = "field_radial(d, N, M, inv_reach2, amplitude, shape_{}(u, parameter))";
+  constexpr const char* kWhole = "field_{}(d, N, M, inv_reach2, amplitude, parameter)";
+  int number = 0;
+  const auto add = [&](const char* word, std::string_view form) {
+    const std::string target = fmt::format(fmt::runtime(form == "radial" ? kRadial : kWhole), word);
+    out += fmt::format("  if (shape == {}) return {};\n", number++, target);
+  };
+#define PLIANT_SHAPE(word, form, ...) add(#word, #form);
+  PLIANT_SHAPES(PLIANT_SHAPE)
+#undef PLIANT_SHAPE
+  return out + "  return vec4(0);\n}\n";
+}
+
 std::optional<std::string> read_text(const std::string& name) {
+  if (name == "law_list.glsl") return law_list();
+  if (name == "shape_list.glsl") return shape_list();
   if (const std::filesystem::path folder = shader_folder(); !folder.empty()) {
     std::ifstream file(folder / name, std::ios::binary);
     if (!file) return std::nullopt;
