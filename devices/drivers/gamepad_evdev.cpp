@@ -13,11 +13,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <sstream>
-#include <thread>
 
 #include "devices/ports/hid_port.h"
-#include "runtime/exchange.h"
+#include "devices/ports/newest_writer.h"
 
 namespace pliant {
 namespace {
@@ -65,11 +65,9 @@ bool read_traits(const std::string& folder, GamepadTraits& traits) {
 class EvdevLine final : public GamepadLine {
  public:
   EvdevLine(int file, std::string path, const GamepadTraits& traits)
-      : file_(file), path_(std::move(path)), traits_(traits), thread_([this] { run(); }) {}
+      : file_(file), path_(std::move(path)), traits_(traits), writer_(std::in_place, Play{this}) {}
   ~EvdevLine() override {
-    ended_.store(true, std::memory_order_release);
-    wake();
-    thread_.join();
+    writer_.reset();  // its last output is written
     for (const int id : {rumble_.id, constant_.id})
       if (id >= 0) ::ioctl(file_, EVIOCRMFF, id);
     ::close(file_);
@@ -81,7 +79,7 @@ class EvdevLine final : public GamepadLine {
     const std::size_t most = std::min(into.size(), events.size());
     const ssize_t bytes = ::read(file_, events.data(), most * sizeof(input_event));
     if (bytes < 0 && (errno == EAGAIN || errno == EINTR)) return std::size_t(0);
-    if (bytes <= 0 || failed_.load(std::memory_order_acquire)) return Error{traits_.name, "is gone; plug it in again"};
+    if (bytes <= 0 || writer_->failed()) return Error{traits_.name, "is gone; plug it in again"};
     const std::size_t count = static_cast<std::size_t>(bytes) / sizeof(input_event);
     for (std::size_t i = 0; i < count; ++i) into[i] = {events[i].type, events[i].code, events[i].value};
     return count;
@@ -100,10 +98,8 @@ class EvdevLine final : public GamepadLine {
     return Done{};
   }
   Status render(const GamepadOutput& output) override {
-    if (failed_.load(std::memory_order_acquire)) return Error{traits_.name, "is gone; plug it in again"};
-    newest_.write() = output;
-    newest_.publish();
-    wake();
+    if (writer_->failed()) return Error{traits_.name, "is gone; plug it in again"};
+    writer_->give([&](GamepadOutput& next) { next = output; });
     return Done{};
   }
   std::string node() const override { return path_; }
@@ -125,19 +121,10 @@ class EvdevLine final : public GamepadLine {
   }
 
  private:
-  void wake() {
-    kept_.fetch_add(1, std::memory_order_release);
-    kept_.notify_one();
-  }
-  void run() {
-    for (std::uint32_t seen = 0;;) {
-      kept_.wait(seen, std::memory_order_acquire);
-      seen = kept_.load(std::memory_order_acquire);
-      const bool last = ended_.load(std::memory_order_acquire);
-      if (newest_.acquire() && !play(newest_.read())) failed_.store(true, std::memory_order_release);
-      if (last) return;
-    }
-  }
+  struct Play {
+    EvdevLine* line;
+    bool operator()(const GamepadOutput& output) const { return line->play(output); }
+  };
 
   // An effect with an id is updated while it plays.
   bool play(const GamepadOutput& output) {
@@ -176,11 +163,8 @@ class EvdevLine final : public GamepadLine {
   std::string path_;
   GamepadTraits traits_;
   ff_effect rumble_ = effect_of(FF_RUMBLE), constant_ = effect_of(FF_CONSTANT);
-  TripleBuffer<GamepadOutput> newest_;
-  std::atomic<std::uint32_t> kept_{0};
-  std::atomic<bool> ended_{false}, failed_{false};
-  std::atomic<int> rumbles_{-1}, pushes_{-1};  // the effects' ids, as the device has given them
-  std::thread thread_;                         // last: it uses all of the above
+  std::atomic<int> rumbles_{-1}, pushes_{-1};                // the effects' ids, as the device has given them
+  std::optional<NewestWriter<GamepadOutput, Play>> writer_;  // last: its thread uses all of the above
 };
 
 }  // namespace

@@ -59,6 +59,8 @@ void Guard::to(DeviceState state, DeviceCause cause, double now) {
 }
 
 void Guard::send_nothing() {
+  forfeit(share_ * (pushed_.energy() + twisted_.energy()));
+  credited_ = 0.0;
   last_ = report_.sent = {};
   report_.force = ramp_ = slow_speed_ = share_ = most_ = most_turn_ = 0.0;
   carried_ = dvec3(0);
@@ -287,14 +289,33 @@ void Guard::credit(const GuardWish& wish, double share, double most) {
   const dvec3 whole = wish.wrench.force - wish.weight;
   pushed_.follow(clamp_norm(whole, most), heard_ ? way_ - carried_ : dvec3(0), wish.stiffness);
   twisted_.follow(wish.wrench.torque, turn_, wish.turning_stiffness);
-  energy_.work -= std::max(0.0, share - share_) * (pushed_.energy() + twisted_.energy());
+  if (whole == dvec3(0) && wish.wrench.torque == dvec3(0)) {
+    forfeit(credited_);
+    credited_ = 0.0;
+  }
+  double gained = std::max(0.0, share - share_) * (pushed_.energy() + twisted_.energy());
   if (most_ > 0.0 && most > most_) {
     const double raised = std::max(0.0, std::min(most, share * length(whole)) - most_);
-    const double gained = raised * pushed_.energy() / most_;
-    pushed_.raise(gained);
-    energy_.work -= gained;
+    const double more = raised * pushed_.energy() / most_;
+    pushed_.raise(more);
+    gained += more;
+  } else if (most_ > most) {
+    const double before = std::min(most_, share * length(whole));
+    if (before > most) {
+      const double less = (1.0 - most / before) * pushed_.energy();
+      pushed_.raise(-less);
+      forfeit(less);
+    }
   }
+  energy_.work -= gained;
+  credited_ += gained;
   share_ = share;
+}
+
+// Energy that the hand can no longer get back: the force that held it was taken away, or the contact to which it was
+// credited is over. Otherwise a force that goes and comes would be credited each time. Never below an even account.
+void Guard::forfeit(double energy) {
+  energy_.work += std::min(energy, std::max(0.0, -energy_.work));
 }
 
 DeviceWrench Guard::limited(const GuardWish& wish, double dt) {

@@ -101,6 +101,7 @@ class Guard {
   bool runs_away(const GuardWish& wish, double dt);
   double risen_slowly(double before, double most, double dt) const;
   void credit(const GuardWish& wish, double share, double most);
+  void forfeit(double energy);
   double force_limit(const GuardWish& wish) const;
   double torque_limit(const GuardWish& wish) const;
   DeviceWrench limited(const GuardWish& wish, double dt);
@@ -136,6 +137,7 @@ class Guard {
   EnergyAccount energy_;
   PassivityDamper push_, twist_;
   StoredInWish pushed_, twisted_;
+  double credited_ = 0.0;  // [J] in this contact
   DeviceWrench last_;
   bool disarmed_ = false;  // by the user: it does not arm itself
 };

@@ -51,7 +51,7 @@ class StoredInWish {
  public:
   // `wanted` [N]: the full force without the weight, at most the limit. `stiffness` [N/m] along it; 0: unknown.
   void follow(dvec3 wanted, dvec3 moved, double stiffness);
-  void raise(double energy) { given_ += energy; }  // [J] when the wanted force is cut less
+  void raise(double energy) { given_ += energy; }  // [J] when the wanted force is cut less; negative: more
   double energy() const { return energy_; }
   void forget() { *this = {}; }
 

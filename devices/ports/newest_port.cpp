@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <thread>
 
-#include "runtime/exchange.h"
+#include "devices/ports/newest_writer.h"
 
 namespace pliant {
 namespace {
@@ -17,21 +15,15 @@ struct Packet {
 
 class NewestPort final : public PacketPort {
  public:
-  explicit NewestPort(std::unique_ptr<PacketPort> line) : line_(std::move(line)), thread_([this] { run(); }) {}
-  ~NewestPort() override {
-    ended_.store(true, std::memory_order_release);
-    wake();
-    thread_.join();
-  }
+  explicit NewestPort(std::unique_ptr<PacketPort> line) : line_(std::move(line)), writer_(Send{line_.get()}) {}
 
   Status send(std::span<const std::uint8_t> packet) override {
     if (packet.size() > kLongestNewest) return Error{"device", "a packet is longer than its line takes"};
-    if (failed_.load(std::memory_order_acquire)) return Error{"device", "is gone; plug it in again"};
-    Packet& next = newest_.write();
-    std::copy(packet.begin(), packet.end(), next.bytes.begin());
-    next.length = packet.size();
-    newest_.publish();
-    wake();
+    if (writer_.failed()) return Error{"device", "is gone; plug it in again"};
+    writer_.give([&](Packet& next) {
+      std::copy(packet.begin(), packet.end(), next.bytes.begin());
+      next.length = packet.size();
+    });
     return Done{};
   }
   Result<std::size_t> receive(std::span<std::uint8_t> into, double seconds) override {
@@ -47,29 +39,15 @@ class NewestPort final : public PacketPort {
   std::string node() const override { return line_->node(); }
 
  private:
-  void wake() {
-    kept_.fetch_add(1, std::memory_order_release);
-    kept_.notify_one();
-  }
-
-  void run() {
-    for (std::uint32_t seen = 0;;) {
-      kept_.wait(seen, std::memory_order_acquire);
-      seen = kept_.load(std::memory_order_acquire);
-      const bool last = ended_.load(std::memory_order_acquire);
-      if (newest_.acquire() && !failed_.load(std::memory_order_relaxed)) {
-        const Packet& packet = newest_.read();
-        if (!line_->send({packet.bytes.data(), packet.length})) failed_.store(true, std::memory_order_release);
-      }
-      if (last) return;
+  struct Send {
+    PacketPort* line;
+    bool operator()(const Packet& packet) const {
+      return static_cast<bool>(line->send({packet.bytes.data(), packet.length}));
     }
-  }
+  };
 
   std::unique_ptr<PacketPort> line_;
-  TripleBuffer<Packet> newest_;
-  std::atomic<std::uint32_t> kept_{0};
-  std::atomic<bool> ended_{false}, failed_{false};
-  std::thread thread_;  // last: it uses all members above
+  NewestWriter<Packet, Send> writer_;  // last: its thread uses the line
 };
 
 }  // namespace

@@ -163,6 +163,15 @@ Status Session::stream(const std::string& object, std::vector<vec4>& out) {
   return Done{};
 }
 
+Status Session::stream(const std::string& object, std::vector<vec4>& out, std::vector<StreamPart>& changed) {
+  Parts& p = *parts_;
+  const auto entity = p.find_object(object);
+  if (!entity) return entity.error();
+  p.look();
+  if (!p.view.take_changes(*entity, out, changed)) return Error{"`" + object + "`", kNoSurface};
+  return Done{};
+}
+
 Result<mat4> Session::to_world(const std::string& object) {
   Parts& p = *parts_;
   const auto entity = p.find_object(object);

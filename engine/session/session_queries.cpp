@@ -152,17 +152,17 @@ Status Session::triangles(const std::string& object, std::vector<std::uint32_t>&
   return Done{};
 }
 
-Result<QueryHit> Session::closest_point(dvec3 point, const QueryOptions& options) {
-  Parts& p = *parts_;
-  if (!is_finite(point)) return Error{"Session::closest_point", "the point is no number; check it"};
-  const auto objects = asked(p, options, "Session::closest_point");
+// The nearest of what `find` gives for each object: TrianglePlace(boxes, within).
+template <class Find>
+static Result<QueryHit> nearest(Session::Parts& p, const QueryOptions& options, const char* what, const Find& find) {
+  const auto objects = asked(p, options, what);
   if (!objects) return objects.error();
   p.see();
   QueryHit best;
   double within = options.within;
   for (const std::size_t object : *objects) {
     const std::optional<TriangleBoxes>& boxes = boxes_of(p, object, options.rest);
-    const TrianglePlace place = boxes->closest(point, within);
+    const TrianglePlace place = find(*boxes, within);
     if (!place.found() || (best.found() && place.distance >= within)) continue;
     within = place.distance;
     best = hit_of(*boxes, static_cast<std::uint32_t>(object), place);
@@ -170,24 +170,21 @@ Result<QueryHit> Session::closest_point(dvec3 point, const QueryOptions& options
   return best;
 }
 
+Result<QueryHit> Session::closest_point(dvec3 point, const QueryOptions& options) {
+  Parts& p = *parts_;
+  if (!is_finite(point)) return Error{"Session::closest_point", "the point is no number; check it"};
+  return nearest(p, options, "Session::closest_point",
+                 [&](const TriangleBoxes& boxes, double within) { return boxes.closest(point, within); });
+}
+
 Result<QueryHit> Session::ray(dvec3 from, dvec3 direction, const QueryOptions& options) {
   Parts& p = *parts_;
   const double size = length(direction);
   if (!is_finite(from) || !(size > 0.0) || !std::isfinite(size))
     return Error{"Session::ray", "its origin is no number, or its direction has no length; check both"};
-  const auto objects = asked(p, options, "Session::ray");
-  if (!objects) return objects.error();
-  p.see();
-  QueryHit best;
-  double within = options.within;
-  for (const std::size_t object : *objects) {
-    const std::optional<TriangleBoxes>& boxes = boxes_of(p, object, options.rest);
-    const TrianglePlace place = boxes->first_along(from, direction / size, within);
-    if (!place.found() || (best.found() && place.distance >= within)) continue;
-    within = place.distance;
-    best = hit_of(*boxes, static_cast<std::uint32_t>(object), place);
-  }
-  return best;
+  return nearest(p, options, "Session::ray", [&](const TriangleBoxes& boxes, double within) {
+    return boxes.first_along(from, direction / size, within);
+  });
 }
 
 Result<Bounds> Session::bounds(const QueryOptions& options) {

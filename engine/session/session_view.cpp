@@ -1,6 +1,7 @@
 #include "engine/session/session_view.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "components/soft_body.h"
 #include "systems/touch/feed/publish.h"
@@ -16,9 +17,11 @@ void SessionView::reset(const World& world) {
   soft_seen = {};
   ++version_;
   for (auto [entity, pose] : world.registry.view<const Pose>()) {
-    Shown shown{entity, pose.matrix(), {}};
-    if (const Deformable* surface = world.registry.find<Deformable>(entity))
-      shown.stream.assign(std::size_t{world.meshes[surface->mesh].zone_count()} * kZoneSize, vec4(0));
+    Shown shown{entity, pose.matrix(), {}, {}};
+    if (const Deformable* surface = world.registry.find<Deformable>(entity)) {
+      shown.changed.assign(world.meshes[surface->mesh].zone_count(), 1);
+      shown.stream.assign(shown.changed.size() * kZoneSize, vec4(0));
+    }
     shown_.push_back(std::move(shown));
   }
 }
@@ -30,9 +33,11 @@ void SessionView::add(const Snapshot& snapshot) {
   for (const ObjectSnapshot& object : snapshot.objects) {
     const auto shown = of(object.object);
     if (shown == shown_.end()) continue;
-    for (std::uint32_t i = 0; i < object.zone_count; ++i)
+    for (std::uint32_t i = 0; i < object.zone_count; ++i) {
       std::copy_n(object.stream.begin() + std::ptrdiff_t{i} * kZoneSize, kZoneSize,
                   shown->stream.begin() + std::ptrdiff_t{object.zones[i]} * kZoneSize);
+      shown->changed[object.zones[i]] = 1;
+    }
   }
   for (const MovedSnapshot& moved : snapshot.moved) {
     const auto shown = of(moved.object);
@@ -66,6 +71,27 @@ const std::vector<vec4>* SessionView::stream(Entity object) const {
   for (const Shown& shown : shown_)
     if (shown.object == object && !shown.stream.empty()) return &shown.stream;
   return nullptr;
+}
+
+bool SessionView::take_changes(Entity object, std::vector<vec4>& out, std::vector<StreamPart>& changed) {
+  changed.clear();
+  const auto shown = std::find_if(shown_.begin(), shown_.end(),
+                                  [&](const Shown& s) { return s.object == object && !s.stream.empty(); });
+  if (shown == shown_.end()) return false;
+  if (out.size() != shown->stream.size()) {
+    out.resize(shown->stream.size());
+    std::fill(shown->changed.begin(), shown->changed.end(), std::uint8_t{1});
+  }
+  for (std::uint32_t zone = 0; zone < shown->changed.size(); ++zone) {
+    if (!std::exchange(shown->changed[zone], std::uint8_t{0})) continue;
+    const std::uint32_t first = zone * kZoneSize;
+    std::copy_n(shown->stream.begin() + first, kZoneSize, out.begin() + first);
+    if (!changed.empty() && changed.back().first + changed.back().count == first)
+      changed.back().count += kZoneSize;
+    else
+      changed.push_back({first, kZoneSize});
+  }
+  return true;
 }
 
 const SoftObjectSnapshot* SessionView::soft(Entity object) const {

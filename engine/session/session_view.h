@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/world.h"
+#include "pliant/session.h"
 
 namespace pliant {
 
@@ -18,7 +19,9 @@ class SessionView {
   void take(World& world);
 
   const std::vector<vec4>* stream(Entity object) const;  // null: not a deformable surface
-  const SoftObjectSnapshot* soft(Entity object) const;   // null: not moving, or no snapshot yet
+  // Copies what has changed since its last call into `out`, whose size is the stream's, or is set. False: no surface.
+  bool take_changes(Entity object, std::vector<vec4>& out, std::vector<StreamPart>& changed);
+  const SoftObjectSnapshot* soft(Entity object) const;  // null: not moving, or no snapshot yet
   mat4 to_world(const World& world, Entity object) const;
   // For a soft body without a handle: its initial pose in the scene, which is that of its rest shape. Else to_world().
   mat4 rest_to_world(const World& world, Entity object) const;
@@ -36,6 +39,7 @@ class SessionView {
     Entity object;
     mat4 to_world{1};
     std::vector<vec4> stream;
+    std::vector<std::uint8_t> changed;  // per zone, since the last take_changes()
   };
   std::vector<Shown> shown_;
   std::vector<SoftObjectSnapshot> soft_;

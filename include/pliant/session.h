@@ -108,6 +108,11 @@ struct Geometry {
   std::vector<std::uint32_t> index;          // three per triangle
 };
 
+// Vertices [first, first + count) of a stream.
+struct StreamPart {
+  std::uint32_t first = 0, count = 0;
+};
+
 class Session {
  public:
   // Copies the scene and allocates everything a tick needs. For a large scene this takes seconds: `progress` is called
@@ -198,6 +203,9 @@ class Session {
   // rest shape, and `stream_vertex` indexes the body's own vertices (Session::vertices).
   Result<Geometry> geometry(const std::string& object) const;
   Status stream(const std::string& object, std::vector<vec4>& out);
+  // The same into the vector of the last call, and which parts have changed since, ascending: all of them the first
+  // time and after restart(). Only these are copied.
+  Status stream(const std::string& object, std::vector<vec4>& out, std::vector<StreamPart>& changed);
   Result<mat4> to_world(const std::string& object);
 
   // --- External forces, constant until changed; zero removes them. They apply from the next tick on (bodies: the next

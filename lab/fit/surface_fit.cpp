@@ -13,8 +13,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kLeastContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
-constexpr double kLeastFittedReach = 1.5;                                       // [1] in radii of the indenter
+constexpr double kLeastFitContact = 0.1, kMostContact = 0.9, kContactStep = 0.05;  // [1] of the reach
+constexpr double kLeastFittedReach = 1.5;                                          // [1] in radii of the indenter
 constexpr int kReaches = 20;          // tried from the least reach to the usual one, and from that to the widest
 constexpr double kGoodShape = 0.10;   // [1] of the depth: below this error no wider reach is tried
 constexpr std::size_t kNearest = 10;  // painted places from which a vertex is interpolated
@@ -153,7 +153,7 @@ ShapeFit fit_shape(const std::vector<PressedPlace>& places, double radius, doubl
       return p == ShapeParameter::kContactShare || p == ShapeParameter::kContactLength;
     };
     every_shape(of_contact, [&](Shape shape) {
-      for (double contact = kLeastContact; contact < kMostContact + 0.01; contact += kContactStep)
+      for (double contact = kLeastFitContact; contact < kMostContact + 0.01; contact += kContactStep)
         every_reach(shape, 1.0, contact);
     });
     every_shape([](ShapeParameter p) { return p == ShapeParameter::kNone; },

@@ -41,6 +41,8 @@ int run_all(const std::vector<const Study*>& studies, const StudyOptions& option
   if (const Status done = out->commit(); !done) return fail(kFailed, done.error());
   print("{}: {} files{}\n", out->shown().string(), out->written().size(),
         out->moved() ? " (the folder that was meant has results already, which stay; --force replaces a study's)" : "");
+  for (const std::string& name : out->written())
+    if (name.ends_with(".png")) print("plot: {}\n", (out->shown() / name).string());
   return kDone;
 }
 

@@ -88,6 +88,40 @@ TEST(Session, GeometryAndStreamAreTheDeformedVertices) {
   EXPECT_LT(lowest, -0.003f);
 }
 
+TEST(Session, OnlyTheChangedPartsOfTheStreamAreCopied) {
+  Session session = opened(press_scene());
+  std::vector<vec4> whole, kept;
+  std::vector<StreamPart> changed;
+  const auto vertices = [&] {
+    std::size_t sum = 0;
+    for (const StreamPart& part : changed) sum += part.count;
+    return sum;
+  };
+  ASSERT_TRUE(session.stream("tissue", kept, changed));
+  ASSERT_EQ(vertices(), kept.size());
+  ASSERT_TRUE(session.stream("tissue", kept, changed));
+  EXPECT_TRUE(changed.empty()) << "nothing has moved";
+  std::size_t least = kept.size();
+  for (int i = 0; i < 5; ++i) {
+    press(session, 0.001 * (1 + i));
+    ASSERT_TRUE(session.stream("tissue", whole));
+    const std::vector<vec4> before = kept;
+    ASSERT_TRUE(session.stream("tissue", kept, changed));
+    EXPECT_EQ(kept, whole);
+    ASSERT_FALSE(changed.empty());
+    least = std::min(least, vertices());
+    std::vector<vec4> spliced = before;  // by the parts alone
+    for (const StreamPart& part : changed)
+      std::copy_n(whole.begin() + part.first, part.count, spliced.begin() + part.first);
+    EXPECT_EQ(spliced, whole);
+  }
+  EXPECT_LT(least, kept.size()) << "a small press changes a part";
+  ASSERT_TRUE(session.restart());
+  ASSERT_TRUE(session.stream("tissue", kept, changed));
+  EXPECT_EQ(vertices(), kept.size());
+  EXPECT_EQ(kept.front(), vec4(0));
+}
+
 TEST(Session, ParametersChangeBetweenTicksAndStayThroughARestart) {
   Session session = opened(press_scene());
   ASSERT_TRUE(session.set("tissue", "stiffness", 500.0));

@@ -188,6 +188,57 @@ TEST(SmoothForce, AfterALimitIsRaisedAWarningEndsOrTheForceHasFadedItComesBackWh
   }
 }
 
+// [J] Energy that a hand gets in six cycles of a force that is three times as large outwards as inwards, after
+// `before`.
+template <class F>
+double energy_of_active_wall(F&& before) {
+  Press press(400.0, 1000.0, {0.15, 5.0, 300.0, 0.004});
+  const double goal = -2.5 / 300.0;
+  press.until_active();
+  press.run(0.3, 0.004);
+  press.go(0.6, 0.004, goal);
+  press.run(0.5, goal);
+  before(press, goal);
+  press.law = nullptr;
+  press.go(0.3, goal, 0.004);
+  press.run(0.3, 0.004);
+  press.law = [&press](DeviceModel& model) {
+    if (press.hand.v < 0.0) model.wrench.force.y /= 3.0, model.force_by_position[1][1] /= 3.0;
+  };
+  const double work = press.hand.work;
+  for (int i = 0; i < 6; ++i) press.go(0.2, 0.004, goal), press.go(0.2, goal, 0.004);
+  EXPECT_EQ(press.servo->state(), DeviceState::kActive) << describe(press.servo->report().cause);
+  return press.hand.work - work;
+}
+
+// Each time the force comes back the hand is credited with what it would have stored against it, but once: neither a
+// limit that goes down and up nor a pose that is lost and found fills the account.
+TEST(SmoothForce, AForceThatGoesAndComesFillsNoAccount) {
+  const double usual = energy_of_active_wall([](Press&, double) {});
+  const double limited = energy_of_active_wall([](Press& press, double goal) {
+    double limit = 3.3;
+    press.law = [&limit](DeviceModel& model) { model.max_force = limit; };
+    for (int i = 0; i < 20; ++i) {
+      limit = i % 2 ? 3.3 : 0.5;
+      press.run(0.5, goal);
+    }
+  });
+  const double lost = energy_of_active_wall([](Press& press, double goal) {
+    for (int i = 0; i < 8; ++i) {
+      press.device.sensing = [](DeviceSample&) { return false; };
+      press.run(0.02, goal);
+      press.device.sensing = nullptr;
+      // the gate opens where the force is small
+      press.go(0.4, goal, 0.0);
+      press.run(0.3, -0.1 / 400.0);
+      press.go(0.4, 0.0, goal);
+      press.run(0.3, goal);
+    }
+  });
+  EXPECT_LT(limited, usual + 1e-3);
+  EXPECT_LT(lost, usual + 1e-3);
+}
+
 // A surface that stiffens in contact does work that no hand has put in. The energy budget is used up, and the hand gets
 // only as much force as it presses with, without switching.
 TEST(SmoothForce, ASpentAccountIsFeltAsASmallerForceNotAsASwitchedOne) {

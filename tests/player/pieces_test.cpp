@@ -245,7 +245,7 @@ TEST(Keeper, TicksWithAnOldModelOrLateContactsAreCountedAndSaidWithTheirCure) {
   auto keeper = Keeper::create(world, journal.probes(), {"script"}, csv);
   ASSERT_TRUE(keeper);
   for (std::uint64_t i = 0; i < 50; ++i) {  // before the handle is placed there is no model to be stale
-    state.placed = i >= 10;
+    state.state = i >= 10 ? HandleState::kFollows : HandleState::kNew;
     if (i == 20 || i == 21) ++state.ticks_late;
     journal.note(world, {i, 1e-3, 1e-3 * static_cast<double>(i)});
   }

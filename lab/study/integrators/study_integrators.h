@@ -8,13 +8,12 @@
 #include "lab/console/progress.h"
 #include "lab/study/integrators/integrators.h"
 #include "lab/study/pareto.h"
+#include "scenes/touch_laws.h"
 
 namespace pliant {
 
 inline constexpr double kDent = -0.02;      // [m]
 inline constexpr double kIntegrated = 0.1;  // [s]
-inline constexpr SpringLaw kLaws[] = {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential,
-                                      SpringLaw::kStandardLinearSolid};
 const char* name_of(SpringLaw law);
 
 struct IntegratorCase {

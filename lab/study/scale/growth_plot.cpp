@@ -12,8 +12,8 @@ namespace pliant {
 namespace {
 
 constexpr double kGrowthWidth = 1240, kPanelW = 290, kPanelH = 330, kGrowthTop = 116, kGapY = 112;  // [pixel]
-constexpr double kGrowthLeft = 92, kNames = 228;      // [pixel] beside a panel
-constexpr double kSentenceText = 17, kTickText = 15;  // [pixel]
+constexpr double kGrowthLeft = 92, kNames = 228;            // [pixel] beside a panel
+constexpr double kSentenceText = 17, kGrowthTickText = 15;  // [pixel]
 constexpr std::array kGrowthColors{kBlue, kVermilion, kGreen, kPurple, kOrange, kInk};
 
 struct AxisRange {
@@ -44,9 +44,9 @@ void draw_axis(Pen& pen, const AxisRange& range, bool across, double from, doubl
       pen.color(kInk);
       const std::string number = decade_number(value);
       if (!across) {
-        pen.text(from - 7, p + 5, kTickText, 1.0, number);
-      } else if (const double half = 0.5 * pen.width(kTickText, number); p - half > free_from) {
-        pen.text(p, to + 20, kTickText, 0.5, number);
+        pen.text(from - 7, p + 5, kGrowthTickText, 1.0, number);
+      } else if (const double half = 0.5 * pen.width(kGrowthTickText, number); p - half > free_from) {
+        pen.text(p, to + 20, kGrowthTickText, 0.5, number);
         free_from = p + half + 6;
       }
     }
@@ -97,7 +97,7 @@ void draw_panel(Pen& pen, double left, double top, const GrowthPanel& panel) {
     pen.line(x.at(panel.size[curve.last()]) + 7, end, right + 10, at, 0.8);
     pen.color(kInk);
     pen.text(right + 14, at + 4, 16, 0, curve.name, true);
-    pen.text(right + 14, at + 22, kTickText, 0, "power " + words_of(curve.law));
+    pen.text(right + 14, at + 22, kGrowthTickText, 0, "power " + words_of(curve.law));
   }
 }
 

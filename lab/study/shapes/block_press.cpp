@@ -18,8 +18,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kRim = 1.5;         // [1] > 1: cells get smaller towards the rim
-constexpr int kMostIterations = 60;  // co-rotational iterations per depth
+constexpr double kRim = 1.5;              // [1] > 1: cells get smaller towards the rim
+constexpr int kMostBlockIterations = 60;  // co-rotational iterations per depth
 
 // Coordinates from 0 to `end` in `parts * cells` cells: t^kRim near 0, then increasing. The curve is the same for all
 // `cells`, so that errors decrease uniformly with their number.
@@ -140,7 +140,7 @@ Result<std::vector<PressedBlock>> press_block(const BlockPress& press, const std
   material.poisson = press.poisson;
   material.strain = press.strain;
   TissueStep settle;
-  if (press.strain == Strain::kCorotational) settle.iterations = kMostIterations, settle.tolerance = 1e-7;
+  if (press.strain == Strain::kCorotational) settle.iterations = kMostBlockIterations, settle.tolerance = 1e-7;
   Tissue tissue(mesh, material, mesh.free_count);
   const auto solver = make_solver(SolverKind::kBlockCholesky, tissue.inner().size);
   solver->analyse(tissue.inner());

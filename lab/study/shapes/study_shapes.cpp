@@ -20,9 +20,9 @@ namespace pliant {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kRadius = 0.004;  // [m] of the punch for which the engine calibrates stiffness
-constexpr double kAround = 5.0;    // [1] radii within which profiles are compared
-constexpr double kUsual = 5.0;     // [1] default reach over the contact radius (force_field.cpp)
+constexpr double kPressRadius = 0.004;  // [m] of the punch for which the engine calibrates stiffness
+constexpr double kAround = 5.0;         // [1] radii within which profiles are compared
+constexpr double kUsual = 5.0;          // [1] default reach over the contact radius (force_field.cpp)
 constexpr Shape kShapes[] = {Shape::kPunch,    Shape::kHertz,  Shape::kGaussian,
                              Shape::kWendland, Shape::kVolume, Shape::kKelvinlet};
 
@@ -46,7 +46,7 @@ double measure(Shape shape, int batches) {
     mesh.px.push_back(1e-3f * static_cast<float>(v % 12));
     mesh.pz.push_back(1e-3f * static_cast<float>(v / 12));
   }
-  const FieldSource source = source_of(shape, kRadius, kUsual * kRadius);
+  const FieldSource source = source_of(shape, kPressRadius, kUsual * kPressRadius);
   ZoneTargets targets{};
   double least = 1e30;
   for (int i = 0; i < batches; ++i) {
@@ -100,17 +100,18 @@ Result<Blocks> press_blocks(StudySize size, const Interrupt& interrupt, Progress
     std::vector<double> forces;
     for (const int n : cells) {
       if (interrupt.requested()) return interrupted();
-      auto block = press_block({kYoung, wish.poisson, kRadius, wish.thickness * kRadius, 10 * kRadius, n}, kDepth);
+      auto block = press_block(
+          {kYoung, wish.poisson, kPressRadius, wish.thickness * kPressRadius, 10 * kPressRadius, n}, kDepth);
       if (!block) return block.error();
       forces.push_back(block->force);
       blocks.push_back(std::move(*block));
       progress.update((done += 1.0) / static_cast<double>(wishes.size() * cells.size()));
     }
     const GridLimit limit = grid_limit(cells, forces);
-    const PressTruth finest = block_truth(name, kRadius, blocks.back()),
-                     coarser = block_truth(name, kRadius, blocks[blocks.size() - 2]);
+    const PressTruth finest = block_truth(name, kPressRadius, blocks.back()),
+                     coarser = block_truth(name, kPressRadius, blocks[blocks.size() - 2]);
     ForceRow row{name};
-    row.model = calibrated_stiffness(kYoung, wish.poisson, wish.thickness * kRadius) * kDepth;
+    row.model = calibrated_stiffness(kYoung, wish.poisson, wish.thickness * kPressRadius) * kDepth;
     row.truth_force = limit.limit;
     row.bonded = row.model * bonding(wish.poisson);
     row.tets = static_cast<std::int64_t>(blocks.back().tets);
@@ -129,7 +130,8 @@ void add_laws(std::vector<ForceRow>& rows) {
   d.stiffness = calibrated_stiffness(d.young, d.poisson, 0.0);
   const double plane = d.young / (1 - d.poisson * d.poisson), depth = 1e-3, ball = 0.008;
   const Motion m = motion(d, 1e-3);
-  rows.push_back({"half-space, punch", true, contact_law(d, m, 1.0, 0.0).force(depth), 2 * plane * kRadius * depth});
+  rows.push_back(
+      {"half-space, punch", true, contact_law(d, m, 1.0, 0.0).force(depth), 2 * plane * kPressRadius * depth});
   rows.push_back({"half-space, sphere", true, contact_law(d, m, 1.0, ball).force(depth),
                   4.0 / 3.0 * plane * std::sqrt(ball) * depth * std::sqrt(depth)});
 }
@@ -278,7 +280,7 @@ Status study_shapes(OutputFolder& out, StudySize size, const Interrupt& interrup
   Progress progress("study shapes");
   auto blocks = press_blocks(size, interrupt, progress);
   if (!blocks) return blocks.error();
-  std::vector<PressTruth> truths{punch_truth(kRadius), hertz_truth(kRadius)};
+  std::vector<PressTruth> truths{punch_truth(kPressRadius), hertz_truth(kPressRadius)};
   truths.insert(truths.end(), blocks->truths.begin(), blocks->truths.end());
   add_laws(blocks->forces);
 

@@ -9,8 +9,8 @@
 namespace pliant {
 namespace {
 
-constexpr int kBallCells = 10;  // 1,200 triangles
-constexpr double kWide = 1.0;   // [m] width and depth of the ground
+constexpr int kBallCells = 10;     // 1,200 triangles
+constexpr double kWideStep = 1.0;  // [m] width and depth of the ground
 
 // Nearly prescribed motion: a newton moves the ball by 10 um.
 Handle6 stiff_hold() {
@@ -43,7 +43,7 @@ StepTrace engine_trace(const TissueScene& scene, double step, double every, doub
   if (ball) stage.add_rigid(scenes::sphere(kBallCells, ball->radius), rigid, {ball->middle(0.0)}, &held);
   if (const auto* ground = std::get_if<Ground>(&scene.obstacle)) {
     rigid.fixed = true;
-    stage.add_rigid(scenes::box(dvec3(kWide), dvec3(0, ground->height - 0.5 * kWide, 0)), rigid, {});
+    stage.add_rigid(scenes::box(dvec3(kWideStep), dvec3(0, ground->height - 0.5 * kWideStep, 0)), rigid, {});
   }
   stage.world.simulation.gravity = thrown ? scene.velocity / step : scene.gravity;
   stage.prepare();
