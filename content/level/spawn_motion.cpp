@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "content/files/file_io.h"
+#include "content/level/node_error.h"
 #include "content/level/script.h"
 
 namespace pliant {
@@ -67,10 +68,7 @@ class MotionMaker {
     const LevelChannel* channel;
   };
 
-  Error at(std::size_t n, std::string what) const {
-    return {level_.path.filename().string() + ": node `" + level_.nodes[n].name + "`", std::move(what),
-            static_cast<std::int32_t>(n)};
-  }
+  Error at(std::size_t n, std::string what) const { return node_error(level_, n, std::move(what)); }
   void note(std::size_t n, const std::string& what) {
     out_.notes.push_back("node `" + level_.nodes[n].name + "` " + what);
   }

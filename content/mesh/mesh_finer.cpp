@@ -7,7 +7,8 @@
 #include <unordered_map>
 
 #include "components/curved_patch.h"
-#include "content/mesh/mesh_draw.h"
+#include "content/mesh/finer_primitives.h"
+#include "content/mesh/finer_vertices.h"
 #include "runtime/parallel.h"
 
 namespace pliant {
@@ -42,14 +43,6 @@ struct Piece {
   std::array<Corner, 3> corner;
 };
 
-std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-}
-
-bool is_corner(vec2 at, int corner) {
-  return at == (corner == 0 ? vec2(0, 0) : corner == 1 ? vec2(1, 0) : vec2(0, 1));
-}
-
 // The triangle edge that contains both points, or -1.
 int common_edge(vec2 a, vec2 b) {
   if (a.y == 0.0f && b.y == 0.0f) return 0;
@@ -58,17 +51,18 @@ int common_edge(vec2 a, vec2 b) {
   return -1;
 }
 
+// Bisects edges in passes: every piece of a touched triangle is cut at its long edges.
 class Finer {
  public:
   Finer(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered, const Welded& welded,
         const Mesh& mesh, double reach, const FinerPlace* place = nullptr)
       : mesh_(mesh),
+        primitives_(primitives, to_object, gathered),
+        vertices_(mesh),
         longest_(kEdgeOfReach * reach),
         most_bulge_(kBulgeOfReach * reach),
         place_(place),
         source_(welded.source_triangle) {
-    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) position_.push_back(mesh.position(v));
-    begin(primitives, to_object, gathered);
     begin(gathered, welded);
     if (!place) return;
     near_.assign(mesh.vertex_count, 0);
@@ -106,51 +100,26 @@ class Finer {
     CurvedPatch patch;
     for (const Piece& piece : pieces_) {
       if (place_) {
-        for (const Corner& corner : piece.corner) primitives_[piece.primitive].index.push_back(corner.source);
+        for (const Corner& corner : piece.corner) primitives_.add_corner(piece.primitive, corner.source);
         continue;
       }
       if (patch_of != piece.triangle) patch = curved_patch(mesh_, patch_of = piece.triangle);
       std::uint8_t crease = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        primitives_[piece.primitive].index.push_back(piece.corner[k].source);
-        const int edge = common_edge(piece.corner[k].at, piece.corner[(k + 1) % 3].at);
+        const Corner& corner = piece.corner[k];
+        primitives_.add_corner(piece.primitive, corner.source);
+        const int edge = common_edge(corner.at, piece.corner[(k + 1) % 3].at);
         if (edge >= 0 && mesh_.is_crease(piece.triangle, edge)) crease = static_cast<std::uint8_t>(crease | 1u << k);
-        out.normal.push_back(normal_at(piece, k, patch));
+        out.normal.push_back(vertices_.normal_at(piece.triangle, corner.vertex, corner.at, patch));
       }
       out.crease.push_back(crease);
     }
-    out.primitives = std::move(primitives_);
+    out.primitives = primitives_.take();
     out.complete = complete_;
     return out;
   }
 
  private:
-  // The primitives in the object frame, still without triangles; and the touch vertex of each vertex.
-  void begin(std::span<const Primitive> primitives, const mat4& to_object, const Gathered& gathered) {
-    const Directions to(to_object);
-    middles_.resize(primitives.size());
-    for (std::size_t n = 0; n < primitives.size(); ++n) {
-      Primitive p = primitives[n];
-      const std::size_t count = p.position.size();
-      const auto only_whole = [&](auto& values) {
-        if (values.size() != count) values.clear();
-      };
-      only_whole(p.normal), only_whole(p.tangent), only_whole(p.uv), only_whole(p.stiffness), only_whole(p.friction);
-      only_whole(p.damping), only_whole(p.relaxation), only_whole(p.pinned), only_whole(p.handle);
-      p.index.clear();
-      for (std::size_t v = 0; v < count; ++v) {
-        const std::size_t all = gathered.first_vertex[n] + v;
-        const bool turned = !gathered.turned_normal.empty() && gathered.turned_normal[all] != 0;
-        p.position[v] = gathered.position[all];
-        if (!p.normal.empty()) p.normal[v] = vec3(to.normal * dvec3(p.normal[v]) * (turned ? -1.0 : 1.0));
-        if (!p.tangent.empty())
-          p.tangent[v] = vec4(vec3(to.tangent * dvec3(vec3(p.tangent[v]))),
-                              (p.tangent[v].w < 0.0f) != turned ? -to.hand : to.hand);
-      }
-      primitives_.push_back(std::move(p));
-    }
-  }
-
   // One piece for every touched triangle, followed by the back sides that are only drawn.
   void begin(const Gathered& gathered, const Welded& welded) {
     const auto add = [&](std::uint32_t source, std::uint32_t triangle) {
@@ -188,7 +157,7 @@ class Finer {
     if (place_ && !(is_near(a.vertex) && is_near(b.vertex))) return false;
     const auto [known, fresh] = cuts_.try_emplace(edge_key(a.vertex, b.vertex), Cut{false, kNoVertex});
     if (!fresh) return known->second.cut;
-    const dvec3 from(position_[a.vertex]), to(position_[b.vertex]), along = to - from;
+    const dvec3 from(vertices_.position(a.vertex)), to(vertices_.position(b.vertex)), along = to - from;
     bool& cut = known->second.cut;
     if (place_) return cut = is_long_at_place(from, to);
     cut = dot(along, along) > longest_ * longest_;
@@ -211,83 +180,8 @@ class Finer {
     const Corner &a = piece.corner[k], &b = piece.corner[(k + 1) % 3];
     Cut& cut = cuts_.at(edge_key(a.vertex, b.vertex));
     const vec2 at = 0.5f * (a.at + b.at);
-    if (cut.middle == kNoVertex) {
-      cut.middle = static_cast<std::uint32_t>(position_.size());
-      add_vertex(piece.triangle, at, common_edge(a.at, b.at));
-    }
-    return {cut.middle, middle_source(piece.primitive, a.source, b.source, cut.middle), at};
-  }
-
-  // A point on the patch with its normal; on an edge shared by two smooth patches, the mean of both.
-  void add_vertex(std::uint32_t triangle, vec2 at, int edge) {
-    const CurvedPatch patch = curved_patch(mesh_, triangle);
-    position_.push_back(vec3(patch.at(at.x, at.y).p) + vec3(0.0f));
-    dvec3 normal = patch_normal(triangle, patch, at);
-    bool own = false;
-    if (edge >= 0) {
-      own = mesh_.is_crease(triangle, edge);
-      const std::uint32_t other = mesh_.across[triangle][edge];
-      if (!own && other != kBorder)
-        normal += patch_normal(other, curved_patch(mesh_, other), seen_from(other, triangle, edge, at));
-    }
-    const double size = length(normal);
-    normal_.push_back(size > 1e-6 ? vec3(normal / size) : vec3(patch_normal(triangle, patch, at)));
-    own_.push_back(own);
-  }
-
-  // A point on an edge, in barycentric coordinates of the neighbour triangle.
-  vec2 seen_from(std::uint32_t other, std::uint32_t triangle, int edge, vec2 at) const {
-    const float weight[3] = {1.0f - at.x - at.y, at.x, at.y};
-    vec2 out(0);
-    for (int k = 1; k < 3; ++k)
-      for (const int end : {edge, (edge + 1) % 3})
-        if (mesh_.triangles[other][k] == mesh_.triangles[triangle][end]) out[k - 1] = weight[end];
-    return out;
-  }
-
-  dvec3 patch_normal(std::uint32_t triangle, const CurvedPatch& patch, vec2 at) const {
-    const double u = static_cast<double>(at.x), v = static_cast<double>(at.y);
-    const CurvedPatch::Point point = patch.at(u, v);
-    const dvec3 n = cross(point.pu, point.pv), mean = (1 - u - v) * dvec3(mesh_.normal(triangle, 0)) +
-                                                      u * dvec3(mesh_.normal(triangle, 1)) +
-                                                      v * dvec3(mesh_.normal(triangle, 2));
-    const double size = length(n), usual = length(cross(patch.b[1] - patch.b[0], patch.b[2] - patch.b[0]));
-    if (size > 1e-3 * usual && dot(n, mean) > 0.0) return n / size;
-    return length(mean) > 1e-6 ? mean / length(mean) : dvec3(mesh_.normal(triangle, 0));  // bad normals fold a patch
-  }
-
-  vec3 normal_at(const Piece& piece, std::size_t k, const CurvedPatch& patch) const {
-    const Corner& c = piece.corner[k];
-    if (c.vertex >= mesh_.vertex_count) {
-      const std::size_t added = c.vertex - mesh_.vertex_count;
-      return own_[added] ? vec3(patch_normal(piece.triangle, patch, c.at)) : normal_[added];
-    }
-    for (int corner = 0; corner < 2; ++corner)
-      if (is_corner(c.at, corner)) return mesh_.normal(piece.triangle, corner);
-    return mesh_.normal(piece.triangle, 2);
-  }
-
-  std::uint32_t middle_source(std::uint32_t primitive, std::uint32_t a, std::uint32_t b, std::uint32_t vertex) {
-    Primitive& p = primitives_[primitive];
-    const auto [known, fresh] =
-        middles_[primitive].try_emplace(edge_key(a, b), static_cast<std::uint32_t>(p.position.size()));
-    if (!fresh) return known->second;
-    p.position.push_back(position_[vertex]);
-    const auto mean = [&](auto& values) {
-      if (!values.empty()) values.push_back(0.5f * (values[a] + values[b]));
-    };
-    const auto direction = [](vec3 v, vec3 otherwise) {
-      const float l = length(v);
-      return l > 0.0f ? v / l : otherwise;
-    };
-    mean(p.uv), mean(p.stiffness), mean(p.friction), mean(p.damping), mean(p.relaxation), mean(p.pinned);
-    mean(p.handle);
-    if (!p.normal.empty()) p.normal.push_back(direction(p.normal[a] + p.normal[b], p.normal[a]));
-    if (!p.tangent.empty()) {
-      const vec4 first = p.tangent[a], second = p.tangent[b];
-      p.tangent.emplace_back(direction(vec3(first) + vec3(second), vec3(first)), first.w);
-    }
-    return known->second;
+    if (cut.middle == kNoVertex) cut.middle = vertices_.add(piece.triangle, at, common_edge(a.at, b.at));
+    return {cut.middle, primitives_.middle(piece.primitive, a.source, b.source, vertices_.position(cut.middle)), at};
   }
 
   void cut(const Piece& whole, std::vector<Piece>& finer) {
@@ -313,18 +207,15 @@ class Finer {
   }
 
   const Mesh& mesh_;
+  FinerPrimitives primitives_;
+  PatchVertices vertices_;                    // of the finer touch mesh
   const double longest_, most_bulge_;         // [m]
   const FinerPlace* const place_;             // nullptr: everywhere
   const std::vector<std::uint32_t>& source_;  // triangle of each touch triangle
   std::vector<std::uint8_t> near_;            // per touch vertex, if a place is given
   bool complete_ = true;
-  std::vector<Primitive> primitives_;
   std::vector<Piece> pieces_;
-  std::vector<vec3> position_;                   // [m] of every vertex of the finer touch mesh
-  std::vector<vec3> normal_;                     // [1] of added vertices
-  std::vector<std::uint8_t> own_;                // per added vertex: on a crease, with one normal per side
   std::unordered_map<std::uint64_t, Cut> cuts_;  // by edge
-  std::vector<std::unordered_map<std::uint64_t, std::uint32_t>> middles_;  // of each primitive, by edge
 };
 
 }  // namespace

@@ -33,6 +33,35 @@ DeviceCapabilities what_it_can(SonyModel model) {
           .workspace = StickSettings{}.extent};
 }
 
+// Which line a controller is on, how its sensors are calibrated, and how old its firmware is.
+struct SonyLine {
+  bool bluetooth = false, new_rumble = false;
+  SonyCalibration calibration = nominal_calibration();
+};
+
+// By Bluetooth the first of these feature reports makes the controller send its whole input.
+SonyLine learn_line(SonyModel model, PacketPort& port) {
+  SonyLine line;
+  const bool sense = model == SonyModel::kDualSense;
+  const Result<HidLayout> layout = parse_hid_descriptor(port.descriptor());
+  line.bluetooth = layout && layout->bytes(HidKind::kInput, sense ? 0x31 : 0x11) > 0;
+  std::array<std::uint8_t, 64> report{};
+  const std::uint8_t number = !sense && !line.bluetooth ? 0x02 : 0x05;
+  const std::size_t size = !sense && !line.bluetooth ? 37 : 41;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    const Result<std::size_t> length = port.feature(number, std::span(report).first(size));
+    if (!length) continue;
+    const auto found = parse_sony_calibration(model, line.bluetooth, std::span(report).first(std::min(*length, size)));
+    if (!found) continue;
+    line.calibration = *found;
+    break;
+  }
+  if (!sense) return line;
+  const Result<std::size_t> length = port.feature(0x20, report);
+  line.new_rumble = length && *length >= 46 && report[0] == 0x20 && (report[44] | report[45] << 8) >= kNewRumble;
+  return line;
+}
+
 class SonyPad final : public Driver {
  public:
   SonyPad(SonyModel model, PortOpener opener, SecondsClock clock)
@@ -48,7 +77,7 @@ class SonyPad final : public Driver {
     Result<std::unique_ptr<PacketPort>> port = opener_(words->id);
     if (!port) return port.error();
     port_ = std::move(*port);
-    learn_line();
+    line_ = learn_line(model_, *port_);
     control_ = StickControl(*settings);
     extent_ = settings->extent;
     motion_ = {};
@@ -76,7 +105,7 @@ class SonyPad final : public Driver {
       if (gone_) return false;
       if (*length == 0) break;
       SonyInput input;
-      if (parse_sony(model_, bluetooth_, {packet.data(), *length}, input) == SonyParse::kSample) take(input, now);
+      if (parse_sony(model_, line_.bluetooth, {packet.data(), *length}, input) == SonyParse::kSample) take(input, now);
     }
     const dvec3 move(input_.sticks[0], -input_.sticks[3], input_.sticks[1]);
     const bool known = heard_ && now - heard_at_ < kLostAfter;
@@ -140,32 +169,9 @@ class SonyPad final : public Driver {
   const char* name() const { return model_ == SonyModel::kDualSense ? "dualsense" : "dualshock4"; }
 
   std::size_t write_report(const SonyOutput& output, std::span<std::uint8_t, kLongestSonyOutput> report) const {
-    return model_ == SonyModel::kDualSense ? dualsense_output(output, bluetooth_, new_rumble_, sequence_, report)
-                                           : dualshock_output(output, bluetooth_, report);
-  }
-
-  // Which line it is, how its sensors are calibrated, and how old its firmware is. By Bluetooth the first of these
-  // feature reports makes the controller send its whole input.
-  void learn_line() {
-    const bool sense = model_ == SonyModel::kDualSense;
-    const Result<HidLayout> layout = parse_hid_descriptor(port_->descriptor());
-    bluetooth_ = layout && layout->bytes(HidKind::kInput, sense ? 0x31 : 0x11) > 0;
-    std::array<std::uint8_t, 64> report{};
-    calibration_ = nominal_calibration();
-    const std::uint8_t number = !sense && !bluetooth_ ? 0x02 : 0x05;
-    const std::size_t size = !sense && !bluetooth_ ? 37 : 41;
-    for (int attempt = 0; attempt < 3; ++attempt) {
-      const Result<std::size_t> length = port_->feature(number, std::span(report).first(size));
-      if (!length) continue;
-      const auto found = parse_sony_calibration(model_, bluetooth_, std::span(report).first(std::min(*length, size)));
-      if (!found) continue;
-      calibration_ = *found;
-      break;
-    }
-    new_rumble_ = false;
-    if (!sense) return;
-    const Result<std::size_t> length = port_->feature(0x20, report);
-    new_rumble_ = length && *length >= 46 && report[0] == 0x20 && (report[44] | report[45] << 8) >= kNewRumble;
+    return model_ == SonyModel::kDualSense
+               ? dualsense_output(output, line_.bluetooth, line_.new_rumble, sequence_, report)
+               : dualshock_output(output, line_.bluetooth, report);
   }
 
   void take(const SonyInput& input, double now) {
@@ -176,9 +182,9 @@ class SonyPad final : public Driver {
     dvec3 turning, felt;
     for (int axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
-      turning[axis] = (input.gyro[i] - calibration_.gyro_bias[axis]) * calibration_.gyro_scale[axis];
-      felt[axis] =
-          (input.acceleration[i] - calibration_.acceleration_bias[axis]) * calibration_.acceleration_scale[axis];
+      turning[axis] = (input.gyro[i] - line_.calibration.gyro_bias[axis]) * line_.calibration.gyro_scale[axis];
+      felt[axis] = (input.acceleration[i] - line_.calibration.acceleration_bias[axis]) *
+                   line_.calibration.acceleration_scale[axis];
     }
     motion_.step(turning, felt, dt);
     input_ = input;
@@ -190,7 +196,7 @@ class SonyPad final : public Driver {
   PortOpener opener_;
   SecondsClock clock_;
   std::unique_ptr<PacketPort> port_;
-  SonyCalibration calibration_;
+  SonyLine line_;
   MotionFilter motion_;
   StickControl control_;
   Shaker shaker_;
@@ -199,7 +205,7 @@ class SonyPad final : public Driver {
   dvec3 extent_ = StickSettings{}.extent;
   double heard_at_ = 0.0, stepped_at_ = 0.0, written_at_ = 0.0, sent_at_ = 0.0;
   std::uint8_t sequence_ = 0;
-  bool bluetooth_ = false, new_rumble_ = false, heard_ = false, gone_ = false;
+  bool heard_ = false, gone_ = false;
 };
 
 Status register_pad(const char* name, SonyModel model, std::span<const HidMatch> matches) {

@@ -1,6 +1,7 @@
 #include "devices/ports/hid_descriptor.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace pliant {
 namespace {
@@ -79,6 +80,110 @@ Status add_fields(HidLayout& layout, const Globals& global, const Locals& local,
   return Done{};
 }
 
+// Reads the items of a descriptor, one after the other.
+class ItemReader {
+ public:
+  // `value` as stored in `bytes` bytes. Units, physical ranges and strings are unused.
+  Status read(std::uint8_t item, std::uint32_t value, std::uint32_t bytes) {
+    switch (item & 0x0c) {
+      case 0x00:
+        return read_main(item, value);
+      case 0x04:
+        return read_global(item, value, bytes);
+      case 0x08:
+        read_local(item, bytes == 4 ? value : std::uint32_t(global_.page) << 16 | (value & 0xffff));
+    }
+    return Done{};
+  }
+  bool complete() const { return depth_ == 0; }
+
+  HidLayout layout;
+
+ private:
+  // An unused main item leaves the local ones.
+  Status read_main(std::uint8_t item, std::uint32_t flags) {
+    Status added = Done{};
+    switch (item) {
+      case kInputItem:
+        added = add_fields(layout, global_, local_, HidKind::kInput, flags);
+        break;
+      case kOutputItem:
+        added = add_fields(layout, global_, local_, HidKind::kOutput, flags);
+        break;
+      case kFeatureItem:
+        added = add_fields(layout, global_, local_, HidKind::kFeature, flags);
+        break;
+      case kCollection:
+        if (depth_++ == kDeepest) return broken("nests too deep");
+        if (depth_ == 1 && !local_.usages.empty() && local_.usages[0] >> 16 == 1)
+          layout.applications.push_back(static_cast<std::uint16_t>(local_.usages[0]));
+        break;
+      case kEndCollection:
+        if (depth_-- == 0) return broken("ends a collection that it did not begin");
+        break;
+      default:
+        return Done{};
+    }
+    local_ = {};
+    return added;
+  }
+
+  Status read_global(std::uint8_t item, std::uint32_t value, std::uint32_t bytes) {
+    switch (item) {
+      case kUsagePage:
+        global_.page = static_cast<std::uint16_t>(value);
+        break;
+      case kLogicalMinimum:
+        global_.min = with_sign(value, 8 * bytes);
+        break;
+      case kLogicalMaximum:
+        global_.max = value, global_.max_bytes = bytes;
+        break;
+      case kReportSize:
+        global_.size = value;
+        break;
+      case kReportCount:
+        global_.count = value;
+        break;
+      case kReportId:
+        if (value == 0 || value > 255) return broken("numbers a report 0 or above 255");
+        global_.report = static_cast<std::uint8_t>(value);
+        layout.numbered = true;
+        break;
+      case kPush:
+        if (pushed_.size() == kDeepest) return broken("nests too deep");
+        pushed_.push_back(global_);
+        break;
+      case kPop:
+        if (pushed_.empty()) return broken("pops what it did not push");
+        global_ = pushed_.back();
+        pushed_.pop_back();
+    }
+    return Done{};
+  }
+
+  void read_local(std::uint8_t item, std::uint32_t usage) {
+    switch (item) {
+      case kUsage:
+        if (local_.usages.size() < kMostUsages) local_.usages.push_back(usage);
+        break;
+      case kUsageMinimum:
+        local_.first = usage, local_.has_first = true;
+        break;
+      case kUsageMaximum:
+        if (local_.has_first)
+          for (std::uint64_t u = local_.first; u <= usage && local_.usages.size() < kMostUsages; ++u)
+            local_.usages.push_back(static_cast<std::uint32_t>(u));
+        local_.has_first = false;
+    }
+  }
+
+  Globals global_;
+  Locals local_;
+  std::vector<Globals> pushed_;
+  std::size_t depth_ = 0;
+};
+
 }  // namespace
 
 std::size_t HidLayout::bytes(HidKind kind, std::uint8_t report) const {
@@ -88,11 +193,7 @@ std::size_t HidLayout::bytes(HidKind kind, std::uint8_t report) const {
 }
 
 Result<HidLayout> parse_hid_descriptor(std::span<const std::uint8_t> descriptor) {
-  HidLayout layout;
-  Globals global;
-  Locals local;
-  std::vector<Globals> pushed;
-  std::size_t depth = 0;
+  ItemReader reader;
   for (std::size_t at = 0; at < descriptor.size();) {
     const std::uint8_t head = descriptor[at++];
     if (head == 0xfe) {  // a long item: its size, tag and data
@@ -105,78 +206,10 @@ Result<HidLayout> parse_hid_descriptor(std::span<const std::uint8_t> descriptor)
     std::uint32_t value = 0;
     for (std::uint32_t i = 0; i < bytes; ++i) value |= std::uint32_t(descriptor[at + i]) << (8 * i);
     at += bytes;
-    const auto usage = [&] { return bytes == 4 ? value : std::uint32_t(global.page) << 16 | (value & 0xffff); };
-    bool is_main = false;
-    Status added = Done{};
-    switch (head & 0xfc) {
-      case kInputItem:
-        added = add_fields(layout, global, local, HidKind::kInput, value), is_main = true;
-        break;
-      case kOutputItem:
-        added = add_fields(layout, global, local, HidKind::kOutput, value), is_main = true;
-        break;
-      case kFeatureItem:
-        added = add_fields(layout, global, local, HidKind::kFeature, value), is_main = true;
-        break;
-      case kCollection:
-        if (depth++ == kDeepest) return broken("nests too deep");
-        if (depth == 1 && !local.usages.empty() && local.usages[0] >> 16 == 1)
-          layout.applications.push_back(static_cast<std::uint16_t>(local.usages[0]));
-        is_main = true;
-        break;
-      case kEndCollection:
-        if (depth-- == 0) return broken("ends a collection that it did not begin");
-        is_main = true;
-        break;
-      case kUsagePage:
-        global.page = static_cast<std::uint16_t>(value);
-        break;
-      case kLogicalMinimum:
-        global.min = with_sign(value, 8 * bytes);
-        break;
-      case kLogicalMaximum:
-        global.max = value, global.max_bytes = bytes;
-        break;
-      case kReportSize:
-        global.size = value;
-        break;
-      case kReportCount:
-        global.count = value;
-        break;
-      case kReportId:
-        if (value == 0 || value > 255) return broken("numbers a report 0 or above 255");
-        global.report = static_cast<std::uint8_t>(value);
-        layout.numbered = true;
-        break;
-      case kPush:
-        if (pushed.size() == kDeepest) return broken("nests too deep");
-        pushed.push_back(global);
-        break;
-      case kPop:
-        if (pushed.empty()) return broken("pops what it did not push");
-        global = pushed.back();
-        pushed.pop_back();
-        break;
-      case kUsage:
-        if (local.usages.size() < kMostUsages) local.usages.push_back(usage());
-        break;
-      case kUsageMinimum:
-        local.first = usage(), local.has_first = true;
-        break;
-      case kUsageMaximum:
-        if (local.has_first)
-          for (std::uint64_t u = local.first; u <= usage() && local.usages.size() < kMostUsages; ++u)
-            local.usages.push_back(static_cast<std::uint32_t>(u));
-        local.has_first = false;
-        break;
-      default:
-        break;  // units, physical ranges, strings: unused
-    }
-    if (!added) return added.error();
-    if (is_main) local = {};
+    if (const Status read = reader.read(head & 0xfc, value, bytes); !read) return read.error();
   }
-  if (depth > 0) return broken("is cut");
-  return layout;
+  if (!reader.complete()) return broken("is cut");
+  return std::move(reader.layout);
 }
 
 bool hid_value(const HidLayout& layout, const HidField& field, std::span<const std::uint8_t> packet,

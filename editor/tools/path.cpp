@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <utility>
 
 #include "components/kinematic.h"
 #include "components/probe_shape.h"
 #include "editor/app/path_editing.h"
+#include "editor/tools/path_drawing.h"
 #include "editor/tools/tools.h"
 #include "editor/ui/widgets.h"
 #include "editor/viewport/solid_view.h"
@@ -16,13 +16,73 @@
 namespace pliant {
 namespace {
 
-constexpr double kReach = 10.0;          // [point] picking distance of a key
+constexpr double kPickReach = 10.0;      // [point] picking distance of a key
 constexpr double kWheel = 0.0005;        // [m] of depth per click
 constexpr std::size_t kMostLabels = 20;  // with more keys, their times would overlap
 constexpr std::size_t kMostLines = 400;  // of the curve that is drawn
-constexpr std::size_t kMostGhosts = 12, kMostGhostEdges = 700;
-constexpr double kSeenSag = 0.005;            // [1] of a body's size: what sags farther is drawn where it rests
-constexpr std::size_t kMostRestEdges = 4000;  // of it
+
+struct PlaceUnder {
+  dvec3 point, normal;
+};
+// On the nearest touchable surface under the mouse.
+std::optional<PlaceUnder> place_under(Editor& editor, const ViewportInput& in) {
+  const ViewRay ray = in.ray();
+  std::optional<PlaceUnder> found;
+  double nearest = 1e300;
+  for (const NodeId id : path_grounds(editor.state())) {
+    const auto surface = editor.ground_of(id).surface;
+    if (!surface) continue;
+    // The surface frame equals the world frame except for the node's position.
+    const dvec3 origin(editor.state().to_world(id)[3]);
+    const SurfaceHit hit = surface->hit({ray.from - origin, ray.along});
+    if (!hit.valid()) continue;
+    const double away = length(hit.point + origin - ray.from);
+    if (away >= nearest) continue;
+    nearest = away;
+    found = PlaceUnder{hit.point + origin, hit.normal};
+  }
+  return found;
+}
+
+// Starts preparing every surface that a click may hit.
+bool prepared(Editor& editor) {
+  bool ready = true;
+  for (const NodeId id : path_grounds(editor.state())) ready = editor.ground_of(id).ready && ready;
+  return ready;
+}
+
+std::optional<std::size_t> key_near(const ScriptKeys& keys, const ViewportInput& in) {
+  std::optional<std::size_t> found;
+  double nearest = static_cast<double>(ui::px(static_cast<float>(kPickReach)));
+  for (std::size_t i = 0; i < keys.keys.size(); ++i) {
+    const auto at = on_picture(in.view, in.orthographic, in.width, in.height, keys.keys[i].position());
+    if (!at) continue;
+    const double away = std::hypot(at->x - in.x, at->y - in.y);
+    if (away > nearest) continue;
+    nearest = away;
+    found = i;
+  }
+  return found;
+}
+
+void add_key(Editor& editor, NodeId node, const ScriptKeys& keys, const PlaceUnder& place) {
+  ScriptKeys next = keys;
+  const double clear = path_clearance(editor, node);
+  if (next.keys.empty()) next.along = true;
+  // Off the surface, heights refer to the centre.
+  const double radius = next.along ? 0.0 : tip_of(editor.state(), node).value_or(PathTip{}).radius;
+  PathKey key{0.0, place.point, place.normal, radius - editor.path_depth};
+  if (next.keys.empty()) {  // it comes from the air
+    next.keys.push_back({0.0, place.point, place.normal, clear});
+    key.time = (clear + editor.path_depth) / editor.path_speed;
+  } else {
+    const double way = length(next.keys.back().position() - key.position());
+    key.time = next.keys.back().time + std::max(way / editor.path_speed, 0.1);
+  }
+  editor.path_key = next.keys.size();
+  next.keys.push_back(key);
+  set_keys_of_node(editor, node, next, "Add a key");
+}
 
 class PathTool : public ViewTool {
  public:
@@ -96,7 +156,7 @@ class PathTool : public ViewTool {
   }
 
   void overlay(Editor& editor, const ViewportInput& in, ImDrawList& list) override {
-    find_sagging(editor);
+    resting_.find(editor);
     const ScriptKeys keys = keys_of_node(editor, path_node(editor));
     for (std::size_t i = 0; i < keys.keys.size(); ++i) {
       const auto at = on_picture(in.view, in.orthographic, in.width, in.height, keys.keys[i].position());
@@ -115,7 +175,7 @@ class PathTool : public ViewTool {
   }
 
   void lines(const Editor& editor, std::vector<ViewLine>& lines) const override {
-    for (const Sagging& each : sagging_) draw_resting(each, lines);
+    resting_.draw(lines);
     const ScriptKeys keys = keys_of_node(editor, path_node(editor));
     if (keys.keys.size() < 2) return;
     const double begin = keys.keys.front().time, length = keys.keys.back().time - begin;
@@ -126,10 +186,11 @@ class PathTool : public ViewTool {
       lines.push_back({before, here, vec4(c.x, c.y, c.z, 0.9f), true});
       before = here;
     }
-    ghosts(editor, keys, lines);
+    draw_ghosts(editor, keys, lines);
   }
 
  private:
+<<<<<<< HEAD
   // A body that rests elsewhere than it is drawn: keys are set on it where it rests.
   struct Sagging {
     std::shared_ptr<const PaintSurface> surface;
@@ -291,12 +352,13 @@ class PathTool : public ViewTool {
     set_keys_of_node(editor, node, next, "Add a key");
   }
 
+=======
+>>>>>>> 6d05a05ea98e873313020e8f438e36e15c4bc391
   std::optional<std::size_t> near_, grabbed_;
   bool dragging_ = false;
   double pressed_x_ = 0, pressed_y_ = 0;  // [pixel]
-  std::vector<Sagging> sagging_;
-  std::vector<std::shared_ptr<const PaintSurface>> said_;  // of which it was said
-  std::optional<ViewportInput> waiting_;                   // a click that came before the surfaces were prepared
+  RestingBodies resting_;
+  std::optional<ViewportInput> waiting_;  // a click that came before the surfaces were prepared
 };
 
 }  // namespace

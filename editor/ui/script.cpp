@@ -3,23 +3,20 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
-#include <imgui_internal.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <cctype>
 #include <sstream>
 
 #include "content/files/file_io.h"
+#include "editor/ui/script_words.h"
 #include "editor/ui/seen.h"
 #include "editor/ui/widgets.h"
 
 namespace pliant::ui {
 namespace {
 
-constexpr double kScriptPatience = 60.0;  // [s] limit for `await`, and for the editor to become idle
-constexpr int kLateFrames = 10;           // to wait for the target of a click
-constexpr int kRestFrames = 3;            // for an opened window to be drawn and laid out
+constexpr int kRestFrames = 3;  // for an opened window to be drawn and laid out
 
 struct NamedKey {
   const char* name;
@@ -37,56 +34,6 @@ constexpr NamedKey kNamed[] = {
     {"/", GLFW_KEY_SLASH},         {"-", GLFW_KEY_MINUS},
     {"=", GLFW_KEY_EQUAL},         {"[", GLFW_KEY_LEFT_BRACKET},
     {"]", GLFW_KEY_RIGHT_BRACKET}, {"Escape", GLFW_KEY_ESCAPE}};  // the first of two names is written
-
-std::optional<double> number_of(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
-}
-
-InputEvent at(InputKind kind, double x, double y, MouseButton button = MouseButton::kLeft, std::uint8_t modifiers = 0) {
-  InputEvent event;
-  event.kind = kind;
-  event.x = x;
-  event.y = y;
-  event.button = button;
-  event.modifiers = modifiers;
-  return event;
-}
-
-// Words after a place: a button, modifiers.
-struct Manner {
-  MouseButton button = MouseButton::kLeft;
-  std::uint8_t modifiers = 0;
-  bool twice = false;
-  double seconds = 0.2;
-};
-Manner manner_of(const std::vector<std::string>& words) {
-  Manner m;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "right") m.button = MouseButton::kRight;
-    if (words[i] == "middle") m.button = MouseButton::kMiddle;
-    if (words[i] == "double") m.twice = true;
-    if (words[i] == "shift") m.modifiers |= kShift;
-    if (words[i] == "control") m.modifiers |= kControl;
-    if (words[i] == "alt") m.modifiers |= kAlt;
-    if (words[i] == "in" && i + 1 < words.size()) m.seconds = number_of(words[i + 1]).value_or(m.seconds);
-  }
-  return m;
-}
-
-bool is_manner(const std::string& word) {
-  constexpr const char* kWords[] = {"right", "middle", "double", "shift", "control", "alt", "in", "to"};
-  return std::find(std::begin(kWords), std::end(kWords), word) != std::end(kWords);
-}
-
-// Addresses may contain blanks: everything up to a modifier word.
-std::string address_of(const std::vector<std::string>& words, std::size_t& i) {
-  std::string address;
-  for (; i < words.size() && !is_manner(words[i]); ++i) address += (address.empty() ? "" : " ") + words[i];
-  return address;
-}
 
 }  // namespace
 
@@ -165,7 +112,7 @@ Result<Script> Script::load(const std::filesystem::path& file) {
   return script;
 }
 
-Result<std::pair<double, double>> Script::place(const std::string& text, bool& there, Need need) const {
+Result<Spot> Script::place(const std::string& text, bool& there, Need need) const {
   there = true;
   double fx = 0.5, fy = 0.5;
   std::string address = text;
@@ -204,193 +151,6 @@ Result<std::pair<double, double>> Script::place(const std::string& text, bool& t
     return Error{"", why};
   }
   return std::pair{x, y};
-}
-
-void Script::key_events(const std::string& keys, bool) {
-  int key = 0;
-  std::uint8_t modifiers = 0;
-  if (!parse_keys(keys, key, modifiers)) return;
-  InputEvent down;
-  down.kind = InputKind::kKey;
-  down.key = key;
-  down.modifiers = modifiers;
-  InputEvent up = down;
-  up.kind = InputKind::kKeyUp;
-  up.modifiers = 0;
-  frames_.push_back({down});
-  frames_.push_back({up});
-}
-
-Status Script::begin(const Step& step, const Surroundings& now, bool& waits) {
-  waits = false;
-  const auto wrong = [&](const std::string& what) { return Error{fmt::format("{}:{}", file_, step.line), what}; };
-  std::size_t i = 0;
-  bool there = true;
-  if (step.verb == "click" || step.verb == "press" || step.verb == "move" || step.verb == "drag") {
-    const auto from = place(address_of(step.words, i), there, step.verb == "move" ? Need::kUncovered : Need::kPress);
-    waits = !from && rest_ < kLateFrames;
-    if (waits) return Done{};
-    if (!from) return wrong(from.error().what);
-    std::pair<double, double> to = *from;
-    if (step.verb == "drag") {
-      if (i >= step.words.size() || step.words[i] != "to")
-        return wrong("says no place to drag to; write `drag A to B`");
-      const auto target = place(address_of(step.words, ++i), there, Need::kThere);
-      if (!target) return wrong(target.error().what);
-      to = *target;
-    }
-    const Manner m = manner_of({step.words.begin() + static_cast<std::ptrdiff_t>(i), step.words.end()});
-    frames_.push_back({at(InputKind::kMove, from->first, from->second)});
-    frames_.push_back({});
-    if (step.verb == "move") return Done{};
-    if (m.twice) {  // as fast as a user, however slow the frames are
-      const InputEvent down = at(InputKind::kPress, 0, 0, m.button, m.modifiers),
-                       up = at(InputKind::kRelease, 0, 0, m.button, m.modifiers);
-      frames_.push_back({down, up, down, up});
-    } else {
-      frames_.push_back({at(InputKind::kPress, 0, 0, m.button, m.modifiers)});
-      if (step.verb == "press") return Done{};
-      if (step.verb == "drag") {
-        const int steps = std::max(4, static_cast<int>(m.seconds * 40));
-        for (int k = 1; k <= steps; ++k) {
-          const double s = static_cast<double>(k) / steps;
-          frames_.push_back({at(InputKind::kMove, from->first + s * (to.first - from->first),
-                                from->second + s * (to.second - from->second))});
-        }
-        frames_.push_back({});
-      }
-      frames_.push_back({at(InputKind::kRelease, 0, 0, m.button, m.modifiers)});
-    }
-    return Done{};
-  }
-  if (step.verb == "release") {
-    frames_.push_back({at(InputKind::kRelease, 0, 0, manner_of(step.words).button)});
-    return Done{};
-  }
-  if (step.verb == "wheel") {
-    if (step.words.size() < 2) return wrong("says no clicks; write `wheel Viewport 3`");
-    const auto clicks = number_of(step.words.back());
-    const auto from = place(step.rest.substr(0, step.rest.rfind(' ')), there, Need::kUncovered);
-    if (!clicks || !from) return wrong(from ? "says no clicks; write `wheel Viewport 3`" : from.error().what);
-    frames_.push_back({at(InputKind::kMove, from->first, from->second)});
-    frames_.push_back({at(InputKind::kWheel, 0, *clicks)});
-    return Done{};
-  }
-  if (step.verb == "key") {
-    int key = 0;
-    std::uint8_t modifiers = 0;
-    if (!parse_keys(step.rest, key, modifiers)) return wrong("'" + step.rest + "' is no key; write, say, Ctrl+S");
-    key_events(step.rest, false);
-    return Done{};
-  }
-  if (step.verb == "type" || step.verb == "set") {
-    std::string text = step.rest;
-    if (step.verb == "set") {
-      // The longest prefix that is a widget's address: names and values may both contain blanks.
-      std::size_t last = step.rest.rfind(' ');
-      if (last == std::string::npos) return wrong("says no value; write `set Inspector/stiffness 500`");
-      for (std::size_t at = last; at != std::string::npos && at > 0; at = step.rest.rfind(' ', at - 1))
-        if (find_widget(step.rest.substr(0, at))) {
-          last = at;
-          break;
-        }
-      text = step.rest.substr(last + 1);
-      const auto from = place(step.rest.substr(0, last), there, Need::kPress);
-      waits = !from && rest_ < kLateFrames;
-      if (waits) return Done{};
-      if (!from) return wrong(from.error().what);
-      frames_.push_back({at(InputKind::kMove, from->first, from->second)});
-      frames_.push_back({});
-      // Ctrl-click edits a number, and selects a text.
-      InputEvent down = at(InputKind::kPress, 0, 0, MouseButton::kLeft, kControl);
-      frames_.push_back({down});
-      frames_.push_back({at(InputKind::kRelease, 0, 0, MouseButton::kLeft, kControl)});
-      frames_.push_back({});
-      key_events("Ctrl+A", false);
-    }
-    for (const char* c = text.c_str(); *c != '\0';) {
-      unsigned code_point = 0;
-      c += std::max(1, ImTextCharFromUtf8(&code_point, c, nullptr));
-      InputEvent event;
-      event.kind = InputKind::kText;
-      event.key = static_cast<int>(code_point);
-      frames_.push_back({event});
-    }
-    if (step.verb == "set") key_events("Enter", false);
-    return Done{};
-  }
-  if (step.verb == "wait") {
-    if (began_ < 0) began_ = now.now;
-    waits = now.now - began_ < number_of(step.rest).value_or(0.0);
-    return Done{};
-  }
-  if (step.verb == "await") {
-    if (began_ < 0) began_ = now.now;
-    std::string address = step.rest;
-    double patience = kScriptPatience;
-    if (const std::size_t last = address.rfind(' '); last != std::string::npos)
-      if (const auto seconds = number_of(address.substr(last + 1))) {
-        patience = *seconds;
-        address.resize(last);
-      }
-    const auto found = find_widget(address);
-    const auto seen = place(address, there, Need::kUncovered);
-    waits = !seen || (found && !found->enabled);
-    if (waits && now.now - began_ > patience) return wrong(seen ? "'" + address + "' stays off" : seen.error().what);
-    return Done{};
-  }
-  if (step.verb == "expect" || step.verb == "expect-no") {
-    const auto found = place(step.rest, there, Need::kUncovered);
-    waits = (step.verb == "expect") != there && rest_ < kLateFrames;
-    if (waits) return Done{};
-    if ((step.verb == "expect") != there)
-      return wrong(found ? "'" + step.rest + "' is there, and should not be" : found.error().what);
-    return Done{};
-  }
-  if (step.verb == "say") {
-    if (!now.has_said(step.rest)) return wrong("the console does not say '" + step.rest + "'");
-    return Done{};
-  }
-  if (step.verb == "hear") {
-    if (began_ < 0) began_ = now.now;
-    waits = !now.has_said(step.rest);
-    if (waits && now.now - began_ > kScriptPatience) return wrong("the console does not say '" + step.rest + "'");
-    return Done{};
-  }
-  if (step.verb == "figures") {
-    now.figures(step.rest);
-    return Done{};
-  }
-  if (step.verb == "felt") {
-    const Status written = now.felt(step.rest);
-    return written ? written : wrong(written.error().message());
-  }
-  if (step.verb == "screenshot") {
-    now.screenshot(step.rest);
-    frames_.push_back({});
-    return Done{};
-  }
-  if (step.verb == "apart") {
-    if (const std::string why = not_apart(); !why.empty()) return wrong(why);
-    return Done{};
-  }
-  if (step.verb == "slow") {
-    now.slow(number_of(step.rest).value_or(0.0));
-    return Done{};
-  }
-  if (step.verb == "at-once" || step.verb == "now") {
-    at_once_ = step.verb == "at-once";
-    return Done{};
-  }
-  InputEvent event;
-  event.kind = step.verb == "drop" ? InputKind::kDrop : InputKind::kClose;
-  std::istringstream files(step.rest);
-  for (std::string file; std::getline(files >> std::ws, file, '|');) {
-    while (file.ends_with(' ')) file.pop_back();
-    event.files.push_back(file);
-  }
-  frames_.push_back({event});
-  return Done{};
 }
 
 Status Script::next(const Surroundings& now, std::vector<InputEvent>& events) {

@@ -33,12 +33,16 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/result.h"
 #include "window/window_input.h"
 
 namespace pliant::ui {
+
+struct Manner;
+using Spot = std::pair<double, double>;  // [px]
 
 class Script {
  public:
@@ -66,9 +70,19 @@ class Script {
     std::string rest;
   };
   enum class Need : std::uint8_t { kThere, kUncovered, kPress };
-  Result<std::pair<double, double>> place(const std::string& text, bool& there, Need need) const;
+  Result<Spot> place(const std::string& text, bool& there, Need need) const;
+  Error wrong(const Step& step, std::string what) const;
+  // Each appends the step's frames of events. `waits`: the step cannot begin yet.
   Status begin(const Step& step, const Surroundings& at, bool& waits);
-  void key_events(const std::string& keys, bool repeat_text);
+  Status begin_press(const Step& step, bool& waits);  // click, press, move, drag
+  Status begin_wheel(const Step& step);
+  Status begin_set(const Step& step, bool& waits);
+  Status begin_await(const Step& step, const Surroundings& at, bool& waits);
+  Status begin_expect(const Step& step, bool& waits);
+  void begin_drop(const Step& step);  // drop, close
+  void pointer_events(const Step& step, const Manner& manner, Spot from, Spot to);
+  void key_events(const std::string& keys);
+  void text_events(const std::string& text);
 
   std::string file_;
   std::deque<Step> steps_;

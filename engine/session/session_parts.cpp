@@ -85,6 +85,24 @@ Status Session::Parts::prepare() {
 }
 
 Status Session::Parts::remake(std::vector<SessionEffector>& before) {
+  if (Status s = spawn_world(); !s) return s;
+  ticks = overruns = 0;
+  history = {};
+  history.begun = settings;
+  edits = std::make_unique<Ring<Edit>>(kMostEdits);
+  places.clear();
+  if (Status s = list_named(); !s) return s;
+  restore_parameters();
+  if (Status s = prepare_spawned(); !s) return s;
+  keep_parameters();
+  attach_runner();
+  size_views();
+  run = std::make_shared<int>();
+  if (Status s = give_back_sources(before); !s) return s;
+  return send_standing();
+}
+
+Status Session::Parts::spawn_world() {
   if (Status s = check_scene(scene.level()); !s) return s;
   if (!chosen) {
     begin_part(0.0, 0.4);
@@ -99,11 +117,10 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   if (!spawned) return spawned.error();
   runner.reset();
   world = std::move(spawned).value();
-  ticks = overruns = 0;
-  history = {};
-  history.begun = settings;
-  edits = std::make_unique<Ring<Edit>>(kMostEdits);
-  places.clear();
+  return Done{};
+}
+
+Status Session::Parts::list_named() {
   for (const Entity held : pliant::hands(world)) {
     SessionEffector made;
     made.name = name_of(world, held);
@@ -122,27 +139,37 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   std::vector<std::string> names;
   for (const SessionEffector& effector : effectors) names.push_back(effector.name);
   if (Status s = check_names(names, "probe or tool"); !s) return s;
-  if (Status s = check_names(objects, "object"); !s) return s;
+  return check_names(objects, "object");
+}
 
-  for (const auto& [name, surface] : surfaces)  // before a restart
+void Session::Parts::restore_parameters() {
+  for (const auto& [name, surface] : surfaces)
     static_cast<DeformableParameters&>(world.registry.get<Deformable>(*find_object(name))) = surface;
   for (const auto& [name, device] : devices)
     static_cast<DeviceParameters&>(world.registry.get<HapticDevice>(find_effector(name)->device)) = device;
   restore_bodies();
+}
+
+Status Session::Parts::prepare_spawned() {
   begin_part(0.7, 1.0);
   const std::vector<std::string> found = tissue_findings(world);
   if (Status s = prepare_world(world); !s) return s;
   for (std::string& sentence : tissue_findings(world))
     if (std::find(found.begin(), found.end(), sentence) == found.end()) notes.push_back(std::move(sentence));
   for (std::string& sentence : make_orbits(world)) notes.push_back(std::move(sentence));
+  return Done{};
+}
 
+void Session::Parts::keep_parameters() {
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (const Deformable* surface = world.registry.find<Deformable>(object_entities[i]))
       surfaces[objects[i]] = *surface;
   keep_bodies();
   for (const SessionEffector& effector : effectors)
     devices.emplace(effector.name, world.registry.get<HapticDevice>(effector.device));
+}
 
+void Session::Parts::attach_runner() {
   runner = std::make_unique<Runner>(world);
   TickPart own;
   own.before = [this](Tick tick) { this->before(tick); };
@@ -153,6 +180,9 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   after_pause = false;
   shown = true;
   time = 0.0;
+}
+
+void Session::Parts::size_views() {
   for (std::vector<EffectorRow>& slot : rows.slots()) slot.assign(effectors.size(), {});
   view.reset(world);
   shapes.clear();
@@ -160,7 +190,9 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   looked = 0;
   size_kept();
   taken_out.assign(objects.size(), 0);
-  run = std::make_shared<int>();
+}
+
+Status Session::Parts::give_back_sources(std::vector<SessionEffector>& before) {
   for (SessionEffector& old : before) {
     SessionEffector* const effector = find_effector(old.name);
     if (!effector || old.source == EffectorSource::kLevel || old.source == EffectorSource::kNone) continue;
@@ -174,7 +206,6 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
     effector->source = EffectorSource::kNone;
     if (Status s = give(*effector, old.source); !s) return s;
   }
-  if (Status s = send_standing(); !s) return s;
   return Done{};
 }
 

@@ -150,7 +150,16 @@ struct Session::Parts {
   ~Parts();
 
   Status prepare();  // scene -> world, all buffers sized
+  // The steps of prepare(); `before`: the effectors of the world before a restart.
   Status remake(std::vector<SessionEffector>& before);
+  Status spawn_world();
+  Status list_named();        // effectors and objects; a Session identifies them by name
+  void restore_parameters();  // before a restart, into the next world
+  Status prepare_spawned();
+  void keep_parameters();  // of a prepared world
+  void attach_runner();
+  void size_views();
+  Status give_back_sources(std::vector<SessionEffector>& before);
   void keep_bodies();     // of a prepared world
   void restore_bodies();  // before a restart, into the next world
   SessionEffector* find_effector(const std::string& name);

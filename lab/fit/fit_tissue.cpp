@@ -243,12 +243,57 @@ void take_keys(const TissueFit& fitted, double usual, DeformableParameters& surf
   surface.contact_radius = fitted.shape.contact;
 }
 
+// Presses places spread over the surface as deep as those in use: law and shape are fitted to them.
+Status press_places(const PressBodies& bodies, EachPlace& each_place, const FitOptions& options,
+                    std::vector<PressedPlace>& places, TissueFit& out) {
+  const Mesh& mesh = bodies.surface();
+  const double reach = options.reach > 0 ? options.reach : kUsualReach * out.radius;
+  out.deepest = kDeepestShare * reach;
+  const std::vector<std::uint8_t> free = bodies.is_free(mesh, reach);
+  out.left_out = static_cast<std::size_t>(std::count(free.begin(), free.end(), 0));
+  for (const PressPlace& place : scatter(mesh, options.points, 1, free)) places.push_back({place, 0.0, {}, {}});
+  if (const Status done = press_all(bodies, each_place, out.deepest, 0.2, places, mesh); !done) return done;
+  // Near an edge the surface law is not representative. Places there are used only if there are few others.
+  const auto inner = std::stable_partition(places.begin(), places.end(), [&](const PressedPlace& each) {
+    return each.presses.empty() || !is_near_an_edge(mesh, each.place, each.presses.back().depth);
+  });
+  if (inner - places.begin() >= kEnoughPlaces) places.erase(inner, places.end());
+  out.places = places.size();
+  return Done{};
+}
+
+// Compares finite elements and engine at the same held-out places.
+Status compare_unseen(const Level& level, std::int32_t number, const FitOptions& options, const PressBodies& bodies,
+                      EachPlace& each_place, const std::vector<Primitive>& primitives, TissueFit& out) {
+  const LevelNode& node = level.nodes[static_cast<std::size_t>(number)];
+  const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
+  Result<BuiltMesh> final_mesh = build_mesh(node.name, primitives, mat4(1.0f), {crease, dent_size(out.surface)});
+  if (!final_mesh) return final_mesh.error();
+  const Mesh& checked = final_mesh->mesh;
+  const Pose pose = object_frame(level, number).pose;
+  std::vector<PressedPlace> unseen;
+  for (const PressPlace& place : scatter(
+           checked, options.held, 2, bodies.is_free(checked, std::min(out.surface.reach, kUsualReach * out.radius))))
+    unseen.push_back({place, 0.0, {}, {}});
+  if (const Status done = press_all(bodies, each_place, out.deepest, 0.2, unseen, checked); !done) return done;
+  divide_forces(unseen, out.too_stiff);
+  auto model = press_surface(primitives, out.surface, checked, unseen);
+  if (!model) return model.error();
+  for (std::size_t i = 0; i < unseen.size(); ++i) {
+    HeldPlace& held = out.held.emplace_back();
+    held.side = side_of_normal(level, pose.rotation * unseen[i].place.normal);
+    held.truth = std::move(unseen[i]);
+    held.model = std::move((*model)[i]);
+    compare(held, bodies.surface(), out.radius);
+  }
+  return Done{};
+}
+
 // The whole fit, without file output.
 Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions& options, const Interrupt& interrupt) {
   Result<PressBodies> made = PressBodies::make(level, number, options);
   if (!made) return made.error();
   const PressBodies& bodies = *made;
-  const Mesh& mesh = bodies.surface();
   LevelNode& node = level.nodes[static_cast<std::size_t>(number)];
   TissueFit out;
   out.object = node.name;
@@ -268,20 +313,8 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
   if (const std::string doubt = locking_doubt(bodies.body(), out.tets); !doubt.empty())
     note("`" + node.name + "` " + doubt);
 
-  // Law and shape are fitted to presses as deep as those in use.
   std::vector<PressedPlace> places;
-  double reach = options.reach > 0 ? options.reach : kUsualReach * out.radius;
-  out.deepest = kDeepestShare * reach;
-  const std::vector<std::uint8_t> free = bodies.is_free(mesh, reach);
-  out.left_out = static_cast<std::size_t>(std::count(free.begin(), free.end(), 0));
-  for (const PressPlace& place : scatter(mesh, options.points, 1, free)) places.push_back({place, 0.0, {}, {}});
-  if (const Status done = press_all(bodies, each_place, out.deepest, 0.2, places, mesh); !done) return done.error();
-  // Near an edge the surface law is not representative. Places there are used only if there are few others.
-  const auto inner = std::stable_partition(places.begin(), places.end(), [&](const PressedPlace& each) {
-    return each.presses.empty() || !is_near_an_edge(mesh, each.place, each.presses.back().depth);
-  });
-  if (inner - places.begin() >= kEnoughPlaces) places.erase(inner, places.end());
-  out.places = places.size();
+  if (const Status done = press_places(bodies, each_place, options, places, out); !done) return done.error();
   if (!bodies.is_one())
     if (const Status done = extrapolate(bodies, each_place, places, out); !done) return done.error();
   divide_forces(places, out.too_stiff);
@@ -292,8 +325,7 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
     return Error{"--object " + node.name, "gave way without a resting place at every press; try a larger --radius"};
   if (node.deformable) out.surface = *node.deformable;
   take_keys(out, usual, out.surface);
-  reach = out.surface.reach;
-  out.deepest = std::min(out.deepest, kDeepestShare * reach);
+  out.deepest = std::min(out.deepest, kDeepestShare * out.surface.reach);
   std::vector<double> factor;
   for (const double k : map->at_vertex) factor.push_back(k / map->usual);
   const auto [softest, stiffest] = std::minmax_element(factor.begin(), factor.end());
@@ -303,27 +335,8 @@ Result<TissueFit> fit_object(Level& level, std::int32_t number, const FitOptions
   const std::vector<Primitive> primitives = painted_primitives(level.meshes[static_cast<std::size_t>(node.mesh)],
                                                                to_object, bodies.object().of_source, factor);
 
-  // Compares finite elements and engine at the same held-out places.
-  const double crease = node.deformable ? node.deformable->crease_angle : 0.0;
-  Result<BuiltMesh> final_mesh = build_mesh(node.name, primitives, mat4(1.0f), {crease, dent_size(out.surface)});
-  if (!final_mesh) return final_mesh.error();
-  const Mesh& checked = final_mesh->mesh;
-  const Pose pose = object_frame(level, number).pose;
-  std::vector<PressedPlace> unseen;
-  for (const PressPlace& place :
-       scatter(checked, options.held, 2, bodies.is_free(checked, std::min(reach, kUsualReach * out.radius))))
-    unseen.push_back({place, 0.0, {}, {}});
-  if (const Status done = press_all(bodies, each_place, out.deepest, 0.2, unseen, checked); !done) return done.error();
-  divide_forces(unseen, out.too_stiff);
-  auto model = press_surface(primitives, out.surface, checked, unseen);
-  if (!model) return model.error();
-  for (std::size_t i = 0; i < unseen.size(); ++i) {
-    HeldPlace& held = out.held.emplace_back();
-    held.side = side_of_normal(level, pose.rotation * unseen[i].place.normal);
-    held.truth = std::move(unseen[i]);
-    held.model = std::move((*model)[i]);
-    compare(held, mesh, out.radius);
-  }
+  if (const Status done = compare_unseen(level, number, options, bodies, each_place, primitives, out); !done)
+    return done.error();
 
   // Writes the fit into the level.
   LevelMesh& own = own_mesh(level, number);

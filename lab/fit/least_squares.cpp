@@ -43,44 +43,42 @@ struct Problem {
   }
 };
 
-}  // namespace
+// A parameter at a bound whose step would lead outwards is kept: its row of the normal equations is the identity.
+Eigen::VectorXd damped_step(const Problem& problem, const Eigen::VectorXd& p, const Eigen::MatrixXd& J,
+                            const Eigen::VectorXd& r, double damping) {
+  const Eigen::VectorXd gradient = J.transpose() * r;
+  Eigen::MatrixXd normal = J.transpose() * J;
+  Eigen::VectorXd right = -gradient;
+  for (Eigen::Index k = 0; k < problem.size(); ++k) {
+    const bool stuck =
+        (p[k] <= problem.at(k).low && gradient[k] > 0) || (p[k] >= problem.at(k).high && gradient[k] < 0);
+    if (!stuck) {
+      normal(k, k) *= 1 + damping;
+      continue;
+    }
+    normal.row(k).setZero();
+    normal.col(k).setZero();
+    normal(k, k) = 1.0;
+    right[k] = 0.0;
+  }
+  for (Eigen::Index k = 0; k < problem.size(); ++k)
+    if (!(normal(k, k) > 0)) normal(k, k) = 1.0;
+  return normal.ldlt().solve(right);
+}
 
-LeastSquares least_squares(const std::vector<FitParameter>& parameters, Eigen::Index count,
-                           const Residuals& residuals) {
-  const Problem problem{parameters, residuals, count};
+// Descends from out.p; returns the Jacobian where it ends.
+Eigen::MatrixXd descend(const Problem& problem, LeastSquares& out) {
   const Eigen::Index n = problem.size();
-  LeastSquares out;
-  out.p.resize(n);
-  for (Eigen::Index k = 0; k < n; ++k) out.p[k] = problem.clamped(problem.at(k).start, k);
-  Eigen::VectorXd r(count), tried(count);
-  residuals(out.p, r);
+  Eigen::VectorXd r(problem.count), tried(problem.count);
+  problem.residuals(out.p, r);
   out.sum = r.squaredNorm();
   double damping = 1e-3, growth = 2.0;
   Eigen::MatrixXd J = problem.jacobian(out.p);
-  std::vector<bool> stands(static_cast<std::size_t>(n));
   for (; out.iterations < kMostSteps && !out.converged; ++out.iterations) {
-    const Eigen::VectorXd gradient = J.transpose() * r;
-    Eigen::MatrixXd normal = J.transpose() * J;
-    Eigen::VectorXd right = -gradient;
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const bool stuck =
-          (out.p[k] <= problem.at(k).low && gradient[k] > 0) || (out.p[k] >= problem.at(k).high && gradient[k] < 0);
-      stands[static_cast<std::size_t>(k)] = stuck;
-      if (!stuck) {
-        normal(k, k) *= 1 + damping;
-        continue;
-      }
-      normal.row(k).setZero();
-      normal.col(k).setZero();
-      normal(k, k) = 1.0;
-      right[k] = 0.0;
-    }
-    for (Eigen::Index k = 0; k < n; ++k)
-      if (!(normal(k, k) > 0)) normal(k, k) = 1.0;
-    const Eigen::VectorXd step = normal.ldlt().solve(right);
+    const Eigen::VectorXd step = damped_step(problem, out.p, J, r, damping);
     Eigen::VectorXd p = out.p;
     for (Eigen::Index k = 0; k < n; ++k) p[k] = problem.clamped(p[k] + step[k] * problem.at(k).scale, k);
-    residuals(p, tried);
+    problem.residuals(p, tried);
     const double sum = tried.squaredNorm();
     if (std::isfinite(sum) && sum <= out.sum) {
       double moved = 0.0;
@@ -99,7 +97,12 @@ LeastSquares least_squares(const std::vector<FitParameter>& parameters, Eigen::I
       if (damping > 1e12) out.converged = true;  // no step reduces the sum: a minimum to rounding
     }
   }
+  return J;
+}
 
+// Fills on_bound, covariance and singular at out.p.
+void find_covariance(const Problem& problem, const Eigen::MatrixXd& J, LeastSquares& out) {
+  const Eigen::Index n = problem.size();
   out.on_bound.assign(static_cast<std::size_t>(n), false);
   std::vector<Eigen::Index> free;
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -111,13 +114,13 @@ LeastSquares least_squares(const std::vector<FitParameter>& parameters, Eigen::I
   }
   out.covariance = Eigen::MatrixXd::Zero(n, n);
   const auto m = static_cast<Eigen::Index>(free.size());
-  if (m == 0 || count <= m) return out;
+  if (m == 0 || problem.count <= m) return;
   Eigen::MatrixXd normal(m, m);
   Eigen::VectorXd size(m);
   for (Eigen::Index i = 0; i < m; ++i) size[i] = J.col(free[static_cast<std::size_t>(i)]).norm();
   if (!(size.minCoeff() > 0)) {
     out.singular = true;
-    return out;
+    return;
   }
   for (Eigen::Index i = 0; i < m; ++i)
     for (Eigen::Index k = 0; k < m; ++k)
@@ -125,15 +128,26 @@ LeastSquares least_squares(const std::vector<FitParameter>& parameters, Eigen::I
           J.col(free[static_cast<std::size_t>(i)]).dot(J.col(free[static_cast<std::size_t>(k)])) / (size[i] * size[k]);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
   out.singular = eigen.eigenvalues().minCoeff() < kFlattest;
-  if (out.singular) return out;
+  if (out.singular) return;
   const Eigen::MatrixXd inverse =
       eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
-  const double variance = out.sum / static_cast<double>(count - m);
+  const double variance = out.sum / static_cast<double>(problem.count - m);
   for (Eigen::Index i = 0; i < m; ++i)
     for (Eigen::Index k = 0; k < m; ++k) {
       const Eigen::Index a = free[static_cast<std::size_t>(i)], b = free[static_cast<std::size_t>(k)];
       out.covariance(a, b) = variance * inverse(i, k) / (size[i] * size[k]) * problem.at(a).scale * problem.at(b).scale;
     }
+}
+
+}  // namespace
+
+LeastSquares least_squares(const std::vector<FitParameter>& parameters, Eigen::Index count,
+                           const Residuals& residuals) {
+  const Problem problem{parameters, residuals, count};
+  LeastSquares out;
+  out.p.resize(problem.size());
+  for (Eigen::Index k = 0; k < problem.size(); ++k) out.p[k] = problem.clamped(problem.at(k).start, k);
+  find_covariance(problem, descend(problem, out), out);
   return out;
 }
 

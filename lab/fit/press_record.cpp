@@ -214,6 +214,45 @@ Status check(const PressRecord& record, const std::string& where) {
   return Done{};
 }
 
+// Appends one row.
+Status read_row(const Columns& columns, const std::vector<std::string>& cells, const std::string& where,
+                const std::string& here, bool with_friction, PressRecord& record) {
+  double value[kQuantities] = {};
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    if (!columns.at[q]) continue;
+    const std::string& cell = cells[columns.at[q] - 1];
+    if (!read_number(cell, columns.mark, value[q]))
+      return Error{here, fmt::format("its {} is '{}', which is no finite number{}; correct the row or leave it out",
+                                     quantity_words(q).what, printable(cell.substr(0, 40)),
+                                     cell.find(',') == std::string::npos
+                                         ? ""
+                                         : " (a decimal comma is read, marks between thousands are not)")};
+    value[q] *= columns.factor[q];
+  }
+  double component = 0.0;
+  for (const std::size_t axis : columns.torque)
+    if (axis && read_number(cells[axis - 1], columns.mark, component) && component != 0.0)
+      return of_tool(where, record.probe);
+  if (with_friction && columns.axis[0] && columns.axis[1] && columns.axis[2]) {
+    double square = 0.0;
+    for (const std::size_t axis : columns.axis) {
+      if (!read_number(cells[axis - 1], columns.mark, component))
+        return Error{here, "its force is no finite number; correct the row or leave it out"};
+      square += component * component;
+    }
+    value[kForce] = std::sqrt(square);
+  }
+  if (columns.at[kTime]) {
+    if (!record.time.empty() && !(value[kTime] > record.time.back()))
+      return Error{here, "its time does not grow from the row before; sort the rows and remove doubles"};
+    record.time.push_back(value[kTime]);
+  }
+  record.depth.push_back(value[kDepth]);
+  record.force.push_back(value[kForce]);
+  record.contact.push_back(columns.contact ? cells[*columns.contact] == "1" : value[kDepth] > 0);
+  return Done{};
+}
+
 }  // namespace
 
 Result<PressRecord> parse_press(std::string_view text, const std::string& where, const std::string& probe,
@@ -255,39 +294,7 @@ Result<PressRecord> parse_press(std::string_view text, const std::string& where,
       if (!probe.empty() && its != probe) continue;
       record.probe = its;
     }
-    double value[kQuantities] = {};
-    for (std::size_t q = 0; q < kQuantities; ++q) {
-      if (!columns->at[q]) continue;
-      const std::string& cell = cells[columns->at[q] - 1];
-      if (!read_number(cell, columns->mark, value[q]))
-        return Error{here, fmt::format("its {} is '{}', which is no finite number{}; correct the row or leave it out",
-                                       quantity_words(q).what, printable(cell.substr(0, 40)),
-                                       cell.find(',') == std::string::npos
-                                           ? ""
-                                           : " (a decimal comma is read, marks between thousands are not)")};
-      value[q] *= columns->factor[q];
-    }
-    double component = 0.0;
-    for (const std::size_t axis : columns->torque)
-      if (axis && read_number(cells[axis - 1], columns->mark, component) && component != 0.0)
-        return of_tool(where, record.probe);
-    if (with_friction && columns->axis[0] && columns->axis[1] && columns->axis[2]) {
-      double square = 0.0;
-      for (const std::size_t axis : columns->axis) {
-        if (!read_number(cells[axis - 1], columns->mark, component))
-          return Error{here, "its force is no finite number; correct the row or leave it out"};
-        square += component * component;
-      }
-      value[kForce] = std::sqrt(square);
-    }
-    if (columns->at[kTime]) {
-      if (!record.time.empty() && !(value[kTime] > record.time.back()))
-        return Error{here, "its time does not grow from the row before; sort the rows and remove doubles"};
-      record.time.push_back(value[kTime]);
-    }
-    record.depth.push_back(value[kDepth]);
-    record.force.push_back(value[kForce]);
-    record.contact.push_back(columns->contact ? cells[*columns->contact] == "1" : value[kDepth] > 0);
+    if (const Status read = read_row(*columns, cells, where, here, with_friction, record); !read) return read.error();
   }
   if (!columns) return Error{where, "is empty; a header such as time_s,depth_mm,force_N comes first, then rows"};
   if (!probe.empty() && !probes.contains(probe))

@@ -130,75 +130,85 @@ std::string spectra_csv(const std::vector<Drawn>& all) {
   return text;
 }
 
-void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
-  const RunWords words = run_words(all);
+// Extent of the drawn series.
+struct DrawnRange {
   double seconds = 0.0, depth = 0.0, force = 0.0, shallow = 0.0, dense = 0.0, lowest = 1e30, fastest = 0.0;
+};
+DrawnRange drawn_range(const std::vector<Drawn>& all, std::size_t shown) {
+  DrawnRange out;
   for (std::size_t i = 0; i < shown; ++i) {
     const Drawn& d = all[i];
-    seconds = std::max(seconds, d.series.time.back());
+    out.seconds = std::max(out.seconds, d.series.time.back());
     for (std::size_t k = 0; k < d.series.time.size(); ++k) {
       // Out of contact the depth is a distance from the surface: only rows in contact set the range.
-      if (d.series.normal[k] > 0) shallow = std::min(shallow, d.series.depth[k] * 1e3);
-      depth = std::max(depth, d.series.depth[k] * 1e3);
-      force = std::max(force, d.series.normal[k]);
+      if (d.series.normal[k] > 0) out.shallow = std::min(out.shallow, d.series.depth[k] * 1e3);
+      out.depth = std::max(out.depth, d.series.depth[k] * 1e3);
+      out.force = std::max(out.force, d.series.normal[k]);
     }
-    for (const double value : d.spectrum.density) dense = std::max(dense, value);
+    for (const double value : d.spectrum.density) out.dense = std::max(out.dense, value);
     if (!d.spectrum.frequency.empty()) {
-      lowest = std::min(lowest, d.spectrum.frequency.front());
-      fastest = std::max(fastest, d.spectrum.frequency.back());
+      out.lowest = std::min(out.lowest, d.spectrum.frequency.front());
+      out.fastest = std::max(out.fastest, d.spectrum.frequency.back());
     }
   }
-  pen.color(kInk);
-  const double title = pen.text(60, 44, 26, 0, "runs compared", true);
-  pen.text(60 + title + 18, 44, 16, 0,
-           shown < all.size() ? fmt::format("the first {} of {} {}; the table has all", shown, all.size(), words.who)
-                              : fmt::format("{} {}", all.size(), words.who));
-  std::vector<PanelKey> keys;
-  for (std::size_t i = 0; i < shown; ++i) keys.push_back({series_color(i), all[i].name});
-  draw_keys(pen, 60, 74, 1560, keys);
-  constexpr double kTop = 150, kHigh = 420;
-  const PlotPanel loop{100, kTop, 400, kHigh, range_of(shallow, depth, true), range_of(0, force, true)};
-  const PlotPanel over{625, kTop, 400, kHigh, range_of(0, seconds, true), range_of(0, force, true)};
+  return out;
+}
+
+struct RunPanels {
+  PlotPanel loop, over, spectrum;
+};
+constexpr double kPanelsTop = 150, kPanelsHigh = 420;
+
+RunPanels draw_panels(Pen& pen, const RunWords& words, const DrawnRange& range) {
+  const PlotPanel loop{
+      100, kPanelsTop, 400, kPanelsHigh, range_of(range.shallow, range.depth, true), range_of(0, range.force, true)};
+  const PlotPanel over{
+      625, kPanelsTop, 400, kPanelsHigh, range_of(0, range.seconds, true), range_of(0, range.force, true)};
   const PlotPanel spectrum{1170,
-                           kTop,
+                           kPanelsTop,
                            390,
-                           kHigh,
-                           log_range_of(lowest, fastest),
-                           log_range_of(std::max(dense * kLeastDensity, 1e-12), dense)};
+                           kPanelsHigh,
+                           log_range_of(range.lowest, range.fastest),
+                           log_range_of(std::max(range.dense * kLeastDensity, 1e-12), range.dense)};
   draw_axes(pen, loop, words.depth, words.force);
   draw_axes(pen, over, "time [s]", words.force);
-  if (dense > 0) draw_axes(pen, spectrum, "frequency [Hz]", words.spectrum);
+  if (range.dense > 0) draw_axes(pen, spectrum, "frequency [Hz]", words.spectrum);
   pen.color(kInk);
-  pen.text(loop.x, kTop - 14, 15, 0, words.loop, true);
-  pen.text(over.x, kTop - 14, 15, 0, "force over time", true);
-  pen.text(spectrum.x, kTop - 14, 15, 0, dense > 0 ? "spectrum" : "no spectrum: fewer than 64 rows, or no force", true);
-  for (std::size_t i = 0; i < shown; ++i) {
-    const ForceSeries& s = all[i].series;
-    std::vector<double> x, y, millimetres;
-    for (const double value : s.depth) millimetres.push_back(value * 1e3);
-    const std::size_t every = 1 + s.time.size() / kMostDrawnPoints;
-    for (std::size_t k = 0; k < s.time.size(); k += every) {
-      // Lines are interrupted out of contact: the path through the air is not part of the law.
-      const bool pressed = s.normal[k] > 0 || (k >= every && s.normal[k - every] > 0) ||
-                           (k + every < s.time.size() && s.normal[k + every] > 0);
-      x.push_back(pressed ? millimetres[k] : std::nan(""));
-      y.push_back(s.normal[k]);
-    }
-    draw_line(pen, loop, x, y, series_color(i), 1.8);
-    x.clear();
-    y.clear();
-    thin(s.time, s.normal, x, y);
-    draw_line(pen, over, x, y, series_color(i), 1.8);
-    draw_line(pen, spectrum, all[i].spectrum.frequency, all[i].spectrum.density, series_color(i), 1.2);
+  pen.text(loop.x, kPanelsTop - 14, 15, 0, words.loop, true);
+  pen.text(over.x, kPanelsTop - 14, 15, 0, "force over time", true);
+  pen.text(spectrum.x, kPanelsTop - 14, 15, 0,
+           range.dense > 0 ? "spectrum" : "no spectrum: fewer than 64 rows, or no force", true);
+  return {loop, over, spectrum};
+}
+
+void draw_series(Pen& pen, const RunPanels& panels, const Drawn& drawn, Color color) {
+  const ForceSeries& s = drawn.series;
+  std::vector<double> x, y, millimetres;
+  for (const double value : s.depth) millimetres.push_back(value * 1e3);
+  const std::size_t every = 1 + s.time.size() / kMostDrawnPoints;
+  for (std::size_t k = 0; k < s.time.size(); k += every) {
+    // Lines are interrupted out of contact: the path through the air is not part of the law.
+    const bool pressed = s.normal[k] > 0 || (k >= every && s.normal[k - every] > 0) ||
+                         (k + every < s.time.size() && s.normal[k + every] > 0);
+    x.push_back(pressed ? millimetres[k] : std::nan(""));
+    y.push_back(s.normal[k]);
   }
-  // The table.
-  double y = kTop + kHigh + 92;
+  draw_line(pen, panels.loop, x, y, color, 1.8);
+  x.clear();
+  y.clear();
+  thin(s.time, s.normal, x, y);
+  draw_line(pen, panels.over, x, y, color, 1.8);
+  draw_line(pen, panels.spectrum, drawn.spectrum.frequency, drawn.spectrum.density, color, 1.2);
+}
+
+void draw_table(Pen& pen, const std::vector<Drawn>& all, std::size_t shown, const std::string& depth_head) {
+  double y = kPanelsTop + kPanelsHigh + 92;
   constexpr double kFirst = 86, kColumn = 132;
   const double right = 1570;
   pen.color(kInk);
   for (std::size_t c = 0; c < std::size(kSummaryColumns); ++c)
     pen.text(right - kColumn * static_cast<double>(std::size(kSummaryColumns) - 1 - c), y, 13, 1.0,
-             kSummaryColumns[c].head ? kSummaryColumns[c].head : words.depth_head, true);
+             kSummaryColumns[c].head ? kSummaryColumns[c].head : depth_head, true);
   for (std::size_t i = 0; i < all.size() && i < 2 * kMostDrawn; ++i) {
     y += 22;
     if (i < shown) {
@@ -217,6 +227,21 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
   }
   if (all.size() > 2 * kMostDrawn)
     pen.text(kFirst, y + 22, 13, 0, fmt::format("... and {} more in summary.csv", all.size() - 2 * kMostDrawn));
+}
+
+void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
+  const RunWords words = run_words(all);
+  pen.color(kInk);
+  const double title = pen.text(60, 44, 26, 0, "runs compared", true);
+  pen.text(60 + title + 18, 44, 16, 0,
+           shown < all.size() ? fmt::format("the first {} of {} {}; the table has all", shown, all.size(), words.who)
+                              : fmt::format("{} {}", all.size(), words.who));
+  std::vector<PanelKey> keys;
+  for (std::size_t i = 0; i < shown; ++i) keys.push_back({series_color(i), all[i].name});
+  draw_keys(pen, 60, 74, 1560, keys);
+  const RunPanels panels = draw_panels(pen, words, drawn_range(all, shown));
+  for (std::size_t i = 0; i < shown; ++i) draw_series(pen, panels, all[i], series_color(i));
+  draw_table(pen, all, shown, words.depth_head);
 }
 
 void say_differences(const std::vector<Drawn>& all) {

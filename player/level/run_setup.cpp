@@ -16,9 +16,9 @@
 #include "content/safety_cap.h"
 #include "engine/choice/model_choice.h"
 #include "engine/run/driver_limits.h"
-#include "engine/run/scene_hash.h"
 #include "engine/run/sources.h"
 #include "lab/files/content_folder.h"
+#include "player/level/run_replay.h"
 #include "player/run/unfelt.h"
 #include "systems/device/hands.h"
 #include "systems/device/repeat.h"
@@ -33,20 +33,6 @@ namespace {
 constexpr const char* kNeedsWindow =
     "needs a window, and none is open; set DISPLAY and leave out --headless and --lockstep, or use orbit";
 constexpr const char *kUnitSetting = "--unit=", *kErrorSetting = "--error=";  // in a recording's settings
-
-// Checks that the recording belongs to this level: same name, rate and probes.
-Outcome check_replay(const Recording& replay, const RunOptions& options, const World& world) {
-  if (replay.header.level != world.name)
-    return failed({options.replay, "was recorded on level '" + replay.header.level + "'; run it on that level"});
-  std::vector<std::string> names;
-  for (const Entity hand : hands(world)) {
-    const Name* name = world.registry.find<Name>(hand);
-    names.push_back(name ? name->value : std::string());
-  }
-  if (names != replay.header.probes)
-    return failed({options.replay, "was recorded with other probes than the level has; record it again"});
-  return {};
-}
 
 // The default probe of a window: without --probe and without a mouse probe in the level, the mouse gets one. Not if
 // there is a tool, which the mouse carries instead (window/carrier.h).
@@ -287,35 +273,9 @@ void say_locking(Prepared& run) {
   if (!sentence.empty()) say(run, sentence);
 }
 
-}  // namespace
-
-void say(Prepared& run, const std::string& sentence) {
-  note(sentence);
-  run.notes.push_back(sentence);
-}
-
-Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
-  if (!options.replay.empty()) {
-    auto recording = read_recording(options.replay);
-    if (!recording) return failed(recording.error());
-    run.replay = std::move(recording).value();
-    const auto changes =
-        std::count_if(run.replay->events.begin(), run.replay->events.end(),
-                      [](const RecordedEvent& event) { return event.kind != EventKind::kNewSource || event.tick > 0; });
-    if (changes > 0)
-      say(run, fmt::format(
-                   "{} holds {} changes that a program made in its run (parameters, forces, pushes, places, sources), "
-                   "which are not repeated here: forces will differ; Session::replay repeats them",
-                   options.replay, changes));
-  }
-  const auto file = find_level(options.level);
-  if (!file) return failed(file.error());
-  auto loaded = load_level(*file);
-  if (!loaded) return failed(loaded.error());
-  Level& level = *loaded;
-  run.file = *file;
-  std::vector<std::string> notes = level.notes;
-
+// The level as the run uses it: unit, probes, limits, settings, budget, models.
+Outcome prepare_level(const RunOptions& options, bool windowed, Level& level, std::vector<ProbeSource>& sources,
+                      Prepared& run) {
   const bool bare = !level.has_pliant();
   const Result<double> unit = choose_unit(options, level, run);
   if (!unit) return wrong_arguments(unit.error());
@@ -325,7 +285,6 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
     if (const std::string hint = unit_hint(bounds(level)); !hint.empty()) say(run, hint);
   }
   if (!run.replay) hold_back_requests(options, level, run);
-  std::vector<ProbeSource> sources;
   if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
   SafetyCap cap;
   if (options.max_force > 0.0) cap.max_force = options.max_force;
@@ -339,14 +298,11 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   const auto choices = choose_models(level);
   if (!choices) return failed(choices.error());
   for (const ModelChoice& choice : *choices) say(run, choice.sentence());
+  return {};
+}
 
-  run.scene = scene_hash(level);
-  if (run.replay && run.replay->header.scene == 0)
-    say(run, options.replay + kUnknownScene);
-  else if (run.replay && run.replay->header.scene != run.scene)
-    say(run,
-        "the level is not as it was when the recording was made (its files, or --set, --unit, --error or --tool-force "
-        "of this run): forces will differ");
+Outcome make_world(const RunOptions& options, bool windowed, Level& level, std::vector<std::string> notes,
+                   const std::vector<ProbeSource>& sources, Prepared& run) {
   auto spawned = spawn_moving_images(level, &notes);
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();
@@ -369,15 +325,30 @@ Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
   if (const auto unfelt = unfelt_bodies(run.world)) say(run, *unfelt);
   say_creeping(run);
   say_locking(run);
-  if (run.replay) {
-    if (const Status status = apply_driver_settings(run.world, run.replay->header.settings); !status)
-      return failed({options.replay, "its setting " + status.error().message()});
-    if (Outcome wrong = check_replay(*run.replay, options, run.world)) return wrong;
-    if (run.replay->header.rate != run.world.simulation.touch_rate)
-      return wrong_arguments(
-          {"--rate", fmt::format("the recording was made at {} Hz; leave it out", run.replay->header.rate)});
-  }
   return {};
+}
+
+}  // namespace
+
+void say(Prepared& run, const std::string& sentence) {
+  note(sentence);
+  run.notes.push_back(sentence);
+}
+
+Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {
+  if (!options.replay.empty())
+    if (Outcome wrong = load_replay(options, run)) return wrong;
+  const auto file = find_level(options.level);
+  if (!file) return failed(file.error());
+  auto level = load_level(*file);
+  if (!level) return failed(level.error());
+  run.file = *file;
+  std::vector<std::string> notes = level->notes;
+  std::vector<ProbeSource> sources;
+  if (Outcome wrong = prepare_level(options, windowed, *level, sources, run)) return wrong;
+  compare_scene(options, *level, run);
+  if (Outcome wrong = make_world(options, windowed, *level, std::move(notes), sources, run)) return wrong;
+  return run.replay ? apply_replay(options, run) : Outcome{};
 }
 
 }  // namespace pliant

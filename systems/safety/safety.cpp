@@ -162,6 +162,83 @@ void count(SafetyTally& tally, SafetyLimit limit, double missing, double size) {
   if (missing > kCountedForce && missing > kCountedShare * size) tally.add(limit, std::min(1.0, missing / size));
 }
 
+// The force that may be felt, and the part of it that is the weight.
+struct Share {
+  dvec3 force{0}, weight{0};
+};
+
+// kNone for a device that is not ready: that is no event, but its state is unknown all the same.
+SafetyEvent fault_of(const HapticDevice& device, const SafetyLimits& limits, dvec3 wanted, dvec3 position, double now) {
+  if (!finite(wanted) || !finite(limits.weight) || !finite(limits.carried) || !plausible_position(position) ||
+      !plausible_position(position / limits.scale))
+    return SafetyEvent::kNonFinite;
+  return device.status == DeviceStatus::kReady && stale(device, now) ? SafetyEvent::kStale : SafetyEvent::kNone;
+}
+
+// Unknown state: zero force at once, and the gate must be passed again. The work account is kept, but for what is
+// stored in the contact.
+void let_go(SafetyState& state) {
+  const double sent = length(state.force - state.weight);
+  forfeit(state, given_beyond(state.touched, 0.0, sent, sent));
+  state.engaged = false;
+  state.placed = false;
+  state.eased = 1.0;
+  state.kept_back = 0.0;
+  state.force = state.weight = state.wanted = state.own = dvec3(0);
+}
+
+// The gate: no force until the wanted one is small. Beyond it, the force within the limit.
+Share engage(SafetyState& state, const SafetyLimits& limits, dvec3 wanted, bool jumped, double dt) {
+  const bool gated = !state.engaged;
+  const double before = gated ? 0.0 : state.most, most_now = limit_now(state, limits, dt);
+  if (gated && !jumped) {
+    state.hidden = length(wanted - limits.weight) < length(wanted) ? 1.0 : 0.0;
+    state.engaged = length(wanted - state.hidden * limits.weight) < kEngageForce;
+  }
+  const dvec3 felt = wanted - state.hidden * limits.weight;
+  if (!state.engaged) {
+    count(state.tally, SafetyLimit::kGated, length(felt), length(felt));
+    return {};
+  }
+  const Share share{clamp_norm(felt, most_now), clamp_norm((1.0 - state.hidden) * limits.weight, most_now)};
+  const double whole = length(felt - (1.0 - state.hidden) * limits.weight);
+  state.work -= given_beyond(limits.touched, before, most_now, whole);
+  forfeit(state, given_beyond(limits.touched, most_now, before, whole));
+  state.hidden = std::max(0.0, state.hidden - dt / kWeightTime);
+  if (length(felt) > most_now * (1 + 1e-9)) state.tally.add(SafetyLimit::kClipped, 1.0 - most_now / length(felt));
+  return share;
+}
+
+// After missed ticks, a share of the force that grows to 1.
+Share eased(SafetyState& state, Share share, double dt) {
+  count(state.tally, SafetyLimit::kSlewed, (1.0 - state.eased) * length(share.force), length(share.force));
+  share.force *= state.eased;
+  share.weight *= state.eased;
+  state.eased = std::min(1.0, state.eased + state.easing * dt);
+  return share;
+}
+
+// From the last force towards `passive`: within the limits of slew and, as it grows, of stiffness.
+dvec3 slew(const SafetyState& state, const SafetyLimits& limits, dvec3 passive, dvec3 weight, dvec3 dx, double missed,
+           double dt) {
+  double most = limits.slew * dt;
+  dvec3 rendered = passive;
+  if (limits.stiffness > 0) {
+    // What comes in of a weight is no answer to displacement.
+    const double other = length(weight - state.weight) + limits.own_rise;
+    if (length(passive) > length(state.force)) most = std::min(most, limits.stiffness * length(dx) + other);
+    if (state.own == dvec3(0)) rendered = no_stiffer(state, limits.stiffness, passive, weight, dx);
+  }
+  dvec3 last = state.force;
+  if (missed > 0.0) {  // what is let go has had the time
+    last = let_fall(state.force, rendered, std::max(limits.fall, limits.slew) * (missed + dt));
+  } else if (limits.fall > limits.slew) {
+    last = let_fall(state.force, rendered, limits.fall * dt);
+    most = std::min(most, limits.fall * dt - length(state.force - last));  // what comes in has the rest
+  }
+  return last + clamp_norm(rendered - last, most);
+}
+
 }  // namespace
 
 bool jumps(const SafetyState& state, const HapticDevice& device, const SafetyLimits& limits, dvec3 position,
@@ -229,84 +306,34 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
   state.tally.now = 0;
   const double missed = missed_before(state, now, dt);
   const dvec3 at = position / limits.scale;
-  if (!finite(wanted) || !finite(limits.weight) || !finite(limits.carried) || !plausible_position(position) ||
-      !plausible_position(at)) {
-    result.event = SafetyEvent::kNonFinite;
-  } else if (device.status != DeviceStatus::kReady || stale(device, now)) {
-    result.event = device.status == DeviceStatus::kReady ? SafetyEvent::kStale : SafetyEvent::kNone;
-  } else {
-    const bool jumped = limits.jumped || jumps(state, device, limits, position, dt);
-    dvec3 dx = state.placed && !jumped ? at - state.position - limits.carried / limits.scale : dvec3(0);
-    if (jumped) {
-      result.event = SafetyEvent::kJumped;
-      state.engaged = false;
-    }
-    const bool gated = !state.engaged;
-    const double before = gated ? 0.0 : state.most, most_now = limit_now(state, limits, dt);
-    if (gated && !jumped) {
-      state.hidden = length(wanted - limits.weight) < length(wanted) ? 1.0 : 0.0;
-      state.engaged = length(wanted - state.hidden * limits.weight) < kEngageForce;
-    }
-    const dvec3 felt = wanted - state.hidden * limits.weight;
-    dvec3 force(0), weight(0);
-    if (state.engaged) {
-      force = clamp_norm(felt, most_now);
-      weight = clamp_norm((1.0 - state.hidden) * limits.weight, most_now);
-      const double whole = length(felt - (1.0 - state.hidden) * limits.weight);
-      state.work -= given_beyond(limits.touched, before, most_now, whole);
-      forfeit(state, given_beyond(limits.touched, most_now, before, whole));
-      state.hidden = std::max(0.0, state.hidden - dt / kWeightTime);
-      if (length(felt) > most_now * (1 + 1e-9)) state.tally.add(SafetyLimit::kClipped, 1.0 - most_now / length(felt));
-    } else {
-      count(state.tally, SafetyLimit::kGated, length(felt), length(felt));
-    }
-    if (missed > 0.0) ease_in(state, force, weight, dx, missed, limits.ease, dt);
-    if (state.eased < 1.0) {
-      count(state.tally, SafetyLimit::kSlewed, (1.0 - state.eased) * length(force), length(force));
-      force *= state.eased;
-      weight *= state.eased;
-      state.eased = std::min(1.0, state.eased + state.easing * dt);
-    }
-    const dvec3 passive = damp_excess(state, limits, force, weight, dx, dt);
-    const dvec3 change = force - weight - state.wanted;
-    state.wanted = force - weight;
-    count(state.tally, SafetyLimit::kWithheld, length(force - passive), length(force));
-    double most = limits.slew * dt;
-    dvec3 rendered = passive;
-    if (limits.stiffness > 0) {
-      // What comes in of a weight is no answer to displacement.
-      const double other = length(weight - state.weight) + limits.own_rise;
-      if (length(passive) > length(state.force)) most = std::min(most, limits.stiffness * length(dx) + other);
-      if (state.own == dvec3(0)) rendered = no_stiffer(state, limits.stiffness, passive, weight, dx);
-    }
-    dvec3 last = state.force;
-    if (missed > 0.0) {  // what is let go has had the time
-      last = let_fall(state.force, rendered, std::max(limits.fall, limits.slew) * (missed + dt));
-    } else if (limits.fall > limits.slew) {
-      last = let_fall(state.force, rendered, limits.fall * dt);
-      most = std::min(most, limits.fall * dt - length(state.force - last));  // what comes in has the rest
-    }
-    force = last + clamp_norm(rendered - last, most);
-    count(state.tally, SafetyLimit::kSlewed, length(passive - force), std::max(length(passive), length(force)));
-    book(state, force, weight, dx, change);
-    result.force = force;
-    state.position = at;
-    state.sensed_at = device.sensed_at;
-    state.placed = true;
-    state.touched = limits.touched;
-    state.force = result.force;
-    state.weight = weight;
+  result.event = fault_of(device, limits, wanted, position, now);
+  if (result.event != SafetyEvent::kNone || device.status != DeviceStatus::kReady) {
+    let_go(state);
     return result;
   }
-  // Unknown state: zero force at once, and the gate must be passed again. The work account is kept, but for what is
-  // stored in the contact.
-  const double sent = length(state.force - state.weight);
-  forfeit(state, given_beyond(state.touched, 0.0, sent, sent));
-  state.engaged = false;
-  state.placed = false;
-  state.eased = 1.0;
-  state.kept_back = 0.0;
-  state.force = state.weight = state.wanted = state.own = dvec3(0);
+  const bool jumped = limits.jumped || jumps(state, device, limits, position, dt);
+  dvec3 dx = state.placed && !jumped ? at - state.position - limits.carried / limits.scale : dvec3(0);
+  if (jumped) {
+    result.event = SafetyEvent::kJumped;
+    state.engaged = false;
+  }
+  Share felt = engage(state, limits, wanted, jumped, dt);
+  if (missed > 0.0) ease_in(state, felt.force, felt.weight, dx, missed, limits.ease, dt);
+  if (state.eased < 1.0) felt = eased(state, felt, dt);
+  const dvec3 passive = damp_excess(state, limits, felt.force, felt.weight, dx, dt);
+  const dvec3 change = felt.force - felt.weight - state.wanted;
+  state.wanted = felt.force - felt.weight;
+  count(state.tally, SafetyLimit::kWithheld, length(felt.force - passive), length(felt.force));
+  result.force = slew(state, limits, passive, felt.weight, dx, missed, dt);
+  count(state.tally, SafetyLimit::kSlewed, length(passive - result.force),
+        std::max(length(passive), length(result.force)));
+  book(state, result.force, felt.weight, dx, change);
+  state.position = at;
+  state.sensed_at = device.sensed_at;
+  state.placed = true;
+  state.touched = limits.touched;
+  state.force = result.force;
+  state.weight = felt.weight;
   return result;
 }
 

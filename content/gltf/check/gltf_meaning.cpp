@@ -236,13 +236,6 @@ void check_skins(const Json& json, const std::vector<std::int32_t>& parent, Mean
 
 }  // namespace
 
-void Meaning::error(std::string pointer, std::string message) {
-  if (findings_.size() < 1000) findings_.push_back({Severity::kError, std::move(pointer), std::move(message)});
-}
-void Meaning::warn(std::string pointer, std::string message) {
-  if (findings_.size() < 1000) findings_.push_back({Severity::kWarning, std::move(pointer), std::move(message)});
-}
-
 void Meaning::use(std::size_t accessor, BufferUse use, const std::string& pointer) {
   const auto found = accessor_use_.emplace(accessor, use);
   if (!found.second && found.first->second != use) error(pointer, "is an accessor that already serves another end");

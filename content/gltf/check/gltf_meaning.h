@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "content/gltf/check/finding_list.h"
 #include "content/gltf/form/gltf_document.h"
 
 namespace pliant {
@@ -13,18 +14,15 @@ namespace pliant {
 // Times and values of animations may share a bufferView, but not an accessor.
 enum class BufferUse { kVertices, kIndices, kMatrices, kImage, kTimes, kValues };
 
-class Meaning {
+class Meaning : public FindingList {
  public:
-  Meaning(const Json& json, Findings& findings) : json_(json), findings_(findings) {}
-  void error(std::string pointer, std::string message);
-  void warn(std::string pointer, std::string message);
+  Meaning(const Json& json, Findings& findings) : FindingList(findings), json_(json) {}
   // Records this use of an accessor and its bufferView; an error if another use was recorded before.
   void use(std::size_t accessor, BufferUse use, const std::string& pointer);
   void use_view(std::size_t view, BufferUse use, const std::string& pointer);
 
  private:
   const Json& json_;
-  Findings& findings_;
   std::map<std::size_t, BufferUse> accessor_use_, view_use_;
 };
 

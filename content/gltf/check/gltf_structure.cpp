@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
 #include <set>
 #include <sstream>
 
+#include "content/gltf/check/finding_list.h"
 #include "content/gltf/check/gltf_check.h"
-#include "content/gltf/check/gltf_specification.h"
+#include "content/gltf/check/gltf_rules.h"
 #include "content/keys/json_integer.h"
 
 namespace pliant {
@@ -16,78 +16,10 @@ namespace {
 
 constexpr const char* kPliant = "PLIANT_";
 
-struct ByteRange {
-  double min = -INFINITY, max = INFINITY;
-  bool open = false;  // min itself is excluded
-  std::string text;
-  bool holds(double value) const { return (open ? value > min : value >= min) && value <= max; }
-};
-
-struct Rule {
-  std::string key, kind, argument;
-  bool required = false;
-  std::vector<std::string> list;
-  std::size_t count = 0;
-  bool or_more = false;
-  ByteRange range;
-};
-
-ByteRange parse_range(const std::string& text) {
-  ByteRange range;
-  range.text = text;
-  const std::size_t dots = text.find("..");
-  std::string low = text.substr(0, dots), high = text.substr(dots + 2);
-  if (!low.empty() && low[0] == '>') {
-    range.open = true;
-    low.erase(0, 1);
-  }
-  if (!low.empty()) range.min = std::strtod(low.c_str(), nullptr);
-  if (!high.empty()) range.max = std::strtod(high.c_str(), nullptr);
-  return range;
-}
-
-struct Table {
-  std::map<std::string, std::vector<Rule>> rules;                        // by object
-  std::map<std::string, std::map<std::string, std::string>> extensions;  // by object: name -> type
-  std::set<std::string> known_extensions;
-
-  Table() {
-    std::istringstream lines(kSpecification);
-    std::string line;
-    while (std::getline(lines, line)) {
-      std::istringstream words(line);
-      std::string object, extra;
-      Rule rule;
-      if (!(words >> object >> rule.key >> rule.kind)) continue;
-      words >> rule.argument >> extra;
-      if (rule.kind == "ext") {
-        extensions[object][rule.key] = rule.argument;
-        known_extensions.insert(rule.key);
-        continue;
-      }
-      if (rule.key.back() == '!') {
-        rule.required = true;
-        rule.key.pop_back();
-      }
-      if (rule.kind == "string" || rule.kind == "ints") {
-        std::istringstream list(rule.argument);
-        for (std::string item; std::getline(list, item, '|');) rule.list.push_back(item);
-      }
-      if (rule.kind == "int" || rule.kind == "number") rule.range = parse_range(rule.argument);
-      if (rule.kind == "numbers") {
-        rule.range = parse_range(extra);
-        rule.count = std::strtoul(rule.argument.c_str(), nullptr, 10);
-        rule.or_more = rule.argument.back() == '+';
-      }
-      rules[object].push_back(rule);
-    }
-  }
-};
-
-class Structure {
+class Structure : FindingList {
  public:
   bool mended() const { return mended_; }  // an integer was written as 1.0
-  Structure(const Json& root, Findings& findings) : root_(root), findings_(findings) {
+  Structure(const Json& root, Findings& findings) : FindingList(findings), root_(root) {
     if (root.is_object() && array_of(root, "extensionsUsed").is_array())
       for (const Json& name : array_of(root, "extensionsUsed"))
         if (name.is_string()) used_.insert(name.get<std::string>());
@@ -95,8 +27,8 @@ class Structure {
 
   void check_object(Json& json, const std::string& type, const std::string& pointer) {
     if (!json.is_object()) return mismatch(pointer, json, "an object");
-    if (const auto rules = table().rules.find(type); rules != table().rules.end())
-      for (const Rule& rule : rules->second) {
+    if (const auto rules = gltf_rules().rules.find(type); rules != gltf_rules().rules.end())
+      for (const GltfRule& rule : rules->second) {
         auto member = json.find(rule.key);
         if (member != json.end())
           check_member(*member, rule, pointer + "/" + rule.key);
@@ -116,16 +48,6 @@ class Structure {
       error(pointer, "has " + beyond(limits::kName, static_cast<double>(size), "shorten it"));
   }
 
-  static const Table& table() {
-    static const Table table;
-    return table;
-  }
-  void error(const std::string& pointer, std::string message) {
-    if (findings_.size() < 1000) findings_.push_back({Severity::kError, pointer, std::move(message)});
-  }
-  void warn(const std::string& pointer, std::string message) {
-    if (findings_.size() < 1000) findings_.push_back({Severity::kWarning, pointer, std::move(message)});
-  }
   static std::string shown(const Json& json) {
     if (json.is_array()) return "an array";
     if (json.is_object()) return "an object";
@@ -133,24 +55,6 @@ class Structure {
   }
   void mismatch(const std::string& pointer, const Json& json, const std::string& wanted) {
     error(pointer, fmt::format("is {}, not {}", shown(json), wanted));
-  }
-
-  // "on a node", in the specification's terms.
-  static std::string place(const std::string& type) {
-    if (type == "root") return "at the top level";
-    const bool vowel = std::string("aeiou").find(type[0]) != std::string::npos;
-    return fmt::format("on a{} {}", vowel ? "n" : "", type);
-  }
-  // The objects that the table allows it on, as a remedy.
-  static std::string right_place(const std::string& name, const std::string& type) {
-    std::string places;
-    for (const auto& [object, names] : table().extensions)
-      if (names.count(name)) places += (places.empty() ? "" : " or ") + place(object);
-    std::string out = "it stands " + places;
-    if (places == "on a node" && (type == "mesh" || type == "primitive")) out += ": move it to the one with this mesh";
-    if (places == "on a node" && type == "root") out += ": move it to the one that it is about";
-    if (places == "on a scene") out += ": move it to the one that is shown";
-    return out;
   }
 
   // PLIANT_* members outside of extensions are ignored by readers: report them.
@@ -176,17 +80,18 @@ class Structure {
       }
       if (!used_.count(name)) error(here, "is not declared; add '" + name + "' to extensionsUsed");
       std::string content = "any";
-      if (table().known_extensions.count(name)) {
-        const auto allowed = table().extensions.find(type);
-        const auto found = allowed == table().extensions.end() ? std::map<std::string, std::string>::const_iterator{}
-                                                               : allowed->second.find(name);
-        if (allowed == table().extensions.end() || found == allowed->second.end()) {
-          error(here, fmt::format("has no meaning {}; {}", place(type), right_place(name, type)));
+      if (gltf_rules().known_extensions.count(name)) {
+        const auto allowed = gltf_rules().extensions.find(type);
+        const auto found = allowed == gltf_rules().extensions.end()
+                               ? std::map<std::string, std::string>::const_iterator{}
+                               : allowed->second.find(name);
+        if (allowed == gltf_rules().extensions.end() || found == allowed->second.end()) {
+          error(here, fmt::format("has no meaning {}; {}", place_of(type), right_place(name, type)));
           continue;
         }
         content = found->second;
       } else if (name.rfind(kPliant, 0) == 0 && type != "node" && type != "scene") {
-        error(here, fmt::format("has no meaning {}; PLIANT extensions stand on nodes and scenes", place(type)));
+        error(here, fmt::format("has no meaning {}; PLIANT extensions stand on nodes and scenes", place_of(type)));
         continue;
       }
       if (content != "any") check_object(json, content, here);
@@ -222,7 +127,7 @@ class Structure {
     if (json.is_number_unsigned() ? json.get<std::uint64_t>() >= count : true)
       error(pointer, fmt::format("refers to element {} of {}, which has {}", json.dump(), collection, count));
   }
-  void check_number(const Json& json, const ByteRange& range, const std::string& pointer) {
+  void check_number(const Json& json, const ValueRange& range, const std::string& pointer) {
     if (!json.is_number()) return mismatch(pointer, json, "a number");
     const double value = json.get<double>();
     // Values are stored in single precision: a larger number would become infinite.
@@ -241,7 +146,7 @@ class Structure {
     }
   }
 
-  void check_member(Json& json, const Rule& rule, const std::string& pointer) {
+  void check_member(Json& json, const GltfRule& rule, const std::string& pointer) {
     const auto nested = [&](Json& element, const std::string& here) { check_object(element, rule.argument, here); };
     const auto index = [&](Json& element, const std::string& here) { check_index(element, rule.argument, here); };
     const auto map = [&](Json& element, const std::string& here) { check_map(element, rule.argument, here); };
@@ -280,14 +185,13 @@ class Structure {
         check_list(json.dump(), rule, pointer);
     }
   }
-  void check_list(const std::string& value, const Rule& rule, const std::string& pointer) {
+  void check_list(const std::string& value, const GltfRule& rule, const std::string& pointer) {
     for (const std::string& each : rule.list)
       if (each == value) return;
     warn(pointer, fmt::format("must be one of {}; got '{}'", fmt::join(rule.list, ", "), value.substr(0, 40)));
   }
 
   const Json& root_;
-  Findings& findings_;
   std::set<std::string> used_;  // extensionsUsed
   bool mended_ = false;
 };

@@ -30,6 +30,10 @@ void merge_lights_and_cameras(Merge& merge);
 void merge_scenes(Merge& merge);
 void merge_animations(Merge& merge);
 
+// Appends the meshes of which `meshes_anew` is set (by Level mesh), and the materials, images and animations that are
+// not in the document. `made`: the number of each such mesh in /meshes, else -1.
+Status append_parts(Merge& merge, const std::vector<bool>& meshes_anew, std::vector<std::int32_t>& made);
+
 // Whether the Level's animation equals that of the document, except for channels of removed nodes.
 bool is_as_read(const Merge& merge, std::size_t animation);
 

@@ -1,14 +1,12 @@
 // merge_document: meshes. Changed paint is written into the document's primitives. Meshes of changed shape are
-// rewritten. A skin is kept if it still gives the shape in the Level.
-#include <fmt/format.h>
-
+// rewritten.
 #include <algorithm>
 #include <map>
 
 #include "content/gltf/form/gltf_accessor.h"
 #include "content/gltf/form/gltf_append.h"
 #include "content/gltf/write/gltf_merge.h"
-#include "content/gltf/write/gltf_save.h"
+#include "content/gltf/write/gltf_merge_skins.h"
 
 namespace pliant {
 
@@ -29,44 +27,6 @@ bool same_shape(const MeshAsRead& a, const MeshAsRead& b) {
   return std::equal(a.primitives.begin(), a.primitives.end(), b.primitives.begin(), b.primitives.end(), same);
 }
 
-// Whether a node's joints have kept their place relative to it, within rounding, so that its skin gives the same shape.
-class SkinsAtRest {
- public:
-  explicit SkinsAtRest(const Merge& merge) : merge_(merge) {
-    if (!merge.document.json.contains("skins")) return;
-    const std::vector<LevelNode>& read = merge.level.source->nodes_as_read;
-    then_.resize(read.size());
-    now_.resize(read.size());
-    const std::vector<dmat4> before = world_matrices(read), after = world_matrices(merge.level.nodes);
-    for (std::size_t i = 0; i < read.size(); ++i) then_[static_cast<std::size_t>(read[i].source)] = before[i];
-    for (std::size_t i = 0; i < merge.from.size(); ++i)
-      if (merge.from[i] >= 0) now_[static_cast<std::size_t>(merge.from[i])] = after[i];
-  }
-  bool is(std::int32_t node) const {
-    const Json& json = merge_.level.source->json;
-    const std::size_t at = static_cast<std::size_t>(node);
-    const Json& skin = json["skins"][json["nodes"][at]["skin"].get<std::size_t>()];
-    for (const Json& number : skin["joints"]) {
-      const std::size_t joint = number.get<std::size_t>();
-      if (merge_.node_now[joint] < 0) return false;
-      if (now_[joint] == then_[joint] && now_[at] == then_[at]) continue;
-      const dmat4 then = glm::inverse(then_[at]) * then_[joint], now = glm::inverse(now_[at]) * now_[joint];
-      double largest = 0.0, change = 0.0;
-      for (int c = 0; c < 4; ++c)
-        for (int r = 0; r < 4; ++r) {
-          largest = std::max(largest, std::abs(then[c][r]));
-          change = std::max(change, std::abs(then[c][r] - now[c][r]));
-        }
-      if (!(change <= 1e-5 * largest)) return false;
-    }
-    return true;
-  }
-
- private:
-  const Merge& merge_;
-  std::vector<dmat4> then_, now_;  // node to world, by number as read
-};
-
 class MeshMerge {
  public:
   explicit MeshMerge(Merge& merge) : merge_(merge), json_(merge.document.json), skins_(merge) {}
@@ -74,8 +34,8 @@ class MeshMerge {
   Status all() {
     find_uses();
     if (const Status status = variants(); !status) return status;
-    if (const Status status = append(); !status) return status;
-    skins();
+    if (const Status status = append_parts(merge_, anew_, made_); !status) return status;
+    skin_now_ = merge_skins(merge_);
     nodes();
     return Done{};
   }
@@ -180,35 +140,6 @@ class MeshMerge {
     return Done{};
   }
 
-  // Appends meshes, materials, images and animations that are not in the document, with build_document.
-  Status append();
-  // The texture of the Level's image `i`.
-  std::size_t texture_of(std::size_t image);
-  void point_textures(Json& material);
-
-  // Removes skins that have lost a joint.
-  void skins() {
-    if (!json_.contains("skins")) return;
-    std::vector<bool> stays;
-    for (Json& skin : json_["skins"]) {
-      bool whole = true;
-      for (Json& joint : skin["joints"]) {
-        joint = merge_.node_now[joint.get<std::size_t>()];
-        whole = whole && joint >= 0;
-      }
-      if (skin.contains("skeleton")) {
-        const std::int32_t root = merge_.node_now[skin["skeleton"].get<std::size_t>()];
-        if (root >= 0)
-          skin["skeleton"] = root;
-        else
-          skin.erase("skeleton");
-      }
-      stays.push_back(whole);
-    }
-    skin_now_ = numbers_of_kept(stays);
-    keep_elements(json_, "skins", skin_now_);
-  }
-
   void nodes() {
     for (std::size_t n = 0; n < merge_.level.nodes.size(); ++n) {
       Json& object = merge_.object(n);
@@ -244,84 +175,6 @@ class MeshMerge {
   std::vector<std::int32_t> number_, made_;    // number in /meshes of the kept one; of the new one
   std::vector<std::int32_t> skin_now_;         // /skins/i as read -> now
 };
-
-// Adds an offset to object[key] if present.
-void shift(Json& object, const char* key, std::size_t by) {
-  if (object.contains(key)) object[key] = object[key].get<std::size_t>() + by;
-}
-
-Status MeshMerge::append() {
-  LevelParts parts;
-  parts.first_material = array_of(json_, "materials").size();
-  parts.first_image = array_of(json_, "images").size();
-  for (std::size_t m = 0; m < anew_.size(); ++m)
-    if (anew_[m]) parts.meshes.push_back(m);
-  for (std::size_t a = 0; a < merge_.level.animations.size(); ++a)
-    if (!is_as_read(merge_, a)) parts.animations.push_back(a);
-  made_.assign(anew_.size(), -1);
-  const bool any = !parts.meshes.empty() || !parts.animations.empty() ||
-                   parts.first_material < merge_.level.materials.size() ||
-                   parts.first_image < merge_.level.images.size();
-  if (!any) return Done{};
-  Result<BuiltParts> built = build_parts(merge_.level, parts);
-  if (!built) return built.error();
-  Json& add = built->document.json;
-  const std::size_t accessors = array_of(json_, "accessors").size(), views = array_of(json_, "bufferViews").size(),
-                    buffers = array_of(json_, "buffers").size(), meshes = array_of(json_, "meshes").size();
-  const auto append_all = [&](const char* key, const auto& change) {
-    if (!add.contains(key)) return;
-    for (Json& each : add[key]) {
-      change(each);
-      json_[key].push_back(std::move(each));
-    }
-  };
-  append_all("buffers", [](Json&) {});
-  for (Bytes& bytes : built->document.buffers) merge_.document.buffers.push_back(std::move(bytes));
-  append_all("bufferViews", [&](Json& view) { shift(view, "buffer", buffers); });
-  append_all("accessors", [&](Json& accessor) { shift(accessor, "bufferView", views); });
-  append_all("images", [&](Json& image) { shift(image, "bufferView", views); });
-  merge_.document.images.resize(array_of(json_, "images").size());
-  append_all("materials", [&](Json& material) { point_textures(material); });
-  append_all("meshes", [&](Json& mesh) {
-    for (Json& primitive : mesh["primitives"]) {
-      shift(primitive, "indices", accessors);
-      for (Json& number : primitive["attributes"]) number = number.get<std::size_t>() + accessors;
-    }
-  });
-  append_all("animations", [&](Json& animation) {
-    for (Json& sampler : animation["samplers"])
-      for (const char* key : {"input", "output"}) shift(sampler, key, accessors);
-    for (Json& channel : animation["channels"]) {
-      Json& node = channel["target"]["node"];
-      node = merge_.number[node.get<std::size_t>()];
-    }
-  });
-  for (const Json& name : array_of(add, "extensionsUsed")) declare_extension(json_, name.get<std::string>(), false);
-  for (std::size_t k = 0; k < parts.meshes.size(); ++k)
-    if (const std::int32_t number = built->mesh_number[k]; number >= 0)
-      made_[parts.meshes[k]] = static_cast<std::int32_t>(meshes) + number;
-  return Done{};
-}
-
-std::size_t MeshMerge::texture_of(std::size_t image) {
-  const Json& textures = array_of(json_, "textures");
-  for (std::size_t t = 0; t < textures.size(); ++t)
-    if (textures[t].contains("source") && textures[t]["source"] == image) return t;
-  json_["textures"].push_back({{"source", image}});
-  return json_["textures"].size() - 1;
-}
-
-// build_document numbers textures by their images.
-void MeshMerge::point_textures(Json& json) {
-  if (!json.is_object()) return;
-  for (auto& [key, value] : json.items()) {
-    const bool slot = key == "height_texture" || (key.size() > 7 && key.compare(key.size() - 7, 7, "Texture") == 0);
-    if (slot && value.is_object() && value.contains("index"))
-      value["index"] = texture_of(value["index"].get<std::size_t>());
-    else
-      point_textures(value);
-  }
-}
 
 }  // namespace
 

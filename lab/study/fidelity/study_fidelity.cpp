@@ -11,34 +11,17 @@
 #include "content/keys/enum_words.h"
 #include "content/keys/extensions.h"
 #include "lab/console/progress.h"
+#include "lab/study/fidelity/fidelity_truth.h"
 #include "lab/study/studies.h"
 
 namespace pliant {
 namespace {
 
 constexpr double kLatticeSeconds = 0.15;  // [s] per press on the small block: the damping decays in a tenth of it
-constexpr double kFieldAround = 5.0;      // [1] radii within which surfaces are compared
 constexpr SpringLaw kFidelityLaws[] = {SpringLaw::kCubic, SpringLaw::kExponential, SpringLaw::kStandardLinearSolid};
 
 double largest(double a, double b) {
   return std::max(a, b);
-}
-
-// The shape of a law's force over the depth d [m]: F = k g(d). `shape`: k3 / k, or alpha.
-double law_shape(SpringLaw law, double shape, double d) {
-  switch (law) {
-    case SpringLaw::kCubic:
-      return d + shape * d * d * d;
-    case SpringLaw::kExponential:
-      return std::expm1(shape * d) / shape;
-    default:
-      return d;
-  }
-}
-
-double law_force(const DeformableParameters& law, double d) {
-  const double shape = law.spring == SpringLaw::kCubic ? law.cubic / law.stiffness : law.stiffening;
-  return law.stiffness * law_shape(law.spring, shape, d);
 }
 
 // One model's row in three tables: by the larger error, by the force's, by the surface's.
@@ -91,16 +74,6 @@ Indented small_block() {
   return what;
 }
 
-// A press at one depth, on finer and finer grids, and the limit.
-struct DepthTruth {
-  double depth = 0.0;               // [m]
-  std::vector<double> force;        // [N] per grid
-  GridLimit limit;                  // of the force
-  double sure = 0.0;                // [1] relative change of the limit by the last grid; NaN with three grids
-  std::vector<PressTruth> surface;  // per grid
-  PressTruth limit_surface() const { return limit_truth(surface[surface.size() - 2], surface.back(), limit); }
-};
-
 class Fidelity {
  public:
   Fidelity(StudySize size, const Interrupt& interrupt)
@@ -136,48 +109,13 @@ class Fidelity {
     return Done{};
   }
 
-  // The limit at each of the depths, ascending.
-  Result<std::vector<DepthTruth>> limits_of(const Indented& what, std::vector<double> depths,
-                                            std::vector<std::vector<PressedBlock>>& all, double from, double part) {
-    std::vector<DepthTruth> out(depths.size());
-    // Run time grows with nearly the sixth power of the cells.
-    double done = 0.0, whole = 0.0;
-    for (const int n : plan_.cells) whole += std::pow(n, 6);
-    for (const int n : plan_.cells) {
-      const double own = std::pow(n, 6) / whole;
-      auto pressed = press_block(what.block(n), depths, [&](double share) {
-        progress_.update(from + part * (done + own * share));
-        return !interrupt_.requested();
-      });
-      if (!pressed) return pressed.error();
-      done += own;
-      for (std::size_t d = 0; d < depths.size(); ++d) {
-        out[d].force.push_back((*pressed)[d].force);
-        out[d].surface.push_back(block_truth("block", what.radius, (*pressed)[d]));
-      }
-      all.push_back(std::move(*pressed));
-    }
-    for (std::size_t d = 0; d < depths.size(); ++d) {
-      out[d].depth = depths[d];
-      out[d].limit = grid_limit(plan_.cells, out[d].force);
-      out[d].sure = std::numeric_limits<double>::quiet_NaN();
-      if (plan_.cells.size() > 3)
-        out[d].sure = std::abs(
-            grid_limit({plan_.cells.begin(), plan_.cells.end() - 1}, {out[d].force.begin(), out[d].force.end() - 1})
-                    .limit /
-                out[d].limit.limit -
-            1);
-    }
-    return out;
-  }
-
   Status find_truth() {
     std::vector<double> depths = what_.depths;
     depths.insert(depths.end(), what_.fit_depths.begin(), what_.fit_depths.end());
     depths.push_back(what_.radius / 100);  // small strains
     std::sort(depths.begin(), depths.end());
-    std::vector<std::vector<PressedBlock>> all;
-    auto truths = limits_of(what_, depths, all, 0.0, 0.6);
+    GridPresses all;
+    auto truths = limits_of(what_, plan_.cells, depths, all, interrupt_, progress_, 0.0, 0.6);
     if (!truths) return truths.error();
     const auto at = [&](double depth) -> const DepthTruth& {
       return *std::find_if(truths->begin(), truths->end(), [&](const DepthTruth& t) { return t.depth == depth; });
@@ -197,24 +135,8 @@ class Fidelity {
         "{:.2g} % in its surface",
         plan_.cells.size() > 3 ? fmt::format(" (known to {:.2g} %)", 100 * at(what_.depths.back()).sure) : "",
         rows_.back().tets, 100 * rows_.back().force, 100 * rows_.back().surface);
-    put_truth(*truths, all);
+    truth_csv_ = pliant::truth_csv(plan_.cells, *truths, all);
     return Done{};
-  }
-
-  void put_truth(const std::vector<DepthTruth>& truths, const std::vector<std::vector<PressedBlock>>& all) {
-    truth_csv_ = "depth_m,cells,tetrahedra,force_N,secant_over_small_strain,order,limit_changed_by\n";
-    const double small = truths.front().limit.limit / truths.front().depth;
-    for (const DepthTruth& truth : truths) {
-      for (std::size_t i = 0; i < all.size(); ++i)
-        truth_csv_ +=
-            fmt::format("{:.6g},{},{},{:.9g},{:.6g},,\n", truth.depth, plan_.cells[i], all[i].front().tets,
-                        truth.force[i], truth.force[i] / truth.depth * truths.front().depth / truths.front().force[i]);
-      truth_csv_ += fmt::format("{:.6g},limit,,{:.9g},{:.6g}", truth.depth, truth.limit.limit,
-                                truth.limit.limit / truth.depth / small);
-      for (const double value : {truth.limit.order, truth.sure})
-        truth_csv_ += std::isfinite(value) ? fmt::format(",{:.3g}", value) : ",";
-      truth_csv_ += '\n';
-    }
   }
 
   Status add_surface(const std::string& group, const std::string& label, const DeformableParameters& parameters,
@@ -285,8 +207,8 @@ class Fidelity {
   // Lattice resolution that a contact needs.
   Status press_lattices() {
     const Indented what = small_block();
-    std::vector<std::vector<PressedBlock>> all;
-    const auto truths = limits_of(what, what.depths, all, 0.75, 0.05);
+    GridPresses all;
+    const auto truths = limits_of(what, plan_.cells, what.depths, all, interrupt_, progress_, 0.75, 0.05);
     if (!truths) return truths.error();
     Indentation truth;
     truth.force = {truths->back().limit.limit};
@@ -387,56 +309,6 @@ std::vector<std::string> sentences(const Fidelity& study) {
 }
 
 }  // namespace
-
-double force_error(const Indentation& model, const Indentation& truth) {
-  double off = 0.0, size = 0.0;
-  for (std::size_t i = 0; i < truth.force.size(); ++i) {
-    off += (model.force[i] - truth.force[i]) * (model.force[i] - truth.force[i]);
-    size += truth.force[i] * truth.force[i];
-  }
-  return std::sqrt(off / size);
-}
-
-double surface_error(const Indentation& model, const PressTruth& truth) {
-  double off = 0.0, size = 0.0;
-  for (const auto& [r, share] : model.surface) {
-    if (r > kFieldAround * truth.inner) continue;
-    const double u = truth.share(r);
-    off += (share - u) * (share - u);
-    size += u * u;
-  }
-  return std::sqrt(off / size);
-}
-
-DeformableParameters fitted_law(DeformableParameters law, const std::vector<double>& depths,
-                                const std::vector<double>& force) {
-  // The force is linear in k: F = k g(d). The shape of g, k3/k or alpha, is searched in a list; k follows by least
-  // squares.
-  const double unit = 1 / depths.back();
-  double least_row = 1e300;
-  for (int i = 0; i <= 121; ++i) {
-    // [1] times the deepest depth; only the exponential law may be negative (softening).
-    const double stiffening = (i % 2 ? -1 : 1) * 1e-3 * std::pow(10.0, i / 2 / 15.0);
-    if (stiffening < 0 && law.spring != SpringLaw::kExponential) continue;
-    const double shape = law.spring == SpringLaw::kCubic ? stiffening * unit * unit : stiffening * unit;
-    double up = 0.0, down = 0.0, off = 0.0;
-    for (std::size_t k = 0; k < depths.size(); ++k) {
-      const double x = law_shape(law.spring, shape, depths[k]);
-      up += x * force[k], down += x * x;
-    }
-    for (std::size_t k = 0; k < depths.size(); ++k) {
-      const double e = up / down * law_shape(law.spring, shape, depths[k]) - force[k];
-      off += e * e;
-    }
-    if (!(off < least_row)) continue;
-    least_row = off;
-    law.stiffness = up / down;
-    if (law.spring == SpringLaw::kCubic) law.cubic = shape * law.stiffness;
-    if (law.spring == SpringLaw::kExponential) law.stiffening = shape;
-    if (law.spring == SpringLaw::kLinear) break;
-  }
-  return law;
-}
 
 Status study_fidelity(OutputFolder& out, StudySize size, const Interrupt& interrupt) {
   Fidelity study(size, interrupt);

@@ -50,6 +50,9 @@ Indentation as_indentation(const std::vector<PressedBlock>& blocks, const std::v
 double force_error(const Indentation& model, const Indentation& truth);
 double surface_error(const Indentation& model, const PressTruth& truth);
 
+// [N] A law's force at the depth d [m].
+double law_force(const DeformableParameters& law, double d);
+
 // The law's parameters by least squares of the force [N] at these depths [m]; damping and times are kept.
 DeformableParameters fitted_law(DeformableParameters law, const std::vector<double>& depths,
                                 const std::vector<double>& force);

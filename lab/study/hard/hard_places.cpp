@@ -8,6 +8,7 @@
 #include <random>
 
 #include "lab/study/hard/hard_case.h"
+#include "lab/study/hard/hard_solids.h"
 #include "scenes/touch_laws.h"
 #include "scenes/touch_raw.h"
 
@@ -83,72 +84,11 @@ HardFigure from_vertex_to_vertex(const HardSetting&) {
   return worst;
 }
 
-// A solid with flat sides, and the closed form of its point closest to a place outside.
-struct Solid {
-  const char* name;
-  Primitive surface;
-  dvec3 corner, out;                    // [m] corner that probes move around; [1] its axis
-  std::function<dvec3(dvec3)> closest;  // in closed form
-};
-
-constexpr double kHalf = 0.04;  // [m] half of a box's side; distance of an octahedron's corners
-
-Solid box() {
-  const dvec3 low(-kHalf, -2 * kHalf, -kHalf), high(kHalf, 0, kHalf);
-  return {"box", scenes::slab(4, 2 * kHalf, 2 * kHalf), high, normalize(dvec3(1)),
-          [=](dvec3 x) { return glm::clamp(x, low, high); }};
-}
-
-Primitive octahedron(double size) {
-  Primitive p;
-  for (const double s : {size, -size})
-    for (int k = 0; k < 3; ++k) {
-      dvec3 corner(0);
-      corner[k] = s;
-      p.position.push_back(vec3(corner));
-    }
-  for (std::uint32_t i = 0; i < 8; ++i) {
-    const std::uint32_t x = i & 1 ? 3 : 0, y = i & 2 ? 4 : 1, z = i & 4 ? 5 : 2;
-    const bool even = ((i & 1) + (i >> 1 & 1) + (i >> 2)) % 2 == 0;
-    for (const std::uint32_t v : {x, even ? y : z, even ? z : y}) p.index.push_back(v);
-  }
-  return p;
-}
-
-// |x| + |y| + |z| <= kHalf: projection onto the simplex in the point's octant.
-Solid octahedron() {
-  return {"octahedron", octahedron(kHalf), {0, kHalf, 0}, {0, 1, 0}, [](dvec3 x) {
-            std::array<double, 3> sorted{std::abs(x.x), std::abs(x.y), std::abs(x.z)};
-            std::sort(sorted.rbegin(), sorted.rend());
-            double sum = 0.0, level = 0.0;
-            for (int n = 1; n <= 3; ++n) {
-              sum += sorted[static_cast<std::size_t>(n - 1)];
-              if (const double next = (sum - kHalf) / n; sorted[static_cast<std::size_t>(n - 1)] > next) level = next;
-            }
-            return glm::sign(x) * glm::max(glm::abs(x) - dvec3(level), dvec3(0));
-          }};
-}
-
-// A cone about the y axis with its tip at the origin, pointing up.
-Primitive cone(int sides, double radius, double height) {
-  Primitive p;
-  p.position = {vec3(0), vec3(0, -static_cast<float>(height), 0)};
-  for (int i = 0; i < sides; ++i) {
-    const double a = 2 * M_PI * i / sides;
-    p.position.push_back(vec3(dvec3(radius * std::sin(a), -height, radius * std::cos(a))));
-  }
-  for (int i = 0; i < sides; ++i) {
-    const auto a = static_cast<std::uint32_t>(2 + i), b = static_cast<std::uint32_t>(2 + (i + 1) % sides);
-    for (const std::uint32_t v : {0u, a, b, 1u, b, a}) p.index.push_back(v);
-  }
-  return p;
-}
-
 // A sphere moves over a corner and the edges and sides around it, 3 mm deep: its force is that of its distance.
 HardFigure over_corners(const HardSetting&) {
   HardFigure worst;
   constexpr double kRadius = 0.008;
-  for (const Solid& solid : {box(), octahedron()}) {
+  for (const Solid& solid : {box_solid(), octahedron_solid()}) {
     Stage stage;
     const Deformable d = frictionless();
     stage.add(solid.surface, d);
@@ -199,14 +139,16 @@ HardFigure by_energy(const HardSetting&) {
     dvec3 from;
     std::function<dvec3(double, double, double)> at;  // of three numbers in [0, 1]
   };
-  const dvec3 tip(0, kHalf, 0);
+  const dvec3 tip(0, kHalfSolid, 0);
   const std::array<Under, 5> places{{
       {"a point under a box's corner",
-       box().surface,
+       box_solid().surface,
        0,
-       {kHalf - 0.004, 0.005, kHalf - 0.004},
-       [](double a, double b, double c) { return dvec3(kHalf, 0, kHalf) - dvec3(0.001) - 0.006 * dvec3(a, b, c); }},
-      {"a point under an octahedron's corner", octahedron().surface, 0, tip + dvec3(0.001, 0.005, 0.0005),
+       {kHalfSolid - 0.004, 0.005, kHalfSolid - 0.004},
+       [](double a, double b, double c) {
+         return dvec3(kHalfSolid, 0, kHalfSolid) - dvec3(0.001) - 0.006 * dvec3(a, b, c);
+       }},
+      {"a point under an octahedron's corner", octahedron_solid().surface, 0, tip + dvec3(0.001, 0.005, 0.0005),
        [=](double a, double b, double c) {
          const double y = 0.002 + 0.006 * a;
          return tip + y * dvec3(0.45 * (2 * b - 1), -1, 0.45 * (2 * c - 1));

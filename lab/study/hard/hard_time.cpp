@@ -203,10 +203,82 @@ constexpr int kTries = 5;
 
 enum class RealRun : std::uint8_t { kJudged, kLateElsewhere };
 
+// What happened around a stall.
+struct StallSeen {
+  bool held = false, fell = true, shut = true, back = false, left = false, missed = false;
+  bool stopped = false;
+  std::uint64_t begin = 0;  // [ns]
+  std::atomic<int> late{0};
+};
+
+// Starts the clocks. The hand presses, the touch clock is blocked for kStall, the hand presses on and leaves. With a
+// servo it leaves and comes back before that, because the force has ended.
+Status play_stall(Session& session, RealHand& hand, double stiffness, bool servo, StallSeen& seen) {
+  std::atomic<bool> stall{false};
+  std::atomic<std::uint64_t> stalled{0};  // [tick]
+  std::uint64_t before = 0;
+  SessionInside::of(session).noted = [&](Tick tick) {
+    if (before > 0 && 1e3 * static_cast<double>(tick.index - before) * tick.dt > kLate && stalled != before)
+      ++seen.late;
+    before = tick.index;
+    if (!stall.exchange(false)) return;
+    stalled = tick.index;
+    std::this_thread::sleep_for(std::chrono::duration<double>(kStall));
+  };
+  const auto force_is = [&](double depth) {
+    return within(3.0, [&] { return std::abs(hand.force - stiffness * depth) < 1e-3; });
+  };
+  const auto let_go = [&] { return within(3.0, [&] { return hand.force == 0.0; }); };
+  const Status started = session.start();
+  hand.target = -0.004;
+  seen.held = force_is(0.004);
+  hand.target = -0.006;
+  seen.begin = now_ns();
+  stall = true;
+  seen.held = within(1.0, [&] { return stalled > 0; }) && seen.held;
+  if (servo) seen.fell = let_go();
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  if (servo) {
+    seen.shut = hand.force == 0.0;
+    hand.target = 0.002;
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    hand.target = -0.006;
+  }
+  seen.back = force_is(0.006);
+  hand.target = 0.002;
+  seen.left = let_go();
+  seen.stopped = session.stop().ok();
+  seen.missed = session.figures().overruns >= 40;
+  for (std::size_t i = 1; servo && i < hand.writes.size(); ++i)
+    seen.late += 1e-6 * static_cast<double>(hand.writes[i].ns - hand.writes[i - 1].ns) > kLate;
+  return started;
+}
+
+// With a servo, no force is sent once the last tick's model is no longer valid (kModelHolds).
+void judge_servo(const std::vector<RealHand::Write>& writes, std::uint64_t begin, const std::string& where,
+                 HardFigure& worst) {
+  for (const RealHand::Write& write : writes) worst.need(std::isfinite(length(write.force)), where + ": a number");
+  for (const RealHand::Write& write : writes) {
+    const double since = 1e-9 * (static_cast<double>(write.ns) - static_cast<double>(begin));
+    if (since > 0.02 && since < 0.2) worst.need(write.force == dvec3(0), where + ": a force that nobody renews");
+  }
+}
+
+void judge_ticks(const std::vector<RealHand::Write>& writes, double slew, const std::string& where, HardFigure& worst) {
+  Sent sent(worst, slew, 1e-3);
+  std::uint64_t before = 0;
+  for (const RealHand::Write& write : writes) {
+    if (before > 0 && 1e-9 * static_cast<double>(write.ns - before) > kForceHolds) sent.let_go();
+    before = write.ns;
+    sent.add(write.force, where);
+  }
+}
+
 // The clocks of a session run; the touch clock is blocked for 50 ms. Without a servo the first tick after it continues.
 // With a servo the device is released as soon as the model is old, and its force must end too.
 RealRun real_stall(HardFigure& worst, double rate) {
-  const std::string where = rate > 0 ? "servo" : "no servo";
+  const bool servo = rate > 0;
+  const std::string where = servo ? "servo" : "no servo";
   RealHand hand;  // outlives the session, which writes zero at its end
   hand.rate = rate;
   Scene scene;
@@ -216,74 +288,24 @@ RealRun real_stall(HardFigure& worst, double rate) {
   DeviceParameters limits;
   limits.max_slew = 200;
   scene.add_probe("finger", {}, limits);
+  StallSeen seen;  // outlives the session's clocks
   auto session = Session::open(scene);
   worst.need(session.ok(), where + ": it does not open");
   if (!session) return RealRun::kJudged;
   worst.need(session->connect("finger", std::make_unique<RealDevice>(hand)).ok(), where + ": it does not connect");
-
-  std::atomic<bool> stall{false};
-  std::atomic<std::uint64_t> stalled{0};  // [tick]
-  std::atomic<int> late{0};
-  std::uint64_t before = 0;
-  SessionInside::of(*session).noted = [&](Tick tick) {
-    if (before > 0 && 1e3 * static_cast<double>(tick.index - before) * tick.dt > kLate && stalled != before) ++late;
-    before = tick.index;
-    if (!stall.exchange(false)) return;
-    stalled = tick.index;
-    std::this_thread::sleep_for(std::chrono::duration<double>(kStall));
-  };
-  const auto force_is = [&](double depth) {
-    return within(3.0, [&] { return std::abs(hand.force - surface.stiffness * depth) < 1e-3; });
-  };
-  const auto let_go = [&] { return within(3.0, [&] { return hand.force == 0.0; }); };
-  bool held = true;
-  worst.need(session->start().ok(), where + ": it does not start");
-  hand.target = -0.004;
-  held = force_is(0.004);
-  hand.target = -0.006;
-  const std::uint64_t begin = now_ns();
-  stall = true;
-  held = within(1.0, [&] { return stalled > 0; }) && held;
-  const bool fell = rate > 0 ? let_go() : true;
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  const bool shut = rate > 0 ? hand.force == 0.0 : true;
-  if (rate > 0) {
-    hand.target = 0.002;
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    hand.target = -0.006;
-  }
-  const bool back = force_is(0.006);
-  hand.target = 0.002;
-  const bool left = let_go();
-  const Status stopped = session->stop();
-  const bool missed = session->figures().overruns >= 40;
-  for (std::size_t i = 1; rate > 0 && i < hand.writes.size(); ++i)
-    late += 1e-6 * static_cast<double>(hand.writes[i].ns - hand.writes[i - 1].ns) > kLate;
-  if (late > 0) return RealRun::kLateElsewhere;  // delayed by the machine itself
-  worst.need(stopped.ok(), where + ": it does not stop");
-  worst.need(held, where + ": the law before it");
-  worst.need(missed, where + ": there was no stall");
-  worst.need(fell, where + ": the force stays while nobody renews it");
-  worst.need(shut, where + ": the force comes back by itself");
-  worst.need(back, where + ": not back to the law");
-  worst.need(left, where + ": a force in free space");
-  if (rate > 0) {
-    for (const RealHand::Write& write : hand.writes)
-      worst.need(std::isfinite(length(write.force)), where + ": a number");
-    // The last tick's model is valid for kModelHolds; after that no force is sent.
-    for (const RealHand::Write& write : hand.writes) {
-      const double since = 1e-9 * (static_cast<double>(write.ns) - static_cast<double>(begin));
-      if (since > 0.02 && since < 0.2) worst.need(write.force == dvec3(0), where + ": a force that nobody renews");
-    }
-  } else {
-    Sent sent(worst, limits.max_slew, 1e-3);
-    std::uint64_t before_it = 0;
-    for (const RealHand::Write& write : hand.writes) {
-      if (before_it > 0 && 1e-9 * static_cast<double>(write.ns - before_it) > kForceHolds) sent.let_go();
-      before_it = write.ns;
-      sent.add(write.force, where);
-    }
-  }
+  worst.need(play_stall(*session, hand, surface.stiffness, servo, seen).ok(), where + ": it does not start");
+  if (seen.late > 0) return RealRun::kLateElsewhere;  // delayed by the machine itself
+  worst.need(seen.stopped, where + ": it does not stop");
+  worst.need(seen.held, where + ": the law before it");
+  worst.need(seen.missed, where + ": there was no stall");
+  worst.need(seen.fell, where + ": the force stays while nobody renews it");
+  worst.need(seen.shut, where + ": the force comes back by itself");
+  worst.need(seen.back, where + ": not back to the law");
+  worst.need(seen.left, where + ": a force in free space");
+  if (servo)
+    judge_servo(hand.writes, seen.begin, where, worst);
+  else
+    judge_ticks(hand.writes, limits.max_slew, where, worst);
   worst.need(!hand.writes.empty() && hand.writes.back().force == dvec3(0), where + ": the last force is not zero");
   return RealRun::kJudged;
 }

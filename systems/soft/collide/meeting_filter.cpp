@@ -16,11 +16,23 @@ constexpr double kDeepens = 2.0;  // [1] largest penetration that can develop in
 constexpr double kComing = 1e-3;  // [margins] in a step: a slower vertex rests in a sheet rather than entering it
 constexpr double kGraze = 0.3;    // [margins] smaller crossings are left to the next step
 
-struct MeetingFilter {
+// What every filter of a pair's meetings uses.
+struct PairFilter {
   const PairView& pair;
   std::vector<Found>& out;
-  Crossings crossings{};  // of the missed contacts
 
+  // Whether a feature that is pushed along `push` by an edge of a sheet is in front of it.
+  bool meets_front(dvec3 front, dvec3 push, const Meeting& m, bool met) const {
+    const double along = dot(front, push);
+    return along >= 0.0 && (m.gap >= 0.0 || met || (along > kFacing && enters(m)));
+  }
+  // A sheet has no inside. A feature behind it without history that moves in was placed there, or passed in beside
+  // others; one that moves out came from behind.
+  bool enters(const Meeting& m) const { return m.gap >= -pair.margin && m.end_gap < m.gap - kComing * pair.margin; }
+};
+
+// Contacts of the beginning of a step.
+struct MeetingFilter : PairFilter {
   void take_edges(const MeetingSide& a, std::uint32_t edge_a, const MeetingSide& b, std::uint32_t edge_b,
                   const Meeting& m) {
     const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
@@ -44,15 +56,6 @@ struct MeetingFilter {
   bool leads_out(const MeetingSide& a, const MeetingSide& b, const Meeting& m) const {
     return dot(a.index < b.index ? pair.way : -pair.way, m.normal) > kSameMeetingSide;
   }
-
-  // Whether a feature that is pushed along `push` by an edge of a sheet is in front of it.
-  bool meets_front(dvec3 front, dvec3 push, const Meeting& m, bool met) const {
-    const double along = dot(front, push);
-    return along >= 0.0 && (m.gap >= 0.0 || met || (along > kFacing && enters(m)));
-  }
-  // A sheet has no inside. A feature behind it without history that moves in was placed there, or passed in beside
-  // others; one that moves out came from behind.
-  bool enters(const Meeting& m) const { return m.gap >= -pair.margin && m.end_gap < m.gap - kComing * pair.margin; }
 
   // Meetings of every vertex of body a with body b. In front, a vertex touches every triangle that it meets. Behind, it
   // touches the one that it came from: on the side of the last step, or without one the nearest, if it really is
@@ -146,15 +149,19 @@ struct MeetingFilter {
     const vec3 n = cross(mesh.position(c.y) - mesh.position(c.x), mesh.position(c.z) - mesh.position(c.x));
     return dot(n, mesh.position(m.vertex) - mesh.position(c.x)) >= 0.0f;
   }
+};
 
-  // --- Missed contacts
+// Contacts that begin within a step.
+struct MissedFilter : PairFilter {
+  Crossings crossings{};
+
   bool crosses(const Meeting& m) const { return m.crosses && m.end_gap < -kGraze * pair.margin; }
   // An existing contact has a linear law: it may be satisfied while the surface curves away under it.
   bool slips(const Meeting& m) const { return m.crosses && m.end_gap < -pair.margin; }
   void count(const Meeting& m) { crossings.add({1, m.when}); }
 
-  void take_missed_edges(const MeetingSide& a, std::uint32_t edge_a, const MeetingSide& b, std::uint32_t edge_b,
-                         const Meeting& m) {
+  void take_edges(const MeetingSide& a, std::uint32_t edge_a, const MeetingSide& b, std::uint32_t edge_b,
+                  const Meeting& m) {
     const std::uint64_t key = edge_key(a.index, b.index, edge_a, edge_b);
     if (!crosses(m)) return;
     if (pair.sides.find(key)) {
@@ -168,7 +175,7 @@ struct MeetingFilter {
   }
 
   // The first triangle that a vertex crosses, under a free key, unless find() saw it on that side.
-  void take_missed_vertices(const MeetingSide& a, const MeetingSide& b, std::vector<VertexMeeting>& met) {
+  void take_vertices(const MeetingSide& a, const MeetingSide& b, std::vector<VertexMeeting>& met) {
     std::sort(met.begin(), met.end(), [](const VertexMeeting& x, const VertexMeeting& y) {
       if (x.vertex != y.vertex) return x.vertex < y.vertex;
       return x.meeting.gap != y.meeting.gap ? x.meeting.gap < y.meeting.gap : x.triangle < y.triangle;
@@ -200,7 +207,7 @@ struct MeetingFilter {
 
 void take_contacts(const PairView& pair, const MeetingSide& a, const MeetingSide& b, Meetings& meetings,
                    std::vector<Found>& out) {
-  MeetingFilter filter{pair, out};
+  MeetingFilter filter{{pair, out}};
   for (const EdgeMeeting& m : meetings.edges) filter.take_edges(a, m.edge_a, b, m.edge_b, m.meeting);
   filter.take_vertices(a, b, meetings.of_a);
   filter.take_vertices(b, a, meetings.of_b);
@@ -208,10 +215,10 @@ void take_contacts(const PairView& pair, const MeetingSide& a, const MeetingSide
 
 Crossings take_missed(const PairView& pair, const MeetingSide& a, const MeetingSide& b, Meetings& meetings,
                       std::vector<Found>& out) {
-  MeetingFilter filter{pair, out};
-  for (const EdgeMeeting& m : meetings.edges) filter.take_missed_edges(a, m.edge_a, b, m.edge_b, m.meeting);
-  filter.take_missed_vertices(a, b, meetings.of_a);
-  filter.take_missed_vertices(b, a, meetings.of_b);
+  MissedFilter filter{{pair, out}};
+  for (const EdgeMeeting& m : meetings.edges) filter.take_edges(a, m.edge_a, b, m.edge_b, m.meeting);
+  filter.take_vertices(a, b, meetings.of_a);
+  filter.take_vertices(b, a, meetings.of_b);
   return filter.crossings;
 }
 

@@ -152,6 +152,99 @@ void make_presses(World& world, TouchState& touch) {
       std::make_unique<TripleBuffer<Presses>>(Presses{0.0, std::vector<ObjectPresses>(touch.objects.size())});
 }
 
+void drop_contacts(Registry& registry) {
+  std::vector<Entity> old;
+  for (auto [entity, contact] : registry.view<Contact>()) old.push_back(entity);
+  for (const Entity entity : old) registry.destroy(entity);
+}
+
+struct TipCount {
+  std::uint32_t all = 0;
+  std::size_t contacts = 0;  // of all tips with one object, at the same time
+};
+
+TipCount list_probes(Registry& registry, TouchState& touch) {
+  TipCount count;
+  for (auto [entity, probe] : registry.view<Probe>()) {
+    const bool meets_surfaces = probe.meets != ProbeMeets::kBodies;
+    touch.probes.push_back({entity, {}, meets_surfaces ? tips_of(probe) : std::vector<Tip>(), count.all});
+    for (const Tip& tip : touch.probes.back().tips)
+      count.contacts += tip.radius > 0 ? kContactsOfASphere : kContactsOfAPoint;
+    count.all += static_cast<std::uint32_t>(touch.probes.back().tips.size());
+  }
+  count.contacts = std::min<std::size_t>(count.contacts, kMaxContactsPerObject);
+  return count;
+}
+
+// The object without its sources, and its field in the right size.
+ObjectState make_object(World& world, Entity entity, const Pose& pose, double dt, std::uint32_t tips) {
+  const Deformable& deformable = world.registry.get<Deformable>(entity);
+  const Mesh& mesh = world.meshes[deformable.mesh];
+  HeightField& field = world.fields[deformable.field];
+  ObjectState object;
+  object.entity = entity;
+  object.on_gpu = world.field_place == FieldPlace::kGpu && has_closed_form(deformable, mesh);
+  if (object.on_gpu) {
+    field = {};
+    object.releases.reserve(kMaxReleases);
+    object.terms.reserve(2 * kMaxReleases + kMaxContactsPerObject);
+  } else {
+    size_field(field, mesh, deformable);
+  }
+  object.motion = motion(deformable, dt);
+  object.painted = paint_motion(object.motion, mesh);
+  const double reach = std::max(deformable.reach, kLeastReach * static_cast<double>(mesh.mean_edge));
+  object.kernel = share_kernel(deformable.shape, reach, deformable.volume, contact_radius(deformable, reach) / reach);
+  object.searched.assign(tips, dvec3(std::numeric_limits<double>::max()));
+  object.world_box = touch_box(mesh, pose);
+  object.zone_sources.assign(mesh.zone_count(), 0);
+  object.visited.assign(mesh.zone_count(), 0);
+  object.dirty.reserve(mesh.zone_count());
+  if (world.field_place == FieldPlace::kGpu && !object.on_gpu && gpu_knows(deformable))
+    object.teller = FieldTeller(mesh.zone_count(), kMaxContactsPerObject, deformable.distance == Distance::kSurface);
+  for (std::uint32_t zone = 0; zone < field.zone_state.size(); ++zone) {  // zones not at rest must be published again
+    field.zone_state[zone] &= kZoneListed | kZoneResidual;
+    if (field.zone_state[zone]) {
+      field.zone_state[zone] |= kZoneDirty;
+      object.dirty.push_back(zone);
+    }
+  }
+  object.teller.begin_if_at_rest(object, field);
+  return object;
+}
+
+// Room for what the object publishes.
+ObjectSnapshot snapshot_of(ObjectState& object, const Mesh& mesh) {
+  const std::size_t published = object.on_gpu ? 0 : std::min(mesh.zone_count(), kMaxPublishedZones);
+  object.waiting.reserve(published);
+  return {object.entity,
+          0,
+          std::vector<std::uint32_t>(published),
+          std::vector<vec4>(published * kZoneSize),
+          0,
+          object.on_gpu,
+          0,
+          std::vector<FieldSource>(object.terms.capacity()),
+          object.teller.feed(),
+          false};
+}
+
+// A source for every contact that the probes can have with an object.
+void make_sources(World& world, TouchState& touch, std::size_t contacts) {
+  for (ObjectState& object : touch.objects) {
+    const Deformable& deformable = world.registry.get<Deformable>(object.entity);
+    const std::size_t slot = std::size_t(&object - touch.objects.data());
+    while (object.sources.size() < std::min(contacts, most_contacts(object)))
+      object.sources.push_back(
+          make_source(make_contact(world.registry, object.entity, slot), world.meshes[deformable.mesh], deformable));
+    object.probe_sources = static_cast<std::uint32_t>(object.sources.size());
+    if (!world.fields[deformable.field].awake.empty()) {  // an earlier recovery continues
+      object.listed = true;
+      touch.awake.push_back(static_cast<std::uint32_t>(slot));
+    }
+  }
+}
+
 }  // namespace
 
 Box touch_box(const Mesh& mesh, const Pose& pose) {
@@ -167,22 +260,10 @@ Box touch_box(const Mesh& mesh, const Pose& pose) {
 Status prepare_touch(World& world) {
   Registry& registry = world.registry;
   give_devices(registry);
-  std::vector<Entity> old;
-  for (auto [entity, contact] : registry.view<Contact>()) old.push_back(entity);
-  for (const Entity entity : old) registry.destroy(entity);
-
+  drop_contacts(registry);
   auto touch = std::make_shared<TouchState>();
   touch->dt = 1.0 / world.simulation.touch_rate;
-  std::uint32_t tip_count = 0;
-  std::size_t contacts_wanted = 0;
-  for (auto [entity, probe] : registry.view<Probe>()) {
-    const bool meets_surfaces = probe.meets != ProbeMeets::kBodies;
-    touch->probes.push_back({entity, {}, meets_surfaces ? tips_of(probe) : std::vector<Tip>(), tip_count});
-    for (const Tip& tip : touch->probes.back().tips)
-      contacts_wanted += tip.radius > 0 ? kContactsOfASphere : kContactsOfAPoint;
-    tip_count += static_cast<std::uint32_t>(touch->probes.back().tips.size());
-  }
-  contacts_wanted = std::min<std::size_t>(contacts_wanted, kMaxContactsPerObject);
+  const TipCount tips = list_probes(registry, *touch);
 
   Box extent;
   Snapshot snapshot;
@@ -191,41 +272,8 @@ Status prepare_touch(World& world) {
     check_in("preparing what is touched, now `" + name_of(world, entity) + "`");
     if (deformable.reach == 0.0) deformable.reach = default_reach(mesh);
     if (Status status = check(deformable, name_of(world, entity)); !status) return status.error();
-    HeightField& field = world.fields[deformable.field];
-    ObjectState object;
-    object.entity = entity;
-    object.on_gpu = world.field_place == FieldPlace::kGpu && has_closed_form(deformable, mesh);
-    if (object.on_gpu) {
-      field = {};
-      object.releases.reserve(kMaxReleases);
-      object.terms.reserve(2 * kMaxReleases + kMaxContactsPerObject);
-    } else {
-      size_field(field, mesh, deformable);
-    }
-    object.motion = motion(deformable, touch->dt);
-    object.painted = paint_motion(object.motion, mesh);
-    const double reach = std::max(deformable.reach, kLeastReach * static_cast<double>(mesh.mean_edge));
-    object.kernel = share_kernel(deformable.shape, reach, deformable.volume, contact_radius(deformable, reach) / reach);
-    object.searched.assign(tip_count, dvec3(std::numeric_limits<double>::max()));
-    object.world_box = touch_box(mesh, pose);
-    object.zone_sources.assign(mesh.zone_count(), 0);
-    object.visited.assign(mesh.zone_count(), 0);
-    object.dirty.reserve(mesh.zone_count());
-    if (world.field_place == FieldPlace::kGpu && !object.on_gpu && gpu_knows(deformable))
-      object.teller = FieldTeller(mesh.zone_count(), kMaxContactsPerObject, deformable.distance == Distance::kSurface);
-    for (std::uint32_t zone = 0; zone < field.zone_state.size(); ++zone) {  // zones not at rest must be published again
-      field.zone_state[zone] &= kZoneListed | kZoneResidual;
-      if (field.zone_state[zone]) {
-        field.zone_state[zone] |= kZoneDirty;
-        object.dirty.push_back(zone);
-      }
-    }
-    object.teller.begin_if_at_rest(object, field);
-    const std::size_t published = object.on_gpu ? 0 : std::min(mesh.zone_count(), kMaxPublishedZones);
-    object.waiting.reserve(published);
-    snapshot.objects.push_back({entity, 0, std::vector<std::uint32_t>(published),
-                                std::vector<vec4>(published * kZoneSize), 0, object.on_gpu, 0,
-                                std::vector<FieldSource>(object.terms.capacity()), object.teller.feed(), false});
+    ObjectState object = make_object(world, entity, pose, touch->dt, tips.all);
+    snapshot.objects.push_back(snapshot_of(object, mesh));
     extent.add(object.world_box);
     touch->objects.push_back(std::move(object));
   }
@@ -239,18 +287,7 @@ Status prepare_touch(World& world) {
   find_seams(world, *touch);
   for (ObjectState& object : touch->objects)
     list_creases(world.meshes[registry.get<Deformable>(object.entity).mesh], object);
-  for (ObjectState& object : touch->objects) {
-    const Deformable& deformable = registry.get<Deformable>(object.entity);
-    const std::size_t slot = std::size_t(&object - touch->objects.data());
-    while (object.sources.size() < std::min(contacts_wanted, most_contacts(object)))
-      object.sources.push_back(
-          make_source(make_contact(registry, object.entity, slot), world.meshes[deformable.mesh], deformable));
-    object.probe_sources = static_cast<std::uint32_t>(object.sources.size());
-    if (!world.fields[deformable.field].awake.empty()) {  // an earlier recovery continues
-      object.listed = true;
-      touch->awake.push_back(static_cast<std::uint32_t>(slot));
-    }
-  }
+  make_sources(world, *touch, tips.contacts);
   if (something_presses(registry)) make_presses(world, *touch);
   for (ObjectState& object : touch->objects) make_echoes(world, object);
   snapshot.probes.resize(touch->probes.size());
