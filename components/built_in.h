@@ -8,10 +8,10 @@
 //   step        SpringStep of the free surface
 //   reads       keys of PLIANT_deformable that only some laws read
 //   cost        [ns] per vertex and step, measured once (bench/results)
-#define PLIANT_SPRING_LAWS(LAW)                                \
-  LAW(linear, linear, kExact, "", 2.3)                         \
-  LAW(cubic, cubic, kPassive, "cubic", 12.5)                   \
-  LAW(exponential, exponential, kPassive, "stiffening", 39.0)  \
+#define PLIANT_SPRING_LAWS(LAW)                               \
+  LAW(linear, linear, kExact, "", 2.3)                        \
+  LAW(cubic, cubic, kPassive, "cubic", 12.5)                  \
+  LAW(exponential, exponential, kPassive, "stiffening", 39.0) \
   LAW(sls, linear, kArm, "relaxation.stiffness relaxation.time", 2.7)
 
 // SHAPE(word, form, parameter, cost, kernel...): functions in shaders/shared/shape.glsl and field.glsl.
@@ -22,21 +22,21 @@
 //              when the surface is prepared. Minimax fits; largest errors as a share of the depth: punch 0.18 (no
 //              positive definite function has a flat bottom), hertz 0.053, gaussian 0.019, wendland 0, volume 0.059
 //              without a rim to 0.10, kelvinlet 0.029.
-#define PLIANT_SHAPES(SHAPE)                                                          \
-  SHAPE(punch, radial, kContactShare, 2.6, 0.2, 1.0, 1.3)                             \
-  SHAPE(hertz, radial, kContactShare, 3.1, 0.7, 0.55, 1.45)                           \
-  SHAPE(gaussian, radial, kNone, 2.3, 0.15, 0.8, 0.9)                                 \
-  SHAPE(wendland, radial, kNone, 1.0, 1.0, 1.0, 1.0)                                  \
-  SHAPE(volume, radial, kVolume, 2.1, 0.05, 0.9, 1.4, 0.75, -0.15, -0.55)             \
+#define PLIANT_SHAPES(SHAPE)                                              \
+  SHAPE(punch, radial, kContactShare, 2.6, 0.2, 1.0, 1.3)                 \
+  SHAPE(hertz, radial, kContactShare, 3.1, 0.7, 0.55, 1.45)               \
+  SHAPE(gaussian, radial, kNone, 2.3, 0.15, 0.8, 0.9)                     \
+  SHAPE(wendland, radial, kNone, 1.0, 1.0, 1.0, 1.0)                      \
+  SHAPE(volume, radial, kVolume, 2.1, 0.05, 0.9, 1.4, 0.75, -0.15, -0.55) \
   SHAPE(kelvinlet, whole, kContactLength, 2.9, 0.5, 0.4, 1.4)
 
 // SOLVER(word, cost, factorisation, column): make_<word> in the solver's own file (systems/soft/linear).
 //   cost                   SolverCost, as engine/choice counts it
 //   factorisation, column  [1] factors on the times of block_cholesky, of a direct solver
-#define PLIANT_SOLVERS(SOLVER)                  \
-  SOLVER(auto, kBest, 1.0, 1.0)                 \
-  SOLVER(block_cholesky, kDirect, 1.0, 1.0)     \
-  SOLVER(eigen_cholesky, kDirect, 3.0, 2.0)     \
-  SOLVER(cholmod, kDirect, 3.5, 3.5)            \
-  SOLVER(conjugate_gradient, kIterative, 1, 1)  \
+#define PLIANT_SOLVERS(SOLVER)                 \
+  SOLVER(auto, kBest, 1.0, 1.0)                \
+  SOLVER(block_cholesky, kDirect, 1.0, 1.0)    \
+  SOLVER(eigen_cholesky, kDirect, 3.0, 2.0)    \
+  SOLVER(cholmod, kDirect, 3.5, 3.5)           \
+  SOLVER(conjugate_gradient, kIterative, 1, 1) \
   SOLVER(dense, kDense, 1.0, 1.0)

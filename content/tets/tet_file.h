@@ -19,9 +19,9 @@ struct TetFile {
 };
 
 // FORMAT(word, name, endings...): read_<word> in content/tets/tet_<word>.cpp.
-#define PLIANT_TET_FORMATS(FORMAT)             \
-  FORMAT(msh, "Gmsh 2.2 and 4.1", ".msh")      \
-  FORMAT(vtk, "legacy VTK", ".vtk")            \
+#define PLIANT_TET_FORMATS(FORMAT)        \
+  FORMAT(msh, "Gmsh 2.2 and 4.1", ".msh") \
+  FORMAT(vtk, "legacy VTK", ".vtk")       \
   FORMAT(tetgen, "TetGen", ".node", ".ele")
 
 #define PLIANT_FORMAT(word, ...) \

@@ -82,8 +82,8 @@ void main() {
 TEST_F(LawList, EveryShapeHasTheGpusTargetOfTheCpus) {
   Result<gpu::ShaderSource> source = gpu::expand_shader("shapes.comp", R"(
 #define SHARED
-#include "shared/shape.glsl"
-#include "shared/field.glsl"
+  #include "shared/shape.glsl"
+  #include "shared/field.glsl"
 #include "shape_list.glsl"
 uniform int shape;
 uniform float parameter;

@@ -146,8 +146,7 @@ Status draw_stability(OutputFolder& out, StudySize size, const Interrupt& interr
 }  // namespace
 
 const char* name_of(SpringLaw law) {
-  constexpr const char* kNames[] = {"linear", "cubic", "exponential", "standard linear solid"};
-  return kNames[static_cast<std::size_t>(law)];
+  return law == SpringLaw::kStandardLinearSolid ? "standard linear solid" : word_of(law);
 }
 
 VertexProblem problem_at(SpringLaw law, double omega_T, double zeta) {
