@@ -8,7 +8,7 @@ namespace pliant {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kEnd = 24.0;  // of z, from which 1 - L is below rounding
+constexpr double kLargestZ = 24.0;  // of z, from which 1 - L is below rounding
 
 struct Rule {
   std::vector<double> at, weight;
@@ -51,8 +51,8 @@ BondedLayer::BondedLayer(double radius_over_thickness, double poisson) {
   const std::size_t n = t.at.size();
   std::vector<double> system(n * n, 0.0), phi(n, 1.0), cosine(n);
   for (std::size_t q = 0; q < z.at.size(); ++q) {
-    at_.push_back(kEnd * z.at[q] * ratio);
-    weight_.push_back(2 / kPi * ratio * kEnd * z.weight[q] * missing(kEnd * z.at[q], k));
+    at_.push_back(kLargestZ * z.at[q] * ratio);
+    weight_.push_back(2 / kPi * ratio * kLargestZ * z.weight[q] * missing(kLargestZ * z.at[q], k));
     for (std::size_t i = 0; i < n; ++i) cosine[i] = std::cos(at_[q] * t.at[i]);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j) system[i * n + j] -= weight_[q] * cosine[i] * cosine[j] * t.weight[j];

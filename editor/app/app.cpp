@@ -11,14 +11,15 @@
 #include <ctime>
 #include <thread>
 
-#include "content/files/image.h"
 #include "editor/app/files.h"
 #include "editor/tools/painting.h"
-#include "editor/ui/fonts.h"
-#include "editor/ui/seen.h"
-#include "editor/ui/widgets.h"
 #include "runtime/clock.h"
 #include "runtime/printable.h"
+#include "viewer/picture/window_png.h"
+#include "viewer/ui/fonts.h"
+#include "viewer/ui/seen.h"
+#include "viewer/ui/widgets.h"
+#include "viewer/window/keys.h"
 
 namespace pliant {
 namespace {
@@ -247,7 +248,7 @@ void App::keys(std::span<const InputEvent> events) {
     if (event.kind == InputKind::kClose) close();
     if (event.kind == InputKind::kDrop) drop(event.files);
     if (event.kind != InputKind::kKey) continue;
-    const std::string pressed = ui::keys_text(event.key, event.modifiers);
+    const std::string pressed = keys_text(event.key, event.modifiers);
     const auto urgent = std::find_if(actions_.begin(), actions_.end(), [&](const Action& each) {
       return each.always && !pressed.empty() && keys_of(each) == pressed && each.enabled(editor);
     });
@@ -812,20 +813,9 @@ void App::ask_to_leave() {
 }
 
 void App::take_screenshot(const fs::path& file) {
-  const int width = window_.width(), height = window_.height();
-  std::vector<std::uint8_t> bottom_up(std::size_t{4} * static_cast<std::size_t>(width * height)), rgba;
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, bottom_up.data());
-  const std::size_t row = std::size_t{4} * static_cast<std::size_t>(width);
-  for (std::size_t y = static_cast<std::size_t>(height); y-- > 0;)
-    rgba.insert(rgba.end(), bottom_up.begin() + static_cast<std::ptrdiff_t>(y * row),
-                bottom_up.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
-  for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = 255;
   std::error_code ignored;
   if (!file.parent_path().empty()) fs::create_directories(file.parent_path(), ignored);
-  const Status written =
-      write_file(file, encode_png(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), rgba.data()));
+  const Status written = write_file(file, window_png(window_.width(), window_.height()));
   editor.say(written ? "Screenshot in " + file.string() : written.error().message(),
              written ? Severity::kNote : Severity::kError);
 }

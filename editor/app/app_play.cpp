@@ -6,7 +6,7 @@
 #include "content/files/file_io.h"
 #include "editor/app/app.h"
 #include "editor/play/run_findings.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {
@@ -22,7 +22,7 @@ bool App::as_played() const {
 }
 
 double App::orthographic() const {
-  return editor.view.orthographic && !as_played() ? editor.camera.orthographic_height() : 0.0;
+  return editor.view.orthographic && !as_played() ? orthographic_height(editor.camera.viewpoint()) : 0.0;
 }
 
 // Devices beyond those that a level may request are opened only after the user has seen and allowed them.
@@ -126,8 +126,7 @@ bool App::touch(const ViewportInput& in) {
     dirty_picture_ = true;
   }
   if (hand_ == Hand::kAsked && picture_.question >= hand_asked_) {
-    hand_ = hand->over() == PlayHand::Over::kNothing ? Hand::kView : Hand::kHolds;
-    if (hand_ == Hand::kHolds) hand->hold(true, hand_pulls_);
+    hand_ = hand->hold(true, hand_pulls_) ? Hand::kHolds : Hand::kView;
   }
   const int clicks = static_cast<int>(std::lround(in.over ? ImGui::GetIO().MouseWheel : 0.0f));
   const bool held = hand_ == Hand::kHolds;

@@ -5,10 +5,10 @@
 
 #include "editor/app/app.h"
 #include "editor/app/files.h"
-#include "editor/ui/fonts.h"
-#include "editor/ui/seen.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/fonts.h"
+#include "viewer/ui/seen.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

@@ -36,7 +36,7 @@ void Editor::take(Document next) {
   resting_.clear();
   findings.clear();
   found_at = ~std::uint64_t{0};
-  camera.home(scene_box());
+  camera = CameraControl::before(scene_box());
   for (const auto& each : on_change) each(before, state());
   for (const std::string& note : document.notes()) say(note);
 }

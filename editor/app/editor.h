@@ -89,7 +89,7 @@ class Editor {
 
   // --- View
   ViewSettings view;
-  ViewCamera camera;
+  CameraControl camera = CameraControl::before({});
   Box scene_box() const;  // [m] world
   void frame_selected();  // or all
 

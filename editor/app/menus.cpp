@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "editor/app/app.h"
-#include "editor/ui/seen.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/seen.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

@@ -7,7 +7,7 @@
 #include "editor/panels/panels.h"
 #include "editor/tools/painting.h"
 #include "editor/tools/tools.h"
-#include "editor/ui/device_list.h"
+#include "viewer/window/keys.h"
 
 namespace pliant {
 
@@ -52,6 +52,12 @@ std::vector<Action> make_actions(App& app) {
   };
   std::vector<Action> all;
   const auto add = [&](Action action) { all.push_back(std::move(action)); };
+  // An action that the window of a run has too.
+  const auto shared = [&](
+                          const char* id, const char* group, auto run,
+                          std::function<bool(const Editor&)> enabled = [](const Editor&) { return true; }) {
+    all.push_back({id, group, key_row(id).label, key_row(id).editor, run, std::move(enabled)});
+  };
   const auto toggle = [&](const char* id, const char* label, const char* keys, bool ViewSettings::*of) {
     all.push_back({id, "View", label, keys, [of](Editor& e) { e.view.*of = !(e.view.*of); },
                    [](const Editor&) { return true; }, [of](const Editor& e) { return e.view.*of; }});
@@ -105,19 +111,19 @@ std::vector<Action> make_actions(App& app) {
   take("tool.turn", "Turn", "T", "Turn");
   take("tool.scale", "Scale", "S", "Scale");
 
-  add({"view.frame", "View", "Frame selected", "F", [](Editor& e) { e.frame_selected(); }});
-  add({"view.home", "View", "Frame all", "Home", [](Editor& e) { e.camera.frame(e.scene_box()); }});
-  add({"view.front", "View", "From the front", "1", look(0, 0)});
+  shared("view.frame", "View", [](Editor& e) { e.frame_selected(); });
+  shared("view.home", "View", [](Editor& e) { e.camera.frame(e.scene_box()); });
+  shared("view.front", "View", look(0, 0));
   all.back().separator = true;
-  add({"view.right", "View", "From the right", "3", look(kRight, 0)});
+  shared("view.right", "View", look(kRight, 0));
   add({"view.left", "View", "From the left", "Ctrl+3", look(-kRight, 0)});
-  add({"view.top", "View", "From above", "7", look(0, kRight)});
+  shared("view.top", "View", look(0, kRight));
   add({"view.bottom", "View", "From below", "Ctrl+7", look(0, -kRight)});
   add({"view.back", "View", "From behind", "9", look(2 * kRight, 0)});
   toggle("view.orthographic", "Orthographic", "5", &ViewSettings::orthographic);
   toggle("view.grid", "Grid", "G", &ViewSettings::grid);
   all.back().separator = true;
-  toggle("view.wireframe", "Wireframe", "W", &ViewSettings::wireframe);
+  toggle("view.wireframe", key_row("view.wireframe").label, key_row("view.wireframe").editor, &ViewSettings::wireframe);
   toggle("view.normals", "Normals", "N", &ViewSettings::normals);
   add({"view.isolate", "View", "Isolate selected", "I",
        [](Editor& e) { e.view.isolated = e.view.isolated.empty() ? e.selected : std::vector<NodeId>{}; },
@@ -152,32 +158,35 @@ std::vector<Action> make_actions(App& app) {
   add({"paint.clear", "Paint", "Clear", "", [](Editor& e) { e.painting->clear(); }, meshed});
   const auto plays = [&app](const Editor&) { return app.play().on(); };
   const auto stands = [&app](const Editor&) { return app.play().may_step(); };
-  add({"play.toggle", "Play", "Play or pause", "Space", [&app](Editor&) { app.toggle_play(); },
-       [](const Editor& e) { return !e.state().nodes.empty(); }});
+  shared(
+      "play.toggle", "Play", [&app](Editor&) { app.toggle_play(); },
+      [](const Editor& e) { return !e.state().nodes.empty(); });
   add({"play.stop", "Play", "Stop", "Shift+Space", [&app](Editor&) { app.play().stop(); }, plays});
-  add({"play.restart", "Play", "Restart", "Ctrl+R", [&app](Editor&) { app.play().restart(); }, plays});
+  shared(
+      "play.restart", "Play", [&app](Editor&) { app.play().restart(); }, plays);
   add({"play.step", "Play", "Step 1/60 s", ".", [&app](Editor&) { app.step_play(1.0 / 60.0); }, stands});
   all.back().separator = true;
   add({"play.tick", "Play", "Step a tick", "Shift+.", [&app](Editor&) { app.step_play(0.0); }, stands});
-  add({ui::kStopAction, "Play", "Emergency stop of devices", ui::kStopKeys,
-       [&app](Editor&) {
-         DeviceOrders orders;
-         orders.stop_all = true;
-         app.play().order(orders);
-         if (!app.play().status().devices.devices.empty()) app.show_panel("Devices");
-       },
-       plays});
+  shared(
+      kStopAction, "Play",
+      [&app](Editor&) {
+        DeviceOrders orders;
+        orders.stop_all = true;
+        app.play().order(orders);
+        if (!app.play().status().devices.devices.empty()) app.show_panel("Devices");
+      },
+      plays);
   all.back().while_typing = all.back().always = true;
-  toggle("play.forces", "Show forces", "", &ViewSettings::forces);
+  toggle("play.forces", key_row("play.forces").label, key_row("play.forces").editor, &ViewSettings::forces);
   all.back().group = "Play";
   all.back().separator = true;
-  toggle("play.contacts", "Show contacts", "", &ViewSettings::contacts);
+  toggle("play.contacts", key_row("play.contacts").label, key_row("play.contacts").editor, &ViewSettings::contacts);
   all.back().group = "Play";
   add({"add.empty", "Add", "Empty node", "", [](Editor& e) { add_empty(e); }});
   add({"add.probe", "Add", "Probe with a device", "", [](Editor& e) { add_probe(e); }});
   add({"add.light", "Add", "Light", "", [](Editor& e) { add_light(e); }});
   add({"add.camera", "Add", "Camera, from here", "", [](Editor& e) { add_camera(e); }});
-  add({"help.keys", "Help", "Keys\u2026", "F1", [&app](Editor&) { app.show_panel("Keys"); }});
+  shared("help.keys", "Help", [&app](Editor&) { app.show_panel("Keys"); });
   all.back().while_typing = true;
   return all;
 }

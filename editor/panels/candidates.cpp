@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "editor/ui/plot.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

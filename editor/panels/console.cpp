@@ -3,8 +3,8 @@
 
 #include "editor/app/app.h"
 #include "editor/panels/panels.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

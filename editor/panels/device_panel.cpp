@@ -2,9 +2,10 @@
 #include "devices/choose.h"
 #include "editor/app/app.h"
 #include "editor/panels/panels.h"
-#include "editor/ui/device_list.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/device_list.h"
+#include "viewer/ui/widgets.h"
+#include "viewer/window/keys.h"
 
 namespace pliant {
 namespace {
@@ -26,7 +27,7 @@ class DevicePanel : public Panel {
       }
       view.unusable.clear();  // below, as they are now
       DeviceOrders orders;
-      ui::device_list(view, app_.keys_of(ui::kStopAction), orders);
+      ui::device_list(view, app_.keys_of(kStopAction), orders);
       play.order(orders);
       ui::gap(ui::kGap);
     }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "editor/app/app.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 

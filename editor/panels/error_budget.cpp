@@ -9,8 +9,8 @@
 #include "editor/budget/budget_fit.h"
 #include "editor/panels/candidates.h"
 #include "editor/panels/panels.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

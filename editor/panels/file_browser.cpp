@@ -5,85 +5,18 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "content/openable.h"
 #include "editor/app/files.h"
 #include "editor/panels/dialog.h"
+#include "editor/panels/folder_list.h"
 #include "editor/panels/panels.h"
-#include "editor/ui/fonts.h"
-#include "editor/ui/seen.h"
 #include "runtime/printable.h"
+#include "viewer/ui/fonts.h"
+#include "viewer/ui/seen.h"
 
 namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMostEntries = 5000;  // per folder; beyond it, the user types a part of the name
-
-struct FolderEntry {
-  std::string name, shown;
-  bool folder = false;
-  std::uintmax_t size = 0;
-};
-struct Listing {
-  std::vector<FolderEntry> entries;  // folders first, by name
-  std::size_t left_out = 0;
-  std::string fault;
-};
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-bool opens(const fs::path& name) {
-  return has_ending(name, openable_endings());
-}
-
-struct Filter {
-  bool hidden = false, all = false, levels_only = false;
-  std::string part;
-  bool operator==(const Filter&) const = default;
-};
-
-Listing read_folder(const fs::path& folder, const Filter& filter, const Jobs::Stop& stop) {
-  Listing out;
-  std::error_code failed;
-  const std::string part = lower_case(filter.part);
-  auto it = fs::directory_iterator(folder, fs::directory_options::none, failed);
-  if (failed) {
-    out.fault = fs::exists(folder) ? "cannot be read (" + failed.message() + ")" : "is not there";
-    return out;
-  }
-  for (; it != fs::directory_iterator() && !stop; it.increment(failed)) {
-    if (failed) break;
-    FolderEntry entry;
-    entry.name = it->path().filename().string();
-    if (!filter.hidden && entry.name.starts_with('.')) continue;
-    if (!part.empty() && lower_case(entry.name).find(part) == std::string::npos) continue;
-    std::error_code gone;
-    entry.folder = it->is_directory(gone);
-    if (!entry.folder && (!it->is_regular_file(gone) || (!filter.all && !opens(entry.name)))) continue;
-    if (out.entries.size() >= kMostEntries) {
-      ++out.left_out;
-      continue;
-    }
-    if (!entry.folder) entry.size = it->file_size(gone);
-    entry.shown = printable(entry.name);
-    out.entries.push_back(std::move(entry));
-  }
-  std::sort(out.entries.begin(), out.entries.end(), [](const FolderEntry& a, const FolderEntry& b) {
-    return a.folder != b.folder ? a.folder : lower_case(a.name) < lower_case(b.name);
-  });
-  return out;
-}
-
-std::string size_text(std::uintmax_t bytes) {
-  const auto b = static_cast<double>(bytes);
-  return bytes < 1000      ? fmt::format("{} B", bytes)
-         : bytes < 1000000 ? fmt::format("{:.0f} kB", b / 1e3)
-                           : fmt::format("{:.1f} MB", b / 1e6);
-}
 
 class FileBrowser : public Panel {
  public:
@@ -121,7 +54,7 @@ class FileBrowser : public Panel {
     // Enter confirms the dialog, whatever has the focus.
     const bool enter = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) ||
                        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter), false);
-    const std::string& chosen = wish.save && !entered_folder_ ? name_ : selected_;
+    const std::string& chosen = wish.save && !list_.on_folder() ? name_ : list_.selected();
     if (enter && !ImGui::IsAnyItemActive() && !ui::keyboard_leads() && !chosen.empty() &&
         ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows))
       accept(editor, folder_ / chosen);
@@ -134,53 +67,35 @@ class FileBrowser : public Panel {
       folder_ = folder_.parent_path();
     typed_ = folder_.string();
     filter_.part.clear();
-    selected_.clear();
-    entered_folder_ = false;
+    list_.select_none();
     read(editor);
   }
 
   void read(Editor& editor) {
     read_ = filter_;
-    listing_.reset();
+    list_.show(nullptr);
     editor.jobs.start("folder", "Reading the folder",
                       [this, folder = folder_, filter = filter_](const Jobs::Stop& stop) {
-                        auto listing = std::make_shared<Listing>(read_folder(folder, filter, stop));
-                        return [this, listing](Editor&) { listing_ = listing; };
+                        auto listing = std::make_shared<FolderListing>(read_folder(folder, filter, stop));
+                        return [this, listing](Editor&) { list_.show(listing); };
                       });
   }
 
   void keys(Editor& editor) {
-    const auto pressed = [](ImGuiKey_ key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); };
-    if (pressed(ImGuiKey_Backspace) && folder_.has_relative_path()) return go(editor, folder_.parent_path());
-    if (!listing_ || listing_->entries.empty()) return;
-    const auto& all = listing_->entries;
-    const auto here = std::find_if(all.begin(), all.end(), [&](const FolderEntry& e) { return e.name == selected_; });
-    const auto last = static_cast<std::ptrdiff_t>(all.size()) - 1;
-    std::ptrdiff_t to = here == all.end() ? -1 : here - all.begin();
-    const std::ptrdiff_t before = to;
-    if (pressed(ImGuiKey_DownArrow)) ++to;
-    if (pressed(ImGuiKey_UpArrow)) to = std::max<std::ptrdiff_t>(to - 1, 0);
-    if (pressed(ImGuiKey_PageDown)) to += 15;
-    if (pressed(ImGuiKey_PageUp)) to = std::max<std::ptrdiff_t>(to - 15, 0);
-    if (pressed(ImGuiKey_Home)) to = 0;
-    if (pressed(ImGuiKey_End)) to = last;
-    std::string letter;
-    for (const ImWchar c : ImGui::GetIO().InputQueueCharacters)
-      if (c > 32 && c < 127) letter = std::string(1, static_cast<char>(c));
-    if (!letter.empty())
-      for (std::ptrdiff_t i = 1; i <= last + 1; ++i) {
-        const std::ptrdiff_t at = (std::max<std::ptrdiff_t>(to, -1) + i) % (last + 1);
-        if (!lower_case(all[static_cast<std::size_t>(at)].name).starts_with(lower_case(letter))) continue;
-        to = at;
-        break;
-      }
-    to = std::min(to, last);
-    if (to == before || to < 0) return;
-    const FolderEntry& entry = all[static_cast<std::size_t>(to)];
-    selected_ = entry.name;
-    entered_folder_ = entry.folder;
-    if (app_.files().wish().save && !entry.folder) name_ = entry.name;
-    ImGui::SetScrollY(static_cast<float>(to) * ImGui::GetTextLineHeightWithSpacing() - 0.5f * ImGui::GetWindowHeight());
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Backspace)) && folder_.has_relative_path())
+      return go(editor, folder_.parent_path());
+    const FolderEntry* const entry = list_.take_keys();
+    if (entry && app_.files().wish().save && !entry->folder) name_ = entry->name;
+  }
+
+  void entries(Editor& editor, const FileWish& wish) {
+    bool twice = false;
+    const FolderEntry* const entry = list_.draw(twice);
+    if (!entry) return;
+    const fs::path path = folder_ / entry->name;
+    if (entry->folder) return go(editor, path);
+    if (wish.save) name_ = entry->name;
+    if (twice) choose(path);
   }
 
   void accept(Editor& editor, const fs::path& path) {
@@ -232,47 +147,6 @@ class FileBrowser : public Panel {
     }
   }
 
-  void entries(Editor& editor, const FileWish& wish) {
-    if (!listing_) return ui::dim("Reading \u2026");
-    if (!listing_->fault.empty()) return ui::dim(("This folder " + listing_->fault).c_str());
-    if (listing_->entries.empty()) ui::dim("Nothing here that can be opened.");
-    std::optional<fs::path> folder, file;
-    ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(listing_->entries.size()));
-    while (clipper.Step())
-      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        const FolderEntry& entry = listing_->entries[static_cast<std::size_t>(i)];
-        ImGui::PushID(i);
-        ui::draws(entry.shown);
-        const bool pressed =
-            ImGui::Selectable("##entry", selected_ == entry.name,
-                              ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_AllowItemOverlap);
-        ui::known_as(entry.name);
-        ImGui::SameLine(ui::px(ui::kGap));
-        if (entry.folder) {
-          ImGui::TextColored(ui::palette().accent, "%s/", entry.shown.c_str());
-        } else {
-          ImGui::TextUnformatted(entry.shown.c_str());
-          ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ui::px(80));
-          ImGui::TextColored(ui::palette().faint, "%s", size_text(entry.size).c_str());
-        }
-        ImGui::PopID();
-        if (!pressed) continue;
-        if (entry.folder) {
-          folder = folder_ / entry.name;
-        } else {
-          selected_ = entry.name;
-          entered_folder_ = false;
-          if (wish.save) name_ = entry.name;
-          if (ImGui::IsMouseDoubleClicked(0)) file = folder_ / entry.name;
-        }
-      }
-    if (listing_->left_out > 0)
-      ui::dim(fmt::format("\u2026 and {} more; type a part of the name above the list.", listing_->left_out).c_str());
-    if (folder) return go(editor, *folder);
-    if (file) choose(*file);
-  }
-
   void last_row(Editor& editor, const FileWish& wish) {
     if (wish.save) {
       ui::label("Name");
@@ -289,7 +163,7 @@ class FileBrowser : public Panel {
     ImGui::SameLine();
     ui::checkbox("Hidden", filter_.hidden, "Names that begin with a dot, too");
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ui::px(110));
-    const std::string chosen = wish.save ? name_ : selected_;
+    const std::string chosen = wish.save ? name_ : list_.selected();
     if (ui::strong_button(wish.save ? "Save" : "Open", nullptr, !chosen.empty(), 110)) accept(editor, folder_ / chosen);
   }
 
@@ -301,11 +175,10 @@ class FileBrowser : public Panel {
   App& app_;
   std::uint64_t of_ = 0;
   fs::path folder_;
-  std::string typed_, name_, selected_;
-  Filter filter_, read_;
-  bool begins_ = false;                     // just opened: sets the initial focus
-  bool entered_folder_ = false;             // what is selected is a folder
-  std::shared_ptr<const Listing> listing_;  // null: being read
+  std::string typed_, name_;
+  FolderFilter filter_, read_;
+  bool begins_ = false;  // just opened: sets the initial focus
+  FolderList list_;
 };
 
 }  // namespace

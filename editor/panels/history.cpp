@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "editor/panels/panels.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

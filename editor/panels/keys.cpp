@@ -1,4 +1,6 @@
 // All actions and their key bindings, which can be changed: F1.
+#include "viewer/window/keys.h"
+
 #include <fmt/format.h>
 
 #include "editor/panels/dialog.h"
@@ -141,20 +143,18 @@ class KeysPanel : public Panel {
   static void mouse() {
     ui::gap(ui::kGap);
     ImGui::PushFont(ui::font(ui::Type::kStrong));
-    ImGui::TextUnformatted("Mouse, over the picture");
+    ImGui::TextUnformatted("Mouse, over the picture; left presses what is played");
     ImGui::PopFont();
-    constexpr const char* kWords[][2] = {{"Select", "Left click; with Shift or Ctrl one more"},
-                                         {"Orbit", "Right drag, or Alt and left drag"},
-                                         {"Move the view", "Middle drag, or Shift and right drag"},
-                                         {"Zoom", "Wheel"},
-                                         {"Bring into view", "Double click in the scene tree"}};
-    for (const auto& [what, how] : kWords) {
+    const auto line = [](const char* how, const char* words) {
       ImGui::Indent(ui::px(ui::kPad));
-      ImGui::TextUnformatted(what);
+      ImGui::TextUnformatted(words);
       ImGui::Unindent(ui::px(ui::kPad));
       ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ui::px(240));
       ImGui::TextColored(ui::palette().dim, "%s", how);
-    }
+    };
+    line("Left click; with Shift or Ctrl one more", "select");
+    line("Double click in the scene tree", "bring into view");
+    for (const MouseRow& row : mouse_rows()) line(row.how, row.words);
   }
 
   App& app_;

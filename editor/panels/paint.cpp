@@ -2,54 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "editor/app/app.h"
+#include "editor/panels/brush_fields.h"
 #include "editor/panels/panels.h"
 #include "editor/tools/painting.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {
-
-constexpr float kPaintLabelShare = 0.30f;  // [1] of the panel's width
-constexpr float kCurve = 44;               // [point] height of the falloff's picture
-
-template <class T>
-struct Choice {
-  const char* label;
-  T value;
-  const char* hint;
-};
-constexpr Choice<BrushMode> kModes[] = {
-    {"Set", BrushMode::kSet, "Towards the value; going over a place again in one stroke takes it no farther"},
-    {"Add", BrushMode::kAdd, "Every dab adds to what is there; below 0 it takes away"},
-    {"Smooth", BrushMode::kSmooth, "Towards the mean of the neighbours (Shift while painting)"},
-    {"Erase", BrushMode::kErase, "Towards what is not painted"}};
-constexpr Choice<BrushFalloff> kFalloffs[] = {
-    {"Flat##falloff", BrushFalloff::kConstant, "The same up to the rim"},
-    {"Linear##falloff", BrushFalloff::kLinear, "Evenly less to the rim"},
-    {"Smooth##falloff", BrushFalloff::kSmooth, "Level in the middle and at the rim"},
-    {"Sharp##falloff", BrushFalloff::kSharp, "A peak in the middle"}};
-constexpr Choice<BrushMirror> kMirrors[] = {{"Off##mirror", BrushMirror::kNone, "No mirror image"},
-                                            {"X##mirror", BrushMirror::kX, "Across the plane x = 0 of the mesh"},
-                                            {"Y##mirror", BrushMirror::kY, "Across the plane y = 0 of the mesh"},
-                                            {"Z##mirror", BrushMirror::kZ, "Across the plane z = 0 of the mesh"}};
-
-template <class T, std::size_t n>
-void choices(const Choice<T> (&all)[n], T& value) {
-  for (std::size_t i = 0; i < n; ++i) {
-    if (i) ImGui::SameLine(0, ui::px(2));
-    if (ui::choice_button(all[i].label, value == all[i].value, all[i].hint)) value = all[i].value;
-  }
-}
-
-void row(const char* label, const char* hint_text) {
-  const float left = ImGui::GetCursorPosX(), wide = ImGui::GetContentRegionAvail().x;
-  ui::label(label, hint_text);
-  ImGui::SameLine(left + kPaintLabelShare * wide);
-}
 
 void warn(const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, ui::palette().warning);
@@ -76,7 +38,7 @@ class PaintPanel : public Panel {
     painting.fit_radius();
     draw_head(editor, painting, id);
     draw_channel(editor, painting, id);
-    draw_brush(painting);
+    draw_brush_fields(painting);
     draw_whole(painting);
     draw_colours(editor, painting);
   }
@@ -130,71 +92,6 @@ class PaintPanel : public Panel {
       editor.apply("Add " + words, with_component(editor.state(), std::vector<NodeId>{id}, extension));
   }
 
-  void draw_brush(Painting& painting) {
-    ui::gap(2);
-    if (!ui::section("Brush")) return;
-    Brush& brush = painting.brush;
-    const bool share = is_share(painting.channel);
-    const Range range = paint_range(attribute_of(painting.channel));
-    row("Mode", "What a stroke does to what is there");
-    choices(kModes, brush.mode);
-    if (brush.mode == BrushMode::kSet) {
-      row("Value", share ? "0: free, 1: held; held from 0.5 up" : "Factor on the node's own value; 1: unpainted");
-      ui::number("value", painting.value_now(), range.min, range.max, share ? "" : "\u00d7", !share);
-      becomes(painting, painting.value_now());
-    } else if (brush.mode == BrushMode::kAdd) {
-      row("Adds", "What a dab adds in its middle; dabs are a quarter of the radius apart");
-      ui::number("amount", painting.amounts[static_cast<std::size_t>(painting.channel)], -10, 10, "");
-    }
-    const double size = painting.size();
-    double mm = 1e3 * brush.radius;
-    row("Radius", "Along the surface, in the world: [ and ]");
-    if (ui::number("radius", mm, 1.0 * size, 1e3 * size, "mm")) brush.radius = 1e-3 * mm;
-    double percent = 100 * brush.strength;
-    row("Strength", "Share of the whole effect: Shift+[ and Shift+]");
-    if (ui::number("strength", percent, 1, 100, "%%")) brush.strength = 0.01 * percent;
-    row("Falloff", "How the effect falls off from the middle to the rim");
-    choices(kFalloffs, brush.falloff);
-    row("", nullptr);
-    curve(brush);
-    row("Mirror", "What is painted on one side is painted on the other");
-    choices(kMirrors, brush.mirror);
-    row("Stops at", "What a stroke does not go beyond");
-    ui::checkbox("creases", brush.mask.creases, "At creases of the surface");
-    ImGui::SameLine();
-    ui::checkbox("part", brush.mask.part, "At the end of the connected part where the stroke began");
-    row("", nullptr);
-    ui::checkbox("primitive", brush.mask.primitive, "At the rim of the primitive (material) where the stroke began");
-  }
-
-  static void becomes(const Painting& painting, double value) {
-    row("", nullptr);
-    ui::dim(painting.value_text(value).c_str());
-  }
-
-  static void curve(const Brush& brush) {
-    const ui::Palette& p = ui::palette();
-    const ImVec2 low = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, ui::px(kCurve));
-    ImGui::InvisibleButton("falloff curve", {std::max(size.x, 1.0f), size.y});
-    ui::known_as("falloff curve");
-    ui::hint("Effect across the brush, rim to rim");
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const ImVec2 high(low.x + size.x, low.y + size.y);
-    list.AddRectFilled(low, high, ui::color(p.field), ui::px(4));
-    constexpr int kPoints = 64;
-    std::vector<ImVec2> line;
-    const float pad = ui::px(5);
-    for (int i = 0; i <= kPoints; ++i) {
-      const double x = 2.0 * i / kPoints - 1.0, y = brush.strength * falloff_at(brush.falloff, std::abs(x));
-      line.emplace_back(low.x + pad + (size.x - 2 * pad) * static_cast<float>(i) / kPoints,
-                        high.y - pad - (size.y - 2 * pad) * static_cast<float>(y));
-    }
-    for (std::size_t i = 0; i + 1 < line.size(); ++i)
-      list.AddQuadFilled({line[i].x, high.y - pad}, line[i], line[i + 1], {line[i + 1].x, high.y - pad},
-                         ui::color(p.accent, 0.22f));
-    list.AddPolyline(line.data(), static_cast<int>(line.size()), ui::color(p.accent), 0, ui::px(1.5f));
-  }
-
   void draw_whole(Painting& painting) {
     ui::gap(2);
     if (!ui::section("Whole mesh")) return;
@@ -213,7 +110,7 @@ class PaintPanel : public Panel {
     const Range range = paint_range(attribute_of(painting.channel));
     const bool share = is_share(painting.channel);
     const float wide = ImGui::GetContentRegionAvail().x * (1 - kPaintLabelShare) / ui::scale();
-    row("Gradient", "From the first to the second click along a straight line, and level beyond both");
+    paint_row("Gradient", "From the first to the second click along a straight line, and level beyond both");
     ui::number("gradient from", painting.gradient_from, range.min, range.max, share ? "" : "\u00d7", !share,
                0.5f * wide - 16);
     ImGui::SameLine(0, ui::px(4));
@@ -231,11 +128,11 @@ class PaintPanel : public Panel {
   void draw_colours(Editor& editor, Painting& painting) {
     ui::gap(2);
     if (is_share(painting.channel) || !ui::section("Colours", false)) return;
-    row("From", "The factor of the darkest colour");
+    paint_row("From", "The factor of the darkest colour");
     ui::number("low", editor.view.value_low, 1e-3, 0.9 * editor.view.value_high, "\u00d7", true);
-    row("To", "The factor of the lightest colour");
+    paint_row("To", "The factor of the lightest colour");
     ui::number("high", editor.view.value_high, 1.1 * editor.view.value_low, 1e3, "\u00d7", true);
-    row("", nullptr);
+    paint_row("", nullptr);
     if (ui::button("Fit", "To what is painted")) {
       const auto range = painting.painted_range().value_or(std::pair{0.25, 4.0});
       editor.view.value_low = std::clamp(range.first, 1e-3, 500.0);

@@ -7,8 +7,8 @@
 #include "editor/app/path_editing.h"
 #include "editor/panels/panels.h"
 #include "editor/play/record_path.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

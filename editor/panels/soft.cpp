@@ -14,10 +14,10 @@
 #include "content/tets/tet_findings.h"
 #include "editor/app/app.h"
 #include "editor/panels/panels.h"
-#include "editor/ui/widgets.h"
 #include "editor/viewport/solid_view.h"
 #include "engine/choice/pin_advice.h"
 #include "systems/soft/body/equilibrium.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "editor/app/app.h"
 #include "editor/app/files.h"
-#include "editor/panels/level_pictures.h"
+#include "editor/panels/level_cards.h"
 #include "editor/panels/panels.h"
-#include "editor/ui/widgets.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {
@@ -31,7 +31,7 @@ class StartPage : public Panel {
     ImGui::EndChild();
     ImGui::SameLine(0, ui::px(ui::kWide));
     ImGui::BeginChild("levels");
-    levels(editor);
+    cards_.draw(app_, editor);
     ImGui::EndChild();
   }
 
@@ -145,60 +145,13 @@ class StartPage : public Panel {
     if (!first) ui::gap(ui::kPad);
   }
 
-  void levels(Editor& editor) {
-    if (app_.shipped().empty()) return;
-    ui::dim("Levels that ship, to look at and to begin with");
-    ui::gap(ui::kGap);
-    pictures_.update(editor, app_.shipped());
-    const float wide = ImGui::GetContentRegionAvail().x, gap = ui::px(ui::kPad);
-    const int columns = std::max(1, static_cast<int>((wide + gap) / (ui::px(170) + gap)));
-    const float w = (wide - gap * static_cast<float>(columns - 1) - ui::px(ui::kPad)) / static_cast<float>(columns),
-                picture = 0.6f * w, h = picture + ui::px(62);
-    int n = 0;
-    for (const fs::path& level : app_.shipped()) {
-      if (n++ % columns != 0) ImGui::SameLine(0, gap);
-      card(level, w, picture, h);
-    }
-  }
-
-  void card(const fs::path& level, float w, float picture, float h) {
-    const ui::Palette& p = ui::palette();
-    const ui::Scope scope("Levels");
-    const ImVec2 at = ImGui::GetCursorScreenPos(), end(at.x + w, at.y + h);
-    ImGui::PushID(level.c_str());
-    const bool pressed = ImGui::InvisibleButton("card", {w, h});
-    ui::known_as(level.stem().string());
-    const bool hot = ImGui::IsItemHovered();
-    const LevelPicture& shown = pictures_.of(level);
-    ui::hint(shown.about.c_str());
-    ImGui::PopID();
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float round = ui::px(6);
-    list.AddRectFilled(at, end, ui::color(hot ? p.field_hot : p.field), round);
-    const ImVec2 low(at.x, at.y), high(end.x, at.y + picture);
-    if (shown.texture != 0)
-      list.AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(shown.texture)), low, high,
-                           shown.low, shown.high, IM_COL32_WHITE, round, ImDrawFlags_RoundCornersTop);
-    else
-      list.AddRectFilled(low, high, ui::color(p.raised), round, ImDrawFlags_RoundCornersTop);
-    if (hot) list.AddRect(at, end, ui::color(p.accent), round, 0, ui::px(1.5f));
-    const ImFont &strong = *ui::font(ui::Type::kStrong), &small = *ui::font(ui::Type::kSmall);
-    const float y = at.y + picture + ui::px(6), inner = w - ui::px(16);
-    const std::string name = ui::fitted(level.stem().string(), strong, inner, strong.FontSize),
-                      about = ui::fitted(shown.about, small, inner, end.y - ui::px(4) - (y + ui::px(20)));
-    list.AddText(&strong, strong.FontSize, {at.x + ui::px(8), y}, ui::color(p.text), name.c_str());
-    list.AddText(&small, small.FontSize, {at.x + ui::px(8), y + ui::px(20)}, ui::color(p.dim), about.c_str(), nullptr,
-                 inner);
-    if (pressed) app_.open(level);
-  }
-
   App& app_;
   double looked_ = -1e9;  // [s]
   bool looked_for_ = false;
   std::vector<Recent> recent_;
   std::vector<RecoveryCopy> lost_;
   fs::path sure_;
-  LevelPictures pictures_;
+  LevelCards cards_;
 };
 
 }  // namespace

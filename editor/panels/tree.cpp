@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
-#include <set>
 
 #include "content/keys/extension_table.h"
 #include "editor/panels/panels.h"
-#include "editor/ui/fonts.h"
-#include "editor/ui/seen.h"
-#include "editor/ui/widgets.h"
+#include "editor/panels/tree_rows.h"
 #include "runtime/printable.h"
+#include "viewer/ui/fonts.h"
+#include "viewer/ui/seen.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {
@@ -21,6 +21,53 @@ bool holds(const std::string& text, const std::string& part) {
     return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
   };
   return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
+}
+
+// "deformable, light"
+std::string kind_of(const LevelNode& node) {
+  std::string text;
+  const auto add = [&](const char* word) { text += (text.empty() ? "" : ", ") + std::string(word); };
+  for (const Extension& each : extension_table())
+    if (!each.on_scene && each.present(&node)) {
+      std::string word = each.name;
+      std::replace(word.begin(), word.end(), '_', ' ');
+      add(word.c_str());
+    }
+  if (node.light) add("light");
+  if (node.camera) add("camera");
+  return text.empty() && node.mesh >= 0 ? "mesh" : text;
+}
+bool matches(const DocumentNode& node, const std::string& part) {
+  return holds(node.node.name, part) || holds(kind_of(node.node), part);
+}
+
+void row_menu(Editor& editor, const DocumentNode& node) {
+  if (ui::menu_item("Rename", "F2")) editor.renaming = node.id;
+  if (ui::menu_item("Duplicate")) {
+    std::vector<NodeId> ids;
+    if (editor.apply("Duplicate", duplicated(editor.state(), editor.selected, editor.document.next_id(), &ids)))
+      editor.selected = ids;
+  }
+  if (ui::menu_item("Frame")) editor.frame_selected();
+  if (ui::menu_item("Isolate", nullptr, !editor.view.isolated.empty()))
+    editor.view.isolated = editor.view.isolated.empty() ? editor.selected : std::vector<NodeId>{};
+  ImGui::Separator();
+  if (ui::menu_item("Delete")) editor.apply("Delete", without(editor.state(), editor.selected));
+}
+
+// At the right end of the row, where there is room.
+void draw_kind(const std::string& kind, const std::string& name) {
+  if (kind.empty()) return;
+  ImGui::PushFont(ui::font(ui::Type::kSmall));
+  const float wide = ImGui::CalcTextSize(kind.c_str()).x, room = ImGui::GetWindowContentRegionMax().x -
+                                                                 ImGui::GetItemRectMin().x + ImGui::GetWindowPos().x -
+                                                                 ImGui::CalcTextSize(name.c_str()).x - ui::px(56);
+  if (wide < room) {
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - wide - ui::px(4));
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextColored(ui::palette().faint, "%s", kind.c_str());
+  }
+  ImGui::PopFont();
 }
 
 class TreePanel : public Panel {
@@ -41,18 +88,17 @@ class TreePanel : public Panel {
     ImGui::BeginChild("nodes", {0, 0}, false, ImGuiWindowFlags_NoNavInputs);
     const State& state = editor.state();
     follow_selection(editor);
-    if (ImGui::IsWindowFocused() && !ImGui::GetIO().WantTextInput && !ui::popup_is_open()) keys(editor);
+    if (ImGui::IsWindowFocused() && !ImGui::GetIO().WantTextInput && !ui::popup_is_open())
+      rows_.take_keys(editor, search_.empty());
     // Children by parent, computed once per frame: a level may have thousands.
     below_.clear();
-    open_.clear();
-    parents_.clear();
     for (const auto& each : state.nodes) below_[each->parent].push_back(each.get());
-    order_.clear();
+    rows_.begin();
     if (search_.empty())
       for (const DocumentNode* root : below_[kNoNode]) draw_node(editor, *root);
     else
       for (const auto& each : state.nodes)
-        if (matches(*each)) draw_row(editor, *each, true);
+        if (matches(*each, search_)) draw_row(editor, *each, true);
     if (state.nodes.empty()) ui::dim("Nothing here yet. Open an organ, or add something from the menu Add.");
     // A node dropped below all rows becomes a root.
     const ImVec2 rest = ImGui::GetContentRegionAvail();
@@ -74,72 +120,19 @@ class TreePanel : public Panel {
     if (editor.renaming != kNoNode && renaming_ != editor.renaming) {
       const DocumentNode* const node = editor.state().find(editor.renaming);
       if (!node) editor.renaming = kNoNode;
-      reveal_ = renaming_ = editor.renaming;
+      rows_.reveal = renaming_ = editor.renaming;
       if (node) new_name_ = node->node.name;
       starts_ = true;
       search_.clear();
     }
-    if (editor.active() != followed_ && editor.active() != kNoNode) reveal_ = editor.active();
-    if (reveal_ == kNoNode) return;
-    const DocumentNode* node = editor.state().find(reveal_);
+    if (editor.active() != followed_ && editor.active() != kNoNode) rows_.reveal = editor.active();
+    if (rows_.reveal == kNoNode) return;
+    const DocumentNode* node = editor.state().find(rows_.reveal);
     for (NodeId above = node ? node->parent : kNoNode; above != kNoNode;) {
-      fold_[above] = true;
+      rows_.fold[above] = true;
       const DocumentNode* const parent = editor.state().find(above);
       above = parent ? parent->parent : kNoNode;
     }
-  }
-
-  void keys(Editor& editor) {
-    const auto pressed = [](ImGuiKey_ key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); };
-    if (order_before_.empty()) return;
-    const auto here = std::find(order_before_.begin(), order_before_.end(), editor.active());
-    const bool any = here != order_before_.end();
-    const auto at = static_cast<std::ptrdiff_t>(here - order_before_.begin()),
-               last = static_cast<std::ptrdiff_t>(order_before_.size()) - 1;
-    const auto go = [&](std::ptrdiff_t to) {
-      const NodeId id = order_before_[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(to, 0, last))];
-      if (ImGui::GetIO().KeyShift && any)
-        select_range(editor, id);
-      else
-        editor.select(id);
-      reveal_ = id;
-    };
-    const auto rows = static_cast<std::ptrdiff_t>(ImGui::GetWindowHeight() / ImGui::GetFrameHeightWithSpacing());
-    if (pressed(ImGuiKey_DownArrow)) go(any ? at + 1 : 0);
-    if (pressed(ImGuiKey_UpArrow)) go(any ? at - 1 : last);
-    if (pressed(ImGuiKey_PageDown)) go(any ? at + rows : last);
-    if (pressed(ImGuiKey_PageUp)) go(any ? at - rows : 0);
-    if (!any || !search_.empty()) return;
-    const DocumentNode* const node = editor.state().find(*here);
-    const bool parent = parents_.contains(*here), open = open_.contains(*here);
-    if (pressed(ImGuiKey_RightArrow) && parent) {
-      if (open)
-        go(at + 1);
-      else
-        fold_[*here] = true;
-    }
-    if (!pressed(ImGuiKey_LeftArrow)) return;
-    if (parent && open)
-      fold_[*here] = false;
-    else if (node && node->parent != kNoNode)
-      editor.select(reveal_ = node->parent);
-  }
-
-  static std::string what(const LevelNode& node) {
-    std::string text;
-    const auto add = [&](const char* word) { text += (text.empty() ? "" : ", ") + std::string(word); };
-    for (const Extension& each : extension_table())
-      if (!each.on_scene && each.present(&node)) {
-        std::string word = each.name;
-        std::replace(word.begin(), word.end(), '_', ' ');
-        add(word.c_str());
-      }
-    if (node.light) add("light");
-    if (node.camera) add("camera");
-    return text.empty() && node.mesh >= 0 ? "mesh" : text;
-  }
-  bool matches(const DocumentNode& node) const {
-    return holds(node.node.name, search_) || holds(what(node.node), search_);
   }
 
   void draw_node(Editor& editor, const DocumentNode& node) {
@@ -149,49 +142,24 @@ class TreePanel : public Panel {
     ImGui::TreePop();
   }
 
-  bool draw_row(Editor& editor, const DocumentNode& node, bool leaf) {
-    const std::string shown = printable(node.node.name);
-    ui::draws(shown);
-    ImGui::PushID(static_cast<int>(node.id));
-    const ui::Scope scope(node.node.name);
-    order_.push_back(node.id);
-    if (renaming_ == node.id) {
-      if (starts_) ImGui::SetKeyboardFocusHere();
-      starts_ = false;
-      const bool done = ui::text_field("Name", new_name_, "", 0,
-                                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-      if (reveal_ == node.id) ImGui::SetScrollHereY();
-      const bool left = ImGui::IsItemDeactivated(), given_up = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
-      if (done || left) {
-        if (!given_up && !new_name_.empty() && new_name_ != node.node.name)
-          editor.apply("Rename", renamed(editor.state(), node.id, new_name_));
-        renaming_ = editor.renaming = kNoNode;
-        ImGui::SetWindowFocus();  // the arrow keys continue from here
-      }
-      if (reveal_ == node.id) reveal_ = kNoNode;
-      ImGui::PopID();
-      return false;
+  void draw_name_field(Editor& editor, const DocumentNode& node) {
+    if (starts_) ImGui::SetKeyboardFocusHere();
+    starts_ = false;
+    const bool done = ui::text_field("Name", new_name_, "", 0,
+                                     ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    if (rows_.reveal == node.id) ImGui::SetScrollHereY();
+    const bool left = ImGui::IsItemDeactivated(), given_up = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    if (done || left) {
+      if (!given_up && !new_name_.empty() && new_name_ != node.node.name)
+        editor.apply("Rename", renamed(editor.state(), node.id, new_name_));
+      renaming_ = editor.renaming = kNoNode;
+      ImGui::SetWindowFocus();  // the arrow keys continue from here
     }
-    if (!leaf) parents_.insert(node.id);
-    if (const auto fold = fold_.find(node.id); fold != fold_.end()) {
-      ImGui::SetNextItemOpen(fold->second);
-      fold_.erase(fold);
-    }
-    ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth |
-                               ImGuiTreeNodeFlags_FramePadding | ImGuiTreeNodeFlags_DefaultOpen;
-    if (editor.is_selected(node.id)) flags |= ImGuiTreeNodeFlags_Selected;
-    if (leaf) flags |= ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen;
-    if (!node.node.in_scene) ImGui::PushStyleColor(ImGuiCol_Text, ui::palette().faint);
-    const bool open = ImGui::TreeNodeEx("node", flags, "%s", shown.c_str());
-    if (!node.node.in_scene) ImGui::PopStyleColor();
-    ui::known_as("row");
-    if (open && !leaf) open_.insert(node.id);
-    if (reveal_ == node.id) {
-      if (!ImGui::IsItemVisible() || ImGui::GetItemRectMax().y > ImGui::GetWindowPos().y + ImGui::GetWindowHeight() ||
-          ImGui::GetItemRectMin().y < ImGui::GetWindowPos().y)
-        ImGui::SetScrollHereY();
-      reveal_ = kNoNode;
-    }
+    if (rows_.reveal == node.id) rows_.reveal = kNoNode;
+  }
+
+  // The mouse on the row drawn last.
+  void answer_row(Editor& editor, const DocumentNode& node, const std::string& shown) {
     const bool toggled = ImGui::IsItemToggledOpen();
     if (ImGui::IsItemHovered()) {
       editor.hovered = node.id;
@@ -203,7 +171,7 @@ class TreePanel : public Panel {
     if (ImGui::IsItemClicked() && !toggled) {
       const ImGuiIO& io = ImGui::GetIO();
       if (io.KeyShift && editor.active() != kNoNode)
-        select_range(editor, node.id);
+        rows_.select_range(editor, node.id);
       else
         editor.select(node.id, io.KeyCtrl);
     }
@@ -218,44 +186,44 @@ class TreePanel : public Panel {
       ImGui::TextUnformatted(shown.c_str());
       ImGui::EndDragDropSource();
     }
-    take_drop(editor, node.id);
-    const std::string kind = what(node.node);
-    if (!kind.empty()) {
-      ImGui::PushFont(ui::font(ui::Type::kSmall));
-      const float wide = ImGui::CalcTextSize(kind.c_str()).x,
-                  room = ImGui::GetWindowContentRegionMax().x - ImGui::GetItemRectMin().x + ImGui::GetWindowPos().x -
-                         ImGui::CalcTextSize(shown.c_str()).x - ui::px(56);
-      if (wide < room) {
-        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - wide - ui::px(4));
-        ImGui::AlignTextToFramePadding();
-        ImGui::TextColored(ui::palette().faint, "%s", kind.c_str());
-      }
-      ImGui::PopFont();
+  }
+
+  bool draw_row(Editor& editor, const DocumentNode& node, bool leaf) {
+    const std::string shown = printable(node.node.name);
+    ui::draws(shown);
+    ImGui::PushID(static_cast<int>(node.id));
+    const ui::Scope scope(node.node.name);
+    rows_.order.push_back(node.id);
+    if (renaming_ == node.id) {
+      draw_name_field(editor, node);
+      ImGui::PopID();
+      return false;
     }
+    if (!leaf) rows_.parents.insert(node.id);
+    if (const auto fold = rows_.fold.find(node.id); fold != rows_.fold.end()) {
+      ImGui::SetNextItemOpen(fold->second);
+      rows_.fold.erase(fold);
+    }
+    ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth |
+                               ImGuiTreeNodeFlags_FramePadding | ImGuiTreeNodeFlags_DefaultOpen;
+    if (editor.is_selected(node.id)) flags |= ImGuiTreeNodeFlags_Selected;
+    if (leaf) flags |= ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen;
+    if (!node.node.in_scene) ImGui::PushStyleColor(ImGuiCol_Text, ui::palette().faint);
+    const bool open = ImGui::TreeNodeEx("node", flags, "%s", shown.c_str());
+    if (!node.node.in_scene) ImGui::PopStyleColor();
+    ui::known_as("row");
+    if (open && !leaf) rows_.open.insert(node.id);
+    if (rows_.reveal == node.id) {
+      if (!ImGui::IsItemVisible() || ImGui::GetItemRectMax().y > ImGui::GetWindowPos().y + ImGui::GetWindowHeight() ||
+          ImGui::GetItemRectMin().y < ImGui::GetWindowPos().y)
+        ImGui::SetScrollHereY();
+      rows_.reveal = kNoNode;
+    }
+    answer_row(editor, node, shown);
+    take_drop(editor, node.id);
+    draw_kind(kind_of(node.node), shown);
     ImGui::PopID();
     return open;
-  }
-
-  void row_menu(Editor& editor, const DocumentNode& node) {
-    if (ui::menu_item("Rename", "F2")) editor.renaming = node.id;
-    if (ui::menu_item("Duplicate")) {
-      std::vector<NodeId> ids;
-      if (editor.apply("Duplicate", duplicated(editor.state(), editor.selected, editor.document.next_id(), &ids)))
-        editor.selected = ids;
-    }
-    if (ui::menu_item("Frame")) editor.frame_selected();
-    if (ui::menu_item("Isolate", nullptr, !editor.view.isolated.empty()))
-      editor.view.isolated = editor.view.isolated.empty() ? editor.selected : std::vector<NodeId>{};
-    ImGui::Separator();
-    if (ui::menu_item("Delete")) editor.apply("Delete", without(editor.state(), editor.selected));
-  }
-
-  void select_range(Editor& editor, NodeId to) {
-    const auto from = std::find(order_before_.begin(), order_before_.end(), editor.active()),
-               here = std::find(order_before_.begin(), order_before_.end(), to);
-    if (from == order_before_.end() || here == order_before_.end()) return editor.select(to);
-    editor.selected.assign(std::min(from, here), std::max(from, here) + 1);
-    if (here < from) std::reverse(editor.selected.begin(), editor.selected.end());
   }
 
   void take_drop(const Editor& editor, NodeId onto) {
@@ -263,17 +231,15 @@ class TreePanel : public Panel {
       if (ImGui::AcceptDragDropPayload("node")) dropped_ = {editor.selected, onto};
       ImGui::EndDragDropTarget();
     }
-    if (onto == kNoNode) order_before_ = order_;
+    if (onto == kNoNode) rows_.before = rows_.order;
   }
 
   std::string search_, new_name_;
   NodeId renaming_ = kNoNode;
-  NodeId followed_ = kNoNode, reveal_ = kNoNode;  // the selection when last drawn; the node to scroll to
-  std::map<NodeId, bool> fold_;                   // rows that open or close in the next frame
-  std::set<NodeId> parents_, open_;               // of the rows drawn last
+  NodeId followed_ = kNoNode;  // the selection when last drawn
+  TreeRows rows_;
   bool starts_ = false;
   std::map<NodeId, std::vector<const DocumentNode*>> below_;
-  std::vector<NodeId> order_, order_before_;
   std::optional<std::pair<std::vector<NodeId>, NodeId>> dropped_;
 };
 

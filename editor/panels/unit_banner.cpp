@@ -3,7 +3,7 @@
 
 #include "content/level/unit.h"
 #include "editor/panels/panels.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {
@@ -40,7 +40,7 @@ class UnitBanner : public Panel {
                      scale_roots(level, metres);
                      return Done{};
                    }));
-      editor.camera.home(editor.scene_box());
+      editor.camera = CameraControl::before(editor.scene_box());
     }
   }
 

@@ -17,25 +17,24 @@ constexpr double kSwingArc = 0.6;      // [1] of the remaining distance: height 
 
 void PlayHand::take_probe(const World& world, const Probe& probe, const Viewpoint& view, std::optional<dvec3> from) {
   const std::lock_guard lock(mutex_);
-  carrier_.reset();
-  watches_ = takes_ = false;
-  pointer_.emplace(world, probe.radius, view, probe.meets);
-  at_ = from.value_or(pointer_->update(0.0));
+  hand_.take(Pointer(world, probe.radius, view, probe.meets));
+  watched_ = kNoEntity;
+  takes_ = false;
+  at_ = from ? *from : *hand_.update(0.0);
 }
 
 void PlayHand::take_tool(const World& world, Entity tool, dvec3 device) {
   const std::lock_guard lock(mutex_);
-  pointer_.reset();
-  carrier_ = Carrier::holding(world, tool, device);
-  if (takes_ && seen_) carrier_->grab(seen_->point, device);
-  watches_ = takes_ = false;
+  hand_.take(Carrier::holding(world, tool, device));
+  if (takes_) hand_.press(false, device);
+  watched_ = kNoEntity;
+  takes_ = false;
 }
 
-void PlayHand::watch_tool(const World& world, Entity tool) {
+void PlayHand::watch_tool(Entity tool) {
   const std::lock_guard lock(mutex_);
-  pointer_.reset();
-  carrier_ = Carrier::holding(world, tool, dvec3(0));
-  watches_ = true;
+  hand_.let_go();
+  watched_ = tool;
   takes_ = false;
 }
 
@@ -46,100 +45,34 @@ bool PlayHand::takes() const {
 
 void PlayHand::let_go() {
   const std::lock_guard lock(mutex_);
-  pointer_.reset();
-  carrier_.reset();
-  watches_ = takes_ = false;
-}
-
-bool PlayHand::has_any() const {
-  const std::lock_guard lock(mutex_);
-  return pointer_ || (carrier_ && !watches_);
+  hand_.let_go();
+  watched_ = kNoEntity;
+  takes_ = false;
 }
 
 std::optional<dvec3> PlayHand::update(double dt) {
   const std::lock_guard lock(mutex_);
-  if (pointer_) {
-    const dvec3 to = pointer_->update(dt);
-    const bool free = pointer_->free();
-    dvec3 way = to - at_;
-    if (free && seen_) way += kSwingArc * length(way) * seen_->normal;
-    const double left = length(way), most = (free ? kFastestFree : kFastestSlide) * dt;
-    at_ += way * std::min(1.0 - std::exp(-dt / kGlideTime), left > most ? most / left : 1.0);
-    return at_;
-  }
-  if (!carrier_ || watches_) return {};
-  carrier_->update(dt);
-  return carrier_->position();
-}
-
-void PlayHand::see(const std::optional<Picked>& seen, const ViewRay& ray) {
-  const std::lock_guard lock(mutex_);
-  seen_ = seen;
-  if (pointer_) pointer_->see(seen, ray);
+  const std::optional<dvec3> to = hand_.update(dt);
+  if (!to || !hand_.has_probe()) return to;
+  const bool free = hand_.free();
+  dvec3 way = *to - at_;
+  if (free && hand_.seen()) way += kSwingArc * length(way) * hand_.seen()->normal;
+  const double left = length(way), most = (free ? kFastestFree : kFastestSlide) * dt;
+  at_ += way * std::min(1.0 - std::exp(-dt / kGlideTime), left > most ? most / left : 1.0);
+  return at_;
 }
 
 PlayHand::Over PlayHand::over() const {
   const std::lock_guard lock(mutex_);
-  if (pointer_ && pointer_->over_touchable()) return pointer_->over_body() ? Over::kBody : Over::kTouchable;
-  if (carrier_ && seen_ && seen_->object == carrier_->tool()) return Over::kTool;
-  return Over::kNothing;
+  if (watched_ == kNoEntity) return hand_.over();
+  return hand_.seen() && hand_.seen()->object == watched_ ? Over::kTool : Over::kNothing;
 }
 
-ProbeHold PlayHand::probe_hold() const {
+bool PlayHand::hold(bool held, bool pulls) {
   const std::lock_guard lock(mutex_);
-  return pointer_ ? pointer_->probe_hold() : ProbeHold();
-}
-
-Entity PlayHand::holds() const {
-  const std::lock_guard lock(mutex_);
-  return pointer_ ? pointer_->holds() : kNoEntity;
-}
-
-void PlayHand::hold(bool held, bool pulls) {
-  const std::lock_guard lock(mutex_);
-  if (pointer_ && held && pulls)
-    pointer_->grab();
-  else if (pointer_)
-    pointer_->hold(held);
-  if (!carrier_) return;
-  if (watches_) {
-    takes_ = held && seen_ && seen_->object == carrier_->tool();
-    return;
-  }
-  if (!held)
-    carrier_->release();
-  else if (seen_)
-    carrier_->grab(seen_->point, carrier_->position());
-}
-
-void PlayHand::follow(const ViewRay& ray, const Viewpoint& view) {
-  const std::lock_guard lock(mutex_);
-  if (pointer_) pointer_->follow(ray, view);
-  if (carrier_) carrier_->follow(ray, view);
-}
-
-void PlayHand::wheel(int steps, const Viewpoint& view) {
-  const std::lock_guard lock(mutex_);
-  if (pointer_ && pointer_->pulls())
-    pointer_->push(steps, view);
-  else if (pointer_)
-    pointer_->deepen(steps);
-  if (carrier_) carrier_->push(steps, view);
-}
-
-void PlayHand::stand(int steps) {
-  const std::lock_guard lock(mutex_);
-  if (pointer_) pointer_->stand(steps);
-}
-
-bool PlayHand::pressing() const {
-  const std::lock_guard lock(mutex_);
-  return (pointer_ && pointer_->pressing()) || (carrier_ && carrier_->holds());
-}
-
-double PlayHand::depth_goal() const {
-  const std::lock_guard lock(mutex_);
-  return pointer_ ? pointer_->depth_goal() : 0.0;
+  takes_ = held && !(watched_ == kNoEntity) && hand_.seen() && hand_.seen()->object == watched_;
+  if (!held) hand_.release();
+  return takes_ || (held && hand_.press(pulls, dvec3(0)) != MouseHand::Grip::kNone);
 }
 
 }  // namespace pliant

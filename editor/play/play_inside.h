@@ -6,6 +6,7 @@
 
 #include "editor/play/play_run.h"
 #include "engine/run/journal.h"
+#include "engine/run/kept_recording.h"
 #include "engine/session/session_inside.h"
 
 namespace pliant {
@@ -16,16 +17,15 @@ struct PlayRun::Inside {
   PlayRun& run;
   std::optional<Session> session;
   Session::Parts* parts = nullptr;
-  std::optional<Journal> journal;            // touch clock -> this thread
-  std::unique_ptr<Recorder<PoseRow>> poses;  // the same
+  std::optional<Journal> journal;  // touch clock -> this thread
   std::vector<TickRow> rows;
-  std::vector<PoseRow> pose_rows;
-  PlayPast past;  // so far
-  bool past_full = false;
+  KeptRecording* kept = nullptr;  // the session's recorder fills and owns it; null: no probe and no tool
+  std::vector<PlayHold> holds;    // so far
+  PlayStatus status;              // as told last
   std::vector<std::array<std::uint64_t, 4>> limited;
   std::vector<std::string> notes;
 
-  bool realtime = false, paused = false;
+  bool opening = true, realtime = false, paused = false;
   double speed = 1.0;
   std::uint64_t steps = 0;  // single steps still to run
   double due = 0.0;         // [ticks] due by the wall clock
@@ -38,7 +38,7 @@ struct PlayRun::Inside {
   // While repeating a past.
   bool again = false;
   std::uint64_t until = 0;  // [ticks]
-  std::size_t next_edit = 0, next_hold = 0;
+  std::size_t next_hold = 0;
 
   // Sources.
   struct Level {  // as in the level
@@ -57,6 +57,8 @@ struct PlayRun::Inside {
   dquat held{1, 0, 0, 0};  // its rotation while dragged
 
   void say(const std::string& note) { notes.push_back(note); }
+  void tell();  // publishes `status`
+  PlayPast past() const;
   Level remember(const SessionEffector& effector) const;
   void bring_back(SessionEffector& effector, const Level& level);
   void apply(const std::string& name, const PlaySource& source);

@@ -1,24 +1,16 @@
-// The past of a run: poses and edits of every tick, from which it can be repeated, and samples for plots.
+// The past of a run: a recording from which it can be repeated, and samples for plots.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <vector>
 
 #include "components/probe.h"
 #include "engine/run/recording.h"
 
 namespace pliant {
-
-// A parameter change before this tick.
-struct PlayEdit {
-  std::uint64_t tick = 0;
-  std::string object, key;
-  double value = 0.0;
-};
 
 // The mouse's drag of a body from this tick on.
 struct PlayHold {
@@ -28,12 +20,9 @@ struct PlayHold {
 };
 
 // From the first tick on. The same level with the same past gives the same bits.
-struct PlayPast {
+struct PlayPast : Recording {
   static constexpr std::size_t kMostTicks = 1'000'000;  // in longer runs, going back is not possible
-  std::vector<std::uint64_t> ticks;                     // indices, ascending
-  std::vector<RecordedPose> poses;                      // [tick][effector]
-  std::vector<PlayEdit> edits;                          // by tick, ascending
-  std::vector<PlayHold> holds;                          // the same
+  std::vector<PlayHold> holds;                          // by tick, ascending
 };
 
 // Where a run stores its past when it ends.

@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-PlayRun::PlayRun(PlayOptions options) : options_(std::move(options)) {
+PlayRun::PlayRun(PlayOptions options) : options_(std::move(options)), inside_(std::make_unique<Inside>(*this)) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -13,9 +13,9 @@ PlayRun::~PlayRun() {
   if (thread_.joinable()) thread_.join();
 }
 
-PlayStatus PlayRun::status() const {
-  const std::lock_guard lock(mutex_);
-  return status_;
+const PlayStatus& PlayRun::status() {
+  told_.acquire();
+  return told_.read();
 }
 
 void PlayRun::take_samples(std::vector<std::vector<PlaySample>>& out) {
@@ -56,12 +56,7 @@ void PlayRun::set_speed(double speed) {
 void PlayRun::set(const std::string& object, const std::string& key, double value) {
   post([=](Inside& in) {
     if (in.again) return;  // a repeated past is not changed
-    if (const Status done = in.session->set(object, key, value); !done) {
-      in.say(done.error().message());
-      return;
-    }
-    const std::uint64_t at = in.realtime ? in.parts->clock()->now() + 1 : in.parts->ticks;
-    in.past.edits.push_back({at, object, key, value});
+    if (const Status done = in.session->set(object, key, value); !done) in.say(done.error().message());
   });
 }
 
@@ -109,55 +104,30 @@ std::shared_ptr<const PlayPast> PlayRun::past() {
   std::shared_ptr<const PlayPast> copy;
   bool done = false;
   post([&](Inside& in) {
-    auto made = std::make_shared<const PlayPast>(in.past);
+    auto made = std::make_shared<const PlayPast>(in.past());
     const std::lock_guard lock(mutex_);
     copy = std::move(made);
     done = true;
     changed_.notify_all();
   });
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return done || status_.phase == PlayPhase::kEnded; });
+  changed_.wait(lock, [&] { return done || ended_; });
   return copy;
 }
 
 void PlayRun::wait() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return !busy_ || status_.phase == PlayPhase::kEnded; });
+  changed_.wait(lock, [this] { return !busy_ || ended_; });
 }
 
-bool PlayRun::opened() const {
+bool PlayRun::make_picture(const std::function<void(World&)>& make) {
+  const std::lock_guard still(stands_still_);
+  if (!opened() || inside_->parts->clock()) return false;
+  make(inside_->parts->world);
   const std::lock_guard lock(mutex_);
-  return may_picture_ && !end_;
-}
-
-World* PlayRun::claim_picture() {
-  std::unique_lock lock(mutex_);
-  if (!may_picture_ || end_ || has_picture_) return nullptr;
-  has_picture_ = true;
-  ready_picture_ = parked_ = false;
+  pictured_ = true;
   changed_.notify_all();
-  changed_.wait(lock, [this] { return parked_ || status_.phase == PlayPhase::kEnded; });
-  if (status_.phase != PlayPhase::kEnded) return world_;
-  has_picture_ = false;
-  changed_.notify_all();
-  return nullptr;
-}
-
-bool PlayRun::pictured() const {
-  const std::lock_guard lock(mutex_);
-  return ready_picture_;
-}
-
-void PlayRun::picture_made() {
-  const std::lock_guard lock(mutex_);
-  ready_picture_ = true;
-  changed_.notify_all();
-}
-
-void PlayRun::picture_gone() {
-  const std::lock_guard lock(mutex_);
-  has_picture_ = false;
-  changed_.notify_all();
+  return true;
 }
 
 }  // namespace pliant

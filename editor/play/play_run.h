@@ -1,5 +1,6 @@
-// One run of a played level: a Session and the thread that owns it. Other code communicates with it by values under a
-// mutex. The stage draws its pictures from the world's snapshots (scene_view.h).
+// One run of a played level: a Session and the thread that owns it. Commands go to it through a queue, its state comes
+// back through a TripleBuffer, its picture through those of the world (scene_view.h). Only while a picture is prepared
+// does the run stand still.
 //
 // Lockstep: ticks follow the wall clock times `speed`, or single steps; the same level and past give the same bits.
 // Real time: the engine's own clocks.
@@ -23,6 +24,7 @@
 #include "engine/run/device_view.h"
 #include "engine/run/soft_clock.h"
 #include "pliant/session.h"
+#include "runtime/exchange.h"
 
 namespace pliant {
 
@@ -89,7 +91,8 @@ class PlayRun {
   PlayRun(const PlayRun&) = delete;
   PlayRun& operator=(const PlayRun&) = delete;
 
-  PlayStatus status() const;
+  // The newest; valid until the next call. On the interface's thread.
+  const PlayStatus& status();
   // Samples of each effector since the last call, oldest first.
   void take_samples(std::vector<std::vector<PlaySample>>& out);
 
@@ -111,35 +114,35 @@ class PlayRun {
   PlayHand hand;
   const std::shared_ptr<PlayKept> kept = std::make_shared<PlayKept>();
 
-  // --- For the stage
-  bool opened() const;     // a picture may be made
-  World* claim_picture();  // waits until the run has stopped, until picture_made(); null: it has ended
-  bool pictured() const;
+  // --- For the stage. The world lives as long as this run.
+  bool opened() const { return opened_ && !end_; }  // a picture may be made
+  // Calls `make` between two ticks, on this thread; it may read the whole world. From then on only the stage acquires
+  // the world's snapshots. False: the run has ended, or its clocks run.
+  bool make_picture(const std::function<void(World&)>& make);
+  bool pictured() const { return pictured_; }
   bool moving() const { return moving_; }
-  void picture_made();  // from now on only the stage uses its snapshots
-  void picture_gone();  // the world may now be destroyed
 
  private:
   struct Inside;  // belongs to the run's thread
   using Command = std::function<void(Inside&)>;
   void run();
   Status open(Inside& in);
+  Status begin(Inside& in);
   void turn(Inside& in);
   void show(Inside& in);
   void close(Inside& in);
   void post(Command command);
 
   PlayOptions options_;
-  mutable std::mutex mutex_;
+  TripleBuffer<PlayStatus> told_;  // the run's thread -> the interface
+  std::mutex stands_still_;        // held by the run's thread while it works, by the stage while it makes a picture
+  mutable std::mutex mutex_;       // guards the four members below
   std::condition_variable changed_;
-  PlayStatus status_;
   std::vector<std::vector<PlaySample>> samples_;
   std::vector<Command> commands_;
-  World* world_ = nullptr;
-  // A picture is allowed, is being made or exists, is ready; the run's thread is stopped for it.
-  bool may_picture_ = false, has_picture_ = false, ready_picture_ = false, parked_ = false;
-  bool busy_ = true, opening_ = true;
-  std::atomic<bool> end_{false}, moving_{false};
+  bool busy_ = true, ended_ = false;
+  std::atomic<bool> end_{false}, opened_{false}, pictured_{false}, moving_{false};
+  std::unique_ptr<Inside> inside_;
   std::thread thread_;  // last
 };
 

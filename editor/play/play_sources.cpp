@@ -197,7 +197,7 @@ void PlayRun::Inside::watch() {
   for (const SessionEffector& effector : parts->effectors)
     if (!parts->world.registry.has<Probe>(effector.entity)) {
       watched = effector.name;
-      run.hand.watch_tool(parts->world, effector.entity);
+      run.hand.watch_tool(effector.entity);
       return;
     }
 }
@@ -206,14 +206,10 @@ void PlayRun::Inside::begin_past(const PlayPast& of, std::uint64_t to) {
   before_past.clear();
   for (const SessionEffector& effector : parts->effectors) before_past.push_back(remember(effector));
   run.hand.let_go();
-  Recording recording;
-  recording.header.rate = parts->world.simulation.touch_rate;
-  recording.ticks = of.ticks;
-  recording.poses = of.poses;
   until = std::min<std::uint64_t>(to, of.ticks.size());
-  next_edit = next_hold = 0;
+  next_hold = 0;
   again = true;
-  parts->begin_replay(std::move(recording));
+  parts->begin_replay(of);
 }
 
 // The present starts at the time that was reached.

@@ -70,24 +70,44 @@ bool wants_mouse(const Level& level, const PlayOptions& options) {
 }  // namespace
 
 void PlayRun::run() {
-  Inside in(*this);
+  Inside& in = *inside_;
   std::string error;
   try {
-    if (Status opened = open(in); !opened) {
-      error = opened.error().message();
-    } else {
-      while (!end_) turn(in);
+    Status done = open(in);
+    if (done) {
+      opened_ = true;
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return end_ || pictured_ || !options_.shown; });
     }
+    if (done && !end_) done = begin(in);
+    while (done && !end_) turn(in);
+    if (!done) error = done.error().message();
   } catch (const std::exception& thrown) {
     error = thrown.what();
   }
+  end_ = true;
   close(in);
+  if (!error.empty()) in.status.error = error;
+  in.status.phase = PlayPhase::kEnded;
+  in.tell();
   const std::lock_guard lock(mutex_);
-  if (!error.empty()) status_.error = error;
-  status_.phase = PlayPhase::kEnded;
+  ended_ = true;
   busy_ = false;
   commands_.clear();
   changed_.notify_all();
+}
+
+void PlayRun::Inside::tell() {
+  run.told_.write() = status;
+  run.told_.publish();
+}
+
+PlayPast PlayRun::Inside::past() const {
+  PlayPast past;
+  if (kept) static_cast<Recording&>(past) = kept->copy();
+  past.header.rate = parts->world.simulation.touch_rate;
+  past.holds = holds;
+  return past;
 }
 
 Status PlayRun::open(Inside& in) {
@@ -119,16 +139,7 @@ Status PlayRun::open(Inside& in) {
   const std::size_t count = in.parts->effectors.size();
   if (count == 0) in.say("the level has no probe and no tool, so nothing is touched");
   in.journal.emplace(world, kRowSeconds);
-  in.poses = std::make_unique<Recorder<PoseRow>>(
-      rows_that_wait(kRowSeconds, world.simulation.touch_rate, std::max<std::size_t>(count, 1)));
-  in.parts->noted = [&in](Tick tick) {
-    in.journal->note(in.parts->world, tick);
-    for (std::uint32_t i = 0; i < in.parts->effectors.size(); ++i) {
-      const HapticDevice& device = in.parts->world.registry.get<HapticDevice>(in.parts->effectors[i].device);
-      const bool ready = device.status == DeviceStatus::kReady && tick.time - device.sensed_at <= kStaleAfter;
-      in.poses->record({tick.index, i, {device.position, device.rotation, ready}});
-    }
-  };
+  in.parts->noted = [&in](Tick tick) { in.journal->note(in.parts->world, tick); };
   in.limited.resize(count);
   in.sources.resize(count);
   in.realtime = options_.realtime && !options_.past;
@@ -146,41 +157,33 @@ Status PlayRun::open(Inside& in) {
     in.say("a device feels in real time only, so the level plays in real time");
   }
   if (options_.past) in.begin_past(*options_.past, options_.until);
+  if (count > 0) {
+    auto sink = std::make_unique<KeptRecording>(count, PlayPast::kMostTicks);
+    in.kept = sink.get();
+    in.parts->recorder = std::make_unique<PoseRecorder>(std::move(sink), count);
+  }
   {
-    std::unique_lock lock(mutex_);
+    const std::lock_guard lock(mutex_);
     samples_.resize(count);
-    world_ = &world;
-    may_picture_ = true;
-    status_.objects = in.parts->objects;
   }
+  in.status.objects = in.parts->objects;
   show(in);
-  if (options_.shown) {
-    std::unique_lock lock(mutex_);
-    while (!ready_picture_ && !end_) {
-      parked_ = has_picture_;
-      changed_.notify_all();
-      changed_.wait_for(lock, kIdleTurn);
-    }
-  }
-  if (end_) return Done{};
+  return Done{};
+}
+
+Status PlayRun::begin(Inside& in) {
+  const std::lock_guard works(stands_still_);
   if (in.realtime) {
     in.move_hand(0.0);
     if (Status s = in.session->start(); !s) return s;
     if (in.paused) static_cast<void>(in.session->pause(true));
   }
-  opening_ = false;
+  in.opening = false;
   in.turned_ns = in.paced_ns = now_ns();
   return Done{};
 }
 
 Status PlayRun::Inside::tick() {
-  if (again)
-    for (const auto& edits = run.options_.past->edits;
-         next_edit < edits.size() && edits[next_edit].tick <= parts->ticks; ++next_edit) {
-      const PlayEdit& edit = edits[next_edit];
-      static_cast<void>(session->set(edit.object, edit.key, edit.value));
-      past.edits.push_back(edit);
-    }
   hold_again();
   move_hand(1.0 / parts->world.simulation.touch_rate);
   const Status done = session->step(1);
@@ -196,9 +199,9 @@ void PlayRun::Inside::move_hand(double dt) {
   if (!to) return;
   SessionEffector& effector = *parts->find_effector(moved);
   const ProbeHold hold = run.hand.probe_hold();
-  if (!(hold == effector.hold) && !past_full) {
+  if (!(hold == effector.hold) && kept->ticks() < PlayPast::kMostTicks) {
     const std::uint64_t at = realtime && parts->clock() ? parts->clock()->now() + 1 : parts->ticks;
-    past.holds.push_back({at, static_cast<std::uint32_t>(&effector - parts->effectors.data()), hold});
+    holds.push_back({at, static_cast<std::uint32_t>(&effector - parts->effectors.data()), hold});
   }
   effector.hold = hold;
   static_cast<void>(session->move(moved, *to, held));
@@ -207,29 +210,21 @@ void PlayRun::Inside::move_hand(double dt) {
 // Restores the mouse's drags of a repeated past.
 void PlayRun::Inside::hold_again() {
   if (!again) return;
-  for (const auto& holds = run.options_.past->holds; next_hold < holds.size() && holds[next_hold].tick <= parts->ticks;
+  for (const auto& had = run.options_.past->holds; next_hold < had.size() && had[next_hold].tick <= parts->ticks;
        ++next_hold) {
-    const PlayHold& hold = holds[next_hold];
+    const PlayHold& hold = had[next_hold];
     if (Probe* const probe = parts->world.registry.find<Probe>(parts->effectors[hold.effector].entity))
       probe->hold = hold.hold;
     parts->effectors[hold.effector].hold = hold.hold;
-    past.holds.push_back(hold);
+    holds.push_back(hold);
   }
 }
 
 void PlayRun::Inside::take_rows() {
   rows.clear();
-  pose_rows.clear();
   journal->drain(rows);
-  poses->drain(pose_rows);
-  const std::size_t count = parts->effectors.size();
-  past_full |= past.ticks.size() >= PlayPast::kMostTicks;
-  for (const PoseRow& row : pose_rows) {
-    if (past_full) break;
-    if (row.effector == 0) past.ticks.push_back(row.tick);
-    past.poses.push_back(row.pose);
-  }
   if (rows.empty()) return;
+  const std::size_t count = parts->effectors.size();
   const std::lock_guard lock(run.mutex_);
   for (const TickRow& row : rows) {
     if (row.probe >= count) continue;
@@ -262,12 +257,10 @@ void PlayRun::Inside::flush() {
 
 void PlayRun::turn(Inside& in) {
   std::vector<Command> commands;
-  bool picture_waits = false;
+  std::unique_lock works(stands_still_);
   {
     const std::lock_guard lock(mutex_);
     commands.swap(commands_);
-    picture_waits = parked_ = has_picture_ && !ready_picture_;
-    if (parked_) changed_.notify_all();
   }
   for (const Command& command : commands) command(in);
   const double passed = seconds_since(in.turned_ns);
@@ -284,7 +277,7 @@ void PlayRun::turn(Inside& in) {
       in.move_hand(passed);
       in.take_rows();
     }
-  } else if (!picture_waits) {
+  } else {
     if (in.again) {
       while (status && !end_ && in.parts->ticks < in.until && seconds_since(began) < kTickSlice) status = in.tick();
       more = in.parts->ticks < in.until;
@@ -298,15 +291,15 @@ void PlayRun::turn(Inside& in) {
     if (in.still()) in.flush();
   }
   if (!status) {
-    const std::lock_guard lock(mutex_);
-    status_.error = status.error().message();
+    in.status.error = status.error().message();
     end_ = true;
   }
   const bool still = in.still();
   moving_ = !still && !(in.realtime && in.paused);
   if (!more || seconds_since(in.shown_ns) > kShowEvery) show(in);
+  works.unlock();
   std::unique_lock lock(mutex_);
-  if (commands_.empty() && !more && !picture_waits) {
+  if (commands_.empty() && !more) {
     busy_ = false;
     changed_.notify_all();
   }
@@ -315,7 +308,7 @@ void PlayRun::turn(Inside& in) {
 
 void PlayRun::show(Inside& in) {
   const Session::Parts& p = *in.parts;
-  const bool still = in.still() && !opening_;
+  const bool still = in.still() && !in.opening;
   const bool figures = seconds_since(in.shown_ns) > kShowEvery || still;
   if (figures) in.shown_ns = now_ns();
   if (still && in.hashed != p.ticks) {
@@ -334,8 +327,9 @@ void PlayRun::show(Inside& in) {
     in.paced_ns = now_ns();
     in.paced_tick = tick;
   }
-  PlayStatus next;
-  if (figures) next.figures = in.session->figures();
+  PlayStatus& told = in.status;
+  if (figures) told.figures = in.session->figures();
+  told.effectors.clear();
   for (std::size_t i = 0; i < p.effectors.size(); ++i) {
     PlayEffector each;
     each.name = p.effectors[i].name;
@@ -344,67 +338,58 @@ void PlayRun::show(Inside& in) {
     each.source = p.effectors[i].name == in.moved ? "mouse" : words_of(p.world, p.effectors[i], in.sources[i]);
     if (auto reading = in.session->reading(each.name)) each.reading = *reading;
     each.limited = in.limited[i];
-    next.effectors.push_back(std::move(each));
+    told.effectors.push_back(std::move(each));
   }
-  DevicesView devices;
-  in.view(devices);
-  devices.late_ticks = next.figures.overruns;
+  told.devices = {};
+  in.view(told.devices);
+  told.devices.late_ticks = told.figures.overruns;
   const SoftFigures* const soft = !p.runner->soft().any() ? nullptr
                                   : p.clock()             ? &in.parts->runner->soft().latest()
                                                           : &p.runner->soft().figures();
-  const std::lock_guard lock(mutex_);
-  if (figures) status_.figures = next.figures;
-  status_.effectors = std::move(next.effectors);
-  if (!figures) devices.late_ticks = status_.devices.late_ticks;
-  status_.devices = std::move(devices);
-  status_.surfaces.clear();
-  for (const auto& [name, surface] : p.surfaces) status_.surfaces.emplace(name, surface);
-  status_.phase = opening_                         ? PlayPhase::kOpening
-                  : in.again && p.ticks < in.until ? PlayPhase::kReplaying
-                  : in.paused || in.again          ? PlayPhase::kPaused
-                                                   : PlayPhase::kPlaying;
-  for (std::string& note : in.notes) status_.notes.push_back(std::move(note));
+  told.surfaces.clear();
+  for (const auto& [name, surface] : p.surfaces) told.surfaces.emplace(name, surface);
+  told.phase = in.opening                       ? PlayPhase::kOpening
+               : in.again && p.ticks < in.until ? PlayPhase::kReplaying
+               : in.paused || in.again          ? PlayPhase::kPaused
+                                                : PlayPhase::kPlaying;
+  for (std::string& note : in.notes) told.notes.push_back(std::move(note));
   in.notes.clear();
-  status_.realtime = in.realtime;
-  status_.rate = p.world.simulation.touch_rate;
-  status_.tick = tick;
-  status_.time = static_cast<double>(tick) / status_.rate;
-  status_.pace = in.pace;
-  status_.speed = in.speed;
-  status_.again = in.again;
-  status_.until = in.until;
-  status_.soft = soft != nullptr;
-  if (soft) status_.soft_ms = soft->step_ms;
-  status_.soft_step_ms = 1e3 * p.world.simulation.soft_step;
-  status_.hash = still ? in.hash : std::string();
-  status_.findings = in.findings;
+  told.realtime = in.realtime;
+  told.rate = p.world.simulation.touch_rate;
+  told.tick = tick;
+  told.time = static_cast<double>(tick) / told.rate;
+  told.pace = in.pace;
+  told.speed = in.speed;
+  told.again = in.again;
+  told.until = in.until;
+  told.soft = soft != nullptr;
+  if (soft) told.soft_ms = soft->step_ms;
+  told.soft_step_ms = 1e3 * p.world.simulation.soft_step;
+  told.hash = still ? in.hash : std::string();
+  told.findings = in.findings;
+  in.tell();
 }
 
-// Devices first, so that none keeps a force during shutdown.
+// Devices first, so that none keeps a force during shutdown. The session stays until no picture needs its world.
 void PlayRun::close(Inside& in) {
-  if (in.session) {
-    const Status stopped = in.session->stop();
-    for (SessionEffector& effector : in.parts->effectors) in.parts->take_away(effector, EffectorSource::kReleased);
-    in.parts->noted = nullptr;
-    if (in.journal && in.poses) in.take_rows();
-    auto past = std::make_shared<const PlayPast>(std::move(in.past));
-    const std::lock_guard kept_lock(kept->mutex);
-    kept->past = std::move(past);
-    if (!stopped) {
-      const std::lock_guard lock(mutex_);
-      if (status_.error.empty()) status_.error = stopped.error().message();
-    }
+  if (!in.session) return;
+  const std::lock_guard works(stands_still_);
+  Status ended = in.session->stop();
+  for (SessionEffector& effector : in.parts->effectors) in.parts->take_away(effector, EffectorSource::kReleased);
+  in.parts->noted = nullptr;
+  if (in.journal) in.take_rows();
+  if (in.parts->recorder) {
+    const Status complete = in.parts->recorder->finish();
+    if (ended) ended = complete;
   }
+  auto past = std::make_shared<const PlayPast>(in.past());
+  in.kept = nullptr;
+  in.parts->recorder.reset();
   {
-    std::unique_lock lock(mutex_);
-    may_picture_ = false;
-    status_.phase = PlayPhase::kEnded;
-    changed_.notify_all();
-    changed_.wait(lock, [this] { return !has_picture_; });
-    world_ = nullptr;
+    const std::lock_guard lock(kept->mutex);
+    kept->past = std::move(past);
   }
-  in.journal.reset();
-  in.session.reset();
+  if (!ended && in.status.error.empty()) in.status.error = ended.error().message();
 }
 
 }  // namespace pliant

@@ -6,14 +6,11 @@ SceneView::SceneView(std::shared_ptr<World> world) : kept_(std::move(world)), wo
   make();
 }
 
-SceneView::SceneView(std::shared_ptr<PlayRun> run) : run_(std::move(run)), world_(run_->claim_picture()) {
-  make();
-  if (world_) run_->picture_made();
-}
-
-SceneView::~SceneView() {
-  renderer_.reset();
-  if (run_ && world_) run_->picture_gone();
+SceneView::SceneView(std::shared_ptr<PlayRun> run) : run_(std::move(run)) {
+  run_->make_picture([this](World& world) {
+    world_ = &world;
+    make();
+  });
 }
 
 bool SceneView::wants_picture() const {
@@ -43,10 +40,7 @@ Status SceneView::reload() {
 
 Status SceneView::draw(const SolidOrder& order, GLuint framebuffer, int width, int height) {
   if (!renderer_) return Error{"Rendered", trouble_.empty() ? "there is nothing to draw" : trouble_};
-  if (run_) {
-    while (world_->snapshots->acquire()) renderer_->update(world_->snapshots->read());
-    if (world_->soft_snapshots && world_->soft_snapshots->acquire()) renderer_->update(world_->soft_snapshots->read());
-  }
+  if (run_) renderer_->take(*world_);
   RenderOptions& options = renderer_->options();
   options.wireframe = order.settings.wireframe;
   options.zones = order.settings.zones;

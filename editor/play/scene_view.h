@@ -15,7 +15,6 @@ class SceneView : public Scenery {
  public:
   explicit SceneView(std::shared_ptr<World> world);  // which does not run
   explicit SceneView(std::shared_ptr<PlayRun> run);
-  ~SceneView() override;
 
   Status draw(const SolidOrder& order, GLuint framebuffer, int width, int height) override;
   void ask(std::optional<dvec2> pixel) override { asked_ = pixel; }

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "editor/tools/gizmo.h"
-#include "editor/ui/theme.h"
+#include "viewer/ui/theme.h"
 
 namespace pliant::gizmo {
 namespace {

@@ -8,8 +8,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <unordered_map>
 
-#include "editor/ui/quantity.h"
 #include "editor/viewport/frames.h"
+#include "viewer/ui/quantity.h"
 
 namespace pliant {
 namespace {

@@ -77,7 +77,7 @@ std::vector<Placing> scaled(const GizmoGrip& grip, dvec3 factors);             /
 
 double snapped(double value, double step);  // to a multiple; step 0: as it is
 
-// Text typed during a drag: an axis' letter, then a quantity (editor/ui/quantity.h): "x 0.05", "-3mm".
+// Text typed during a drag: an axis' letter, then a quantity (viewer/ui/quantity.h): "x 0.05", "-3mm".
 struct TypedValue {
   GizmoPart axis = GizmoPart::kNone;  // none: unchanged
   std::optional<double> value;        // in `unit`; empty: no number yet

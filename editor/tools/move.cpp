@@ -7,8 +7,8 @@
 #include "editor/tools/gizmo.h"
 #include "editor/tools/surface_under.h"
 #include "editor/tools/tools.h"
-#include "editor/ui/widgets.h"
 #include "editor/viewport/frames.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "editor/tools/painting.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

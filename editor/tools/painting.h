@@ -13,7 +13,7 @@
 #include "editor/paint/coarse.h"
 #include "editor/paint/paint.h"
 #include "editor/tools/live_stroke.h"
-#include "window/camera_control.h"
+#include "viewer/hand/camera_control.h"
 
 namespace pliant {
 

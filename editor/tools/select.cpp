@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "editor/tools/tools.h"
-#include "editor/ui/theme.h"
 #include "editor/viewport/frames.h"
+#include "viewer/ui/theme.h"
 
 namespace pliant {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "editor/tools/gizmo.h"
 #include "editor/tools/tools.h"
-#include "editor/ui/theme.h"
+#include "viewer/ui/theme.h"
 
 namespace pliant {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
-#include "editor/ui/fonts.h"
-#include "editor/ui/seen.h"
+#include "viewer/ui/fonts.h"
+#include "viewer/ui/seen.h"
 
 namespace pliant::ui {
 namespace {
@@ -40,10 +40,6 @@ constexpr struct {
              {ImGuiKey_X, GLFW_KEY_X},
              {ImGuiKey_Y, GLFW_KEY_Y},
              {ImGuiKey_Z, GLFW_KEY_Z}};
-
-std::size_t imgui_button(MouseButton button) {
-  return button == MouseButton::kLeft ? 0 : button == MouseButton::kRight ? 1 : 2;
-}
 
 }  // namespace
 
@@ -92,7 +88,7 @@ void Host::feed(const ArrivedInput& arrived) {
       break;
     case InputKind::kPress: {
       modifiers();
-      const std::size_t button = imgui_button(event.button);
+      const std::size_t button = static_cast<std::size_t>(event.button);
       io.MouseDown[button] = true;
       // Double clicks are detected by arrival times, not by slow frames.
       const bool twice = pressed_[button] >= 0 && arrived.time - pressed_[button] < kDoubleClick;
@@ -101,7 +97,7 @@ void Host::feed(const ArrivedInput& arrived) {
       break;
     }
     case InputKind::kRelease:
-      io.MouseDown[imgui_button(event.button)] = false;
+      io.MouseDown[static_cast<std::size_t>(event.button)] = false;
       break;
     case InputKind::kWheel:
       modifiers();

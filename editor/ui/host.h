@@ -4,8 +4,8 @@
 #include <span>
 
 #include "editor/ui/input_queue.h"
-#include "editor/ui/theme.h"
-#include "window/window.h"
+#include "viewer/ui/theme.h"
+#include "viewer/window/window.h"
 
 namespace pliant::ui {
 

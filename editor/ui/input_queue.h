@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "window/window_input.h"
+#include "viewer/window/window_input.h"
 
 namespace pliant::ui {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant::ui {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "components/math.h"
-#include "editor/ui/theme.h"
+#include "viewer/ui/theme.h"
 
 namespace pliant::ui {
 

@@ -10,79 +10,16 @@
 
 #include "content/files/file_io.h"
 #include "editor/ui/script_words.h"
-#include "editor/ui/seen.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/seen.h"
+#include "viewer/ui/widgets.h"
+#include "viewer/window/keys.h"
 
 namespace pliant::ui {
 namespace {
 
 constexpr int kRestFrames = 3;  // for an opened window to be drawn and laid out
 
-struct NamedKey {
-  const char* name;
-  int key;
-};
-constexpr NamedKey kNamed[] = {
-    {"Tab", GLFW_KEY_TAB},         {"Esc", GLFW_KEY_ESCAPE},
-    {"Space", GLFW_KEY_SPACE},     {"Home", GLFW_KEY_HOME},
-    {"End", GLFW_KEY_END},         {"Enter", GLFW_KEY_ENTER},
-    {"Delete", GLFW_KEY_DELETE},   {"Backspace", GLFW_KEY_BACKSPACE},
-    {"Left", GLFW_KEY_LEFT},       {"Right", GLFW_KEY_RIGHT},
-    {"Up", GLFW_KEY_UP},           {"Down", GLFW_KEY_DOWN},
-    {"PageUp", GLFW_KEY_PAGE_UP},  {"PageDown", GLFW_KEY_PAGE_DOWN},
-    {".", GLFW_KEY_PERIOD},        {",", GLFW_KEY_COMMA},
-    {"/", GLFW_KEY_SLASH},         {"-", GLFW_KEY_MINUS},
-    {"=", GLFW_KEY_EQUAL},         {"[", GLFW_KEY_LEFT_BRACKET},
-    {"]", GLFW_KEY_RIGHT_BRACKET}, {"Escape", GLFW_KEY_ESCAPE}};  // the first of two names is written
-
 }  // namespace
-
-bool parse_keys(const std::string& keys, int& key, std::uint8_t& modifiers) {
-  modifiers = 0;
-  key = 0;
-  std::string rest = keys;
-  for (;;) {
-    const std::size_t plus = rest.find('+', 1);
-    if (plus == std::string::npos) break;
-    const std::string word = rest.substr(0, plus);
-    if (word == "Ctrl")
-      modifiers |= kControl;
-    else if (word == "Shift")
-      modifiers |= kShift;
-    else if (word == "Alt")
-      modifiers |= kAlt;
-    else
-      return false;
-    rest = rest.substr(plus + 1);
-  }
-  if (rest.size() == 1 && std::isalnum(static_cast<unsigned char>(rest[0]))) {
-    key = std::toupper(static_cast<unsigned char>(rest[0]));
-    return true;
-  }
-  for (const NamedKey& named : kNamed)
-    if (rest == named.name) {
-      key = named.key;
-      return true;
-    }
-  if (rest.size() >= 2 && rest[0] == 'F')
-    if (const auto n = number_of(rest.substr(1)); n && *n >= 1 && *n <= 12) {
-      key = GLFW_KEY_F1 + static_cast<int>(*n) - 1;
-      return true;
-    }
-  return false;
-}
-
-std::string keys_text(int key, std::uint8_t modifiers) {
-  std::string text;
-  if (modifiers & kControl) text += "Ctrl+";
-  if (modifiers & kAlt) text += "Alt+";
-  if (modifiers & kShift) text += "Shift+";
-  if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12) return text + fmt::format("F{}", key - GLFW_KEY_F1 + 1);
-  for (const NamedKey& named : kNamed)
-    if (key == named.key) return text + named.name;
-  if (key > 32 && key < 127) return text + static_cast<char>(key);
-  return {};
-}
 
 Result<Script> Script::load(const std::filesystem::path& file) {
   const Result<Bytes> bytes = read_file(file, limits::kInputFile);

@@ -37,7 +37,7 @@
 #include <vector>
 
 #include "runtime/result.h"
-#include "window/window_input.h"
+#include "viewer/window/window_input.h"
 
 namespace pliant::ui {
 
@@ -94,9 +94,5 @@ class Script {
   bool at_once_ = false;                        // steps gather in one frame
   std::string awaited_;                         // by the step before; "": it was no `await`
 };
-
-// "Ctrl+Shift+S" -> modifiers and key as GLFW numbers it; false: not understood.
-bool parse_keys(const std::string& keys, int& key, std::uint8_t& modifiers);
-std::string keys_text(int key, std::uint8_t modifiers);
 
 }  // namespace pliant::ui

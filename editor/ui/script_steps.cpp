@@ -7,8 +7,8 @@
 
 #include "editor/ui/script.h"
 #include "editor/ui/script_words.h"
-#include "editor/ui/seen.h"
-#include "editor/ui/widgets.h"
+#include "viewer/ui/seen.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant::ui {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "window/window_input.h"
+#include "viewer/window/window_input.h"
 
 namespace pliant::ui {
 

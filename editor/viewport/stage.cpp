@@ -10,12 +10,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kSlowDraw = 60.0, kFastDraw = 18.0, kWantedDraw = 35.0;  // [ms]
 constexpr double kTooLong = 1000.0;                            // [ms] limit for a full-resolution picture, to stay
                                                                // responsive
 constexpr auto kRefineAfter = std::chrono::milliseconds(160);  // without changes, after which a coarse picture is
                                                                // redrawn in full
-constexpr double kCoarsest = 0.25, kFinest = 2.0;  // [1] of the resolution, each way; above 1 edges are smoothed
+constexpr double kFinest = 2.0;                                // [1] of the resolution, each way: edges are smoothed
 
 }  // namespace
 
@@ -27,7 +26,8 @@ Result<std::unique_ptr<Stage>> Stage::create(Window& window, std::function<void(
   stage->context_ = *std::move(context);
   stage->wake_ = std::move(wake);
   const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  stage->software_ = renderer && (std::strstr(renderer, "llvmpipe") || std::strstr(renderer, "softpipe"));
+  const bool software = renderer && (std::strstr(renderer, "llvmpipe") || std::strstr(renderer, "softpipe"));
+  stage->budget_ = PictureBudget(software ? 1.0 : kFinest);
   window.take_context();
   stage->thread_ = std::thread([s = stage.get()] { s->run(); });
   return stage;
@@ -167,7 +167,7 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
     return;
   }
   // If only outlines changed, the picture is cheap at its current resolution.
-  const double share = refine ? 1.0 : same ? done_.share : share_;
+  const double share = refine ? 1.0 : same ? done_.share : budget_.share();
   int at = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -241,25 +241,7 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
     drawn_at_ = std::chrono::steady_clock::now();
     if (last_.question && last_.question_number == done_.question) last_.question.reset();
   }
-  if (!same && !refine) choose_share(took);
-}
-
-void Stage::choose_share(double took) {
-  // A late picture is worse than a coarse one, but only the pixel cost can be reduced. The triangle cost is estimated
-  // from two pictures of different resolution.
-  const double pixels = share_ * share_;
-  if (std::abs(pixels - sample_pixels_) > 0.05 && sample_pixels_ > 0.0)
-    fixed_ms_ = std::clamp(took - pixels * (took - sample_ms_) / (pixels - sample_pixels_), 0.0, took);
-  fixed_ms_ = std::min(fixed_ms_, took);
-  const double finest = software_ ? 1.0 : kFinest;
-  if (took > kSlowDraw || (took < kFastDraw && share_ < finest)) {
-    const double per_pixel = std::max(took - fixed_ms_, 0.1) / pixels,
-                 room = std::max(kWantedDraw - fixed_ms_, 0.5 * fixed_ms_);
-    sample_pixels_ = pixels;
-    sample_ms_ = took;
-    share_ = std::clamp(std::sqrt(room / per_pixel), std::max(kCoarsest, 0.5 * share_), std::min(finest, 2.0 * share_));
-    if (std::abs(share_ - 1.0) < 0.1) share_ = 1.0;
-  }
+  if (!same && !refine) budget_.drawn(took);
 }
 
 }  // namespace pliant

@@ -11,7 +11,8 @@
 #include <thread>
 
 #include "editor/viewport/solid_view.h"
-#include "window/window.h"
+#include "viewer/picture/picture_budget.h"
+#include "viewer/window/window.h"
 
 namespace pliant {
 
@@ -79,7 +80,6 @@ class Stage {
   void run();
   void draw(const StageOrder& order, std::uint64_t number, bool refine);
   void answer(const StageOrder& order, std::uint64_t number);
-  void choose_share(double took_ms);
 
   Window* window_ = nullptr;
   std::unique_ptr<SharedContext> context_;
@@ -103,11 +103,8 @@ class Stage {
   Target targets_[3];
   std::unique_ptr<SolidView> solid_;
   std::unique_ptr<Scenery> scenery_;
-  std::optional<StageOrder> drawn_;               // of the document, shown by the newest picture
-  double share_ = 1.0;                            // [1] of the resolution, of the next picture
-  double fixed_ms_ = 0.0;                         // of a picture, whatever its resolution
-  double sample_pixels_ = 0.0, sample_ms_ = 0.0;  // [1] of all, [ms]: an earlier picture of another resolution
-  bool software_ = false;
+  std::optional<StageOrder> drawn_;  // of the document, shown by the newest picture
+  PictureBudget budget_;
   std::string failure_, shader_trouble_;
   std::thread thread_;
 };

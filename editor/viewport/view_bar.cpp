@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "editor/tools/gizmo_math.h"
-#include "editor/ui/widgets.h"
 #include "editor/viewport/frames.h"
 #include "editor/viewport/signs.h"
 #include "runtime/printable.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {

@@ -4,29 +4,7 @@
 
 namespace pliant {
 
-void ViewCamera::home(const Box& scene) {
-  Box box = scene;
-  if (box.empty() || !(box.diagonal() > 0.0f)) {
-    box.add(vec3(-0.1f));
-    box.add(vec3(0.1f));
-  }
-  const dvec3 center(box.center());
-  constexpr float kYfov = 0.7f;
-  const double away = 0.62 * static_cast<double>(box.diagonal()) / std::sin(0.5 * static_cast<double>(kYfov));
-  control_.emplace(Viewpoint{center + away * glm::normalize(dvec3(0.45, 0.38, 1.0)), center, {0, 1, 0}, kYfov}, box);
-}
-
-void ViewCamera::frame(const Box& box) {
-  if (box.empty()) return;
-  control_->frame(box);
-}
-
-bool ViewCamera::moving() const {
-  return control_->moving();
-}
-
-double ViewCamera::orthographic_height() const {
-  const Viewpoint view = viewpoint();
+double orthographic_height(const Viewpoint& view) {
   return 2.0 * length(view.target - view.eye) * std::tan(0.5 * static_cast<double>(view.yfov));
 }
 

@@ -1,4 +1,4 @@
-// The state of a run's devices as plain values for display: a panel draws it (editor/ui/device_list.h) in the window of
+// The state of a run's devices as plain values for display: a panel draws it (viewer/ui/device_list.h) in the window of
 // a run and in the editor.
 #pragma once
 

@@ -24,8 +24,8 @@ std::size_t room_for(std::size_t effectors) {
 
 }  // namespace
 
-PoseRecorder::PoseRecorder(RecordingWriter writer, std::size_t effectors)
-    : writer_(std::move(writer)),
+PoseRecorder::PoseRecorder(std::unique_ptr<RecordingSink> sink, std::size_t effectors)
+    : sink_(std::move(sink)),
       room_(room_for(effectors)),
       last_(effectors),
       rows_(room_ * effectors),
@@ -65,7 +65,7 @@ void PoseRecorder::write_events(std::uint64_t until) {
     RecordedEvent event = announced_.front();
     announced_.pop_front(), ++first_announced_;
     event.tick = stamped_[done].tick;
-    writer_.event(event);
+    sink_->event(event);
   }
   stamped_.erase(stamped_.begin(), stamped_.begin() + static_cast<std::ptrdiff_t>(done));
 }
@@ -84,8 +84,8 @@ void PoseRecorder::drain() {
     pending_.push_back(row.pose);
     if (pending_.size() < last_.size()) continue;
     write_events(row.tick);
-    writer_.tick(row.tick);
-    for (const RecordedPose& pose : pending_) writer_.pose(pose);
+    sink_->tick(row.tick);
+    for (const RecordedPose& pose : pending_) sink_->pose(pose);
   }
 }
 
@@ -101,7 +101,7 @@ void PoseRecorder::start() {
 Status PoseRecorder::finish() {
   if (thread_.joinable()) thread_.request_stop(), thread_.join();
   drain();
-  if (Status written = writer_.finish(); !written) return written;
+  if (Status written = sink_->finish(); !written) return written;
   if (rows_.lost() > 0)
     return Error{"recording", fmt::format("{} poses were lost because writing fell behind", rows_.lost()),
                  "use a faster disk"};

@@ -1,9 +1,10 @@
 // A recording in progress: the pose of every probe and tool in every tick. The touch clock adds poses; the owner, or in
-// real time a thread of the recorder, writes them.
+// real time a thread of the recorder, passes them to a file or to memory.
 #pragma once
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -26,7 +27,7 @@ struct PoseRow {
 
 class PoseRecorder {
  public:
-  PoseRecorder(RecordingWriter writer, std::size_t effectors);
+  PoseRecorder(std::unique_ptr<RecordingSink> sink, std::size_t effectors);
   // Touch clock: every effector of a tick, in order. `ready`: its state was known and fresh. `felt`: its guard passed
   // the force.
   void note(std::uint64_t tick, std::uint32_t effector, const HapticDevice& device, bool ready, bool felt);
@@ -36,17 +37,17 @@ class PoseRecorder {
   // which it takes effect.
   std::uint32_t announce(const RecordedEvent& event);
   void stamp(std::uint32_t number, std::uint64_t tick) { stamps_.record({number, tick}); }
-  void write_now(const RecordedEvent& event) { writer_.event(event); }  // before the first tick
+  void write_now(const RecordedEvent& event) { sink_->event(event); }  // before the first tick
   void drain();
   std::size_t room() const { return room_; }  // [ticks] capacity
   void start();                               // starts a thread that drains
   Status finish();
   // Owner's thread, while no thread drains: the reason why writing failed; number of ticks written.
-  const std::optional<Error>& failure() const { return writer_.failure(); }
-  std::uint64_t ticks() const { return writer_.ticks(); }
+  const std::optional<Error>& failure() const { return sink_->failure(); }
+  std::uint64_t ticks() const { return sink_->ticks(); }
 
  private:
-  RecordingWriter writer_;
+  std::unique_ptr<RecordingSink> sink_;
   std::size_t room_;                   // [ticks] capacity
   std::vector<RecordedPose> last_;     // touch clock: last valid pose per effector
   std::vector<RecordedPose> pending_;  // of the current tick

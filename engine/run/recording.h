@@ -83,23 +83,36 @@ struct Recording {
 Result<Recording> parse_recording(const std::string& name, const std::string& bytes);
 Result<Recording> read_recording(const std::filesystem::path& file);
 
+// Where a recording goes: a file, or memory (kept_recording.h). Events come before the tick in which they take effect,
+// a tick before its poses: one per probe, in order.
+class RecordingSink {
+ public:
+  virtual ~RecordingSink() = default;
+  virtual void tick(std::uint64_t index) = 0;
+  virtual void pose(const RecordedPose& pose) = 0;
+  virtual void event(const RecordedEvent& event) = 0;
+  virtual const std::optional<Error>& failure() const = 0;
+  virtual std::uint64_t ticks() const = 0;  // so far
+  virtual Status finish() = 0;
+};
+
 // Writes to a temporary file that finish() moves into place. A failed write ends the recording: what was recorded
 // before is kept.
-class RecordingWriter {
+class RecordingWriter final : public RecordingSink {
  public:
   // An existing file is an error; with `replace`, only one that is not a recording.
   static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header,
                                         bool replace = false);
   RecordingWriter(RecordingWriter&&) = default;
-  ~RecordingWriter();
-  void tick(std::uint64_t index);  // followed by one pose per probe, in order
-  void pose(const RecordedPose& pose);
-  void event(const RecordedEvent& event);  // before the tick in which it takes effect
-  const std::optional<Error>& failure() const { return out_->failure(); }
-  std::uint64_t ticks() const { return ticks_; }                 // so far
+  ~RecordingWriter() override;
+  void tick(std::uint64_t index) override;
+  void pose(const RecordedPose& pose) override;
+  void event(const RecordedEvent& event) override;
+  const std::optional<Error>& failure() const override { return out_->failure(); }
+  std::uint64_t ticks() const override { return ticks_; }
   const std::filesystem::path& aside() const { return aside_; }  // path until finish()
   // Moves the file into place. A recording without a tick is an error and replaces nothing.
-  Status finish();
+  Status finish() override;
 
  private:
   RecordingWriter() = default;

@@ -70,6 +70,11 @@ std::uint32_t Session::Parts::note_event(const RecordedEvent& event) {
   return recorder ? recorder->announce(event) : 0;
 }
 
+void Session::Parts::note_new_source(Entity effector, const RecordedEvent& event) {
+  const std::uint32_t number = note_event(event);
+  if (number > 0) edits->push({effector, EventEdit{EventKind::kNewSource, 0.0, {}, {}, {}}, number});
+}
+
 void Session::Parts::keep_standing(const RecordedEvent& event) {
   if (event.kind == EventKind::kPush || event.kind == EventKind::kPointPush || event.kind == EventKind::kPlace) return;
   std::erase_if(standing, [&](const RecordedEvent& before) { return replaces(event, before); });
@@ -185,7 +190,7 @@ Status Session::Parts::perform(const RecordedEvent& event) {
   for (std::size_t at = 0, end; (end = event.key.find('\n', at)) != std::string::npos; at = end + 1)
     limits.push_back(event.key.substr(at, end - at));
   begin_anew(world, effector->entity);
-  note_event(event);
+  note_new_source(effector->entity, event);
   return apply_driver_settings(world, limits);
 }
 

@@ -295,8 +295,7 @@ void Session::Parts::begin(SessionEffector& effector) {
   effector.renewed = ticks > 0;  // before the first tick there is nothing to lose
   std::string limits;
   for (const std::string& setting : driver_settings(effector.name, device)) limits += setting + "\n";
-  const std::uint32_t number = note_event({0, EventKind::kNewSource, effector.name, limits, 0, {}});
-  if (number > 0) edits->push({effector.entity, EventEdit{EventKind::kNewSource, 0.0, {}, {}, {}}, number});
+  note_new_source(effector.entity, {0, EventKind::kNewSource, effector.name, limits, 0, {}});
 }
 
 void Session::Parts::zero_drivers() noexcept {

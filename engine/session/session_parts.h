@@ -198,6 +198,7 @@ struct Session::Parts {
   Status send_to_hand(const RecordedEvent& event, const char* what);
   Status send_to_body(const RecordedEvent& event, const char* what);
   std::uint32_t note_event(const RecordedEvent& event);  // its number in the recording
+  void note_new_source(Entity effector, const RecordedEvent& event);
   void keep_standing(const RecordedEvent& event);
   Status send_standing();  // to a new world
 

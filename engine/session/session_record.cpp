@@ -30,7 +30,8 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
       header.settings.push_back(std::move(setting));
   auto writer = RecordingWriter::create(file, header, replace);
   if (!writer) return writer.error();
-  p.recorder = std::make_unique<PoseRecorder>(std::move(writer).value(), p.effectors.size());
+  p.recorder =
+      std::make_unique<PoseRecorder>(std::make_unique<RecordingWriter>(std::move(writer).value()), p.effectors.size());
   // Events already in effect. Parameters and drivers are in the header.
   std::vector<RecordedEvent> holds = p.ticks == 0 && !p.history.lacking ? p.history.events : p.standing;
   if (p.ticks > 0)

@@ -35,7 +35,7 @@ constexpr const char* kNeedsWindow =
 constexpr const char *kUnitSetting = "--unit=", *kErrorSetting = "--error=";  // in a recording's settings
 
 // The default probe of a window: without --probe and without a mouse probe in the level, the mouse gets one. Not if
-// there is a tool, which the mouse carries instead (window/carrier.h).
+// there is a tool, which the mouse carries instead (viewer/hand/carrier.h).
 std::optional<ProbeSource> mouse_probe(const Level& level) {
   for (const LevelNode& node : level.nodes)
     if (node.handle || (node.device && node.device->driver == DriverKind::kMouse)) return {};

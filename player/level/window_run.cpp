@@ -7,7 +7,7 @@
 #include "content/device_answers.h"
 #include "content/files/file_io.h"
 #include "editor/app/settings.h"
-#include "editor/ui/device_list.h"
+#include "viewer/window/keys.h"
 
 namespace pliant {
 namespace {
@@ -109,8 +109,8 @@ Ran run_shown(const RunOptions& options, const Prepared& run, Shown& shown, Touc
   std::string unread;
   const Settings settings = Settings::load({}, unread);
   if (!unread.empty()) note(unread);
-  const auto keys = settings.keys.find(ui::kStopAction);
-  session.stop_keys = keys == settings.keys.end() || keys->second.empty() ? ui::kStopKeys : keys->second;
+  const auto keys = settings.keys.find(kStopAction);
+  session.stop_keys = keys == settings.keys.end() || keys->second.empty() ? kStopKeys : keys->second;
   session.rate = loop.runner.world().simulation.touch_rate;
   session.ticks = loop.ticks;
   session.frame_width = options.width;

@@ -113,7 +113,7 @@ void Keeper::keep(const TickRow& row) {
 }
 
 PoseRecorder& Keeper::record_to(RecordingWriter writer) {
-  recorder_ = std::make_unique<PoseRecorder>(std::move(writer), names_.size());
+  recorder_ = std::make_unique<PoseRecorder>(std::make_unique<RecordingWriter>(std::move(writer)), names_.size());
   return *recorder_;
 }
 

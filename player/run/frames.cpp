@@ -52,8 +52,7 @@ Result<std::unique_ptr<Frames>> Frames::create(const World& world, int width, in
 }
 
 void Frames::update(World& world) {
-  while (world.snapshots->acquire()) renderer_->update(world.snapshots->read());
-  if (world.soft_snapshots && world.soft_snapshots->acquire()) renderer_->update(world.soft_snapshots->read());
+  renderer_->take(world);
 }
 
 void Frames::update_all(World& world, Tick tick) {

@@ -8,8 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "editor/ui/device_list.h"
 #include "systems/safety/safety.h"
+#include "viewer/ui/device_list.h"
+#include "viewer/window/keys.h"
 
 namespace pliant {
 namespace {
@@ -17,28 +18,6 @@ namespace {
 constexpr ImU32 kForceColor = IM_COL32(255, 158, 87, 255), kDepthColor = IM_COL32(104, 190, 255, 255);
 constexpr ImU32 kGridColor = IM_COL32(255, 255, 255, 22), kPlotColor = IM_COL32(0, 0, 0, 90);
 const ImVec4 kDim(0.62f, 0.66f, 0.71f, 1.0f), kGood(0.55f, 0.86f, 0.62f, 1.0f), kBad(1.0f, 0.52f, 0.45f, 1.0f);
-
-constexpr const char* kKeys[][2] = {
-    {"Left button on a surface or body", "press; hold it down, drag to slide"},
-    {"Ctrl + left on a body", "pull it; wheel: away or near"},
-    {"Wheel while pressing", "deeper or shallower"},
-    {"Ctrl + wheel", "stay pressed at a depth"},
-    {"Left button on a tool", "carry it; wheel: away or near"},
-    {"Left on nothing, right, Alt + left", "turn the view"},
-    {"Middle, Shift + left", "shift the view"},
-    {"Wheel", "nearer or farther"},
-    {"F, Home", "see everything; the first view"},
-    {"1, 3, 7", "from the front, the right, above"},
-    {"Space, R", "pause, which lets devices go; start anew"},
-    {"W, Z, H", "wireframe, zones, height as colour"},
-    {"C, A, S", "contact frames, force arrows, shadows"},
-    {"T, K, G", "tetrahedra, contacts of soft bodies, handles of tools"},
-    {"F12", "screenshot into the run's folder"},
-    {"Tab, F1", "hide or show figures; this page"},
-    {"D", "devices: state, axes, forces, arming"},
-    {"Drop a file", "open it"},
-    {"Esc", "close"},
-};
 
 // The editor's fonts and spacing, on transparent panels.
 void style(float scale) {
@@ -156,11 +135,6 @@ void plot(const ProbeLine& probe, float scale) {
   ImGui::Dummy(size);
 }
 
-void toggle(const char* name, bool& value, bool second_column, float scale) {
-  if (second_column) ImGui::SameLine(150 * scale);
-  ImGui::Checkbox(name, &value);
-}
-
 void draw_figures(const OverlayState& state) {
   const TouchFigures& touch = state.touch;
   figure("tick p50, p99, max", fmt::format("{:.0f}  {:.0f}  {:.0f} us", touch.p50, touch.p99, touch.max));
@@ -179,21 +153,11 @@ void draw_figures(const OverlayState& state) {
 
 void draw_switches(RenderOptions& options, float tint, float scale) {
   ImGui::Separator();
-  bool height = options.tint_height > 0;
-  toggle("wireframe", options.wireframe, false, scale);
-  toggle("zones", options.zones, true, scale);
-  toggle("height as colour", height, false, scale);
-  toggle("shadows", options.shadows, true, scale);
-  toggle("contact frames", options.contact_frames, false, scale);
-  toggle("force arrows", options.forces, true, scale);
-  toggle("probes", options.markers, false, scale);
-  toggle("bump", options.bump, true, scale);
-  toggle("reflection", options.reflection, false, scale);
-  toggle("refraction", options.refraction, true, scale);
-  toggle("tetrahedra", options.tetrahedra, false, scale);
-  toggle("contacts", options.contacts, true, scale);
-  toggle("handles", options.handles, false, scale);
-  toggle("surroundings", options.background, true, scale);
+  bool height = options.tint_height > 0, second = false;
+  for (const Switch& each : switches()) {
+    if (std::exchange(second, !second)) ImGui::SameLine(150 * scale);
+    ImGui::Checkbox(each.name, each.of ? &(options.*each.of) : &height);
+  }
   options.tint_height = height ? (options.tint_height > 0 ? options.tint_height : tint) : 0.0f;
 }
 
@@ -210,9 +174,22 @@ void draw_help(const OverlayState& state, float scale) {
     ImGui::SameLine(250 * scale);
     ImGui::Text("%s", what);
   };
-  if (!state.stop_keys.empty())
-    row(state.stop_keys.c_str(), "emergency stop: no device has force until it is armed", kBad);
-  for (const auto& key : kKeys) row(key[0], key[1], ImGui::ColorConvertU32ToFloat4(kForceColor));
+  if (!state.stop_keys.empty()) row(state.stop_keys.c_str(), key_row(kStopAction).words, kBad);
+  const ImVec4 color = ImGui::ColorConvertU32ToFloat4(kForceColor);
+  for (const MouseRow& each : mouse_rows()) row(each.how, each.words, color);
+  std::string keys, words;
+  const auto flush = [&] {
+    if (!keys.empty()) row(keys.c_str(), words.c_str(), color);
+    keys = words = "";
+  };
+  for (const KeyRow& each : key_rows()) {
+    if (each.id == std::string(kStopAction)) continue;
+    const bool continues = each.words[0] == ',' || each.words[0] == ';';
+    if (!continues) flush();
+    keys += (continues ? ", " : "") + std::string(each.window);
+    words += each.words;
+  }
+  flush();
   ImGui::End();
 }
 
@@ -247,6 +224,27 @@ void draw_cursor(const OverlayState& state, float scale) {
 }
 
 }  // namespace
+
+std::span<const Switch> switches() {
+  using O = RenderOptions;
+  static constexpr Switch kSwitches[] = {
+      {"wireframe", &O::wireframe, "view.wireframe"},
+      {"zones", &O::zones, "view.zones"},
+      {"height as colour", nullptr, "view.height"},
+      {"shadows", &O::shadows, "view.shadows"},
+      {"contact frames", &O::contact_frames, "view.contact_frames"},
+      {"force arrows", &O::forces, "play.forces"},
+      {"probes", &O::markers, ""},
+      {"bump", &O::bump, ""},
+      {"reflection", &O::reflection, ""},
+      {"refraction", &O::refraction, ""},
+      {"tetrahedra", &O::tetrahedra, "view.tetrahedra"},
+      {"contacts", &O::contacts, "play.contacts"},
+      {"handles", &O::handles, "view.handles"},
+      {"surroundings", &O::background, ""},
+  };
+  return kSwitches;
+}
 
 void ProbeHistory::add(const TickRow& row) {
   const auto number = static_cast<std::int64_t>(row.time / kSeconds * static_cast<double>(kBins));

@@ -4,17 +4,18 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "components/math.h"
-#include "editor/ui/widgets.h"
 #include "engine/run/device_view.h"
 #include "engine/run/journal.h"
 #include "engine/run/soft_clock.h"
 #include "engine/run/touch_clock.h"
 #include "systems/visual/renderer.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant {
 
@@ -47,6 +48,14 @@ struct ProbeLine {
   vec3 color{0};  // linear
   ProbeHistory history;
 };
+
+// The panel's switches, in order, and the keys of some (viewer/window/keys.h).
+struct Switch {
+  const char* name;
+  bool RenderOptions::*of;  // null: tint_height
+  const char* id;
+};
+std::span<const Switch> switches();
 
 // Everything that the overlay shows; the drawing code keeps it current.
 struct OverlayState {

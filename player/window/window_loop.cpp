@@ -25,12 +25,17 @@ constexpr std::size_t kLongestTitle = 28, kLongestName = 16;  // [byte] in the p
 constexpr double kHungEnd = 10.0;                             // [s] for which the end waits for a picture
 constexpr double kHungPicture = 2.0;  // [s] after a longer picture the hand moves unseen: the heartbeat stops
 
-std::optional<MouseProbe> mouse_probe_of(const World& world) {
+// Of the first probe of the mouse, else of the first tool that it may carry.
+MouseHand hand_in(World& world, const Viewpoint& view) {
+  MouseHand hand;
   for (auto [entity, probe] : world.registry.view<Probe>()) {
     const HapticDevice* device = world.registry.find<HapticDevice>(probe.device);
-    if (device && device->driver == DriverKind::kMouse) return MouseProbe{probe.radius, probe.meets};
+    if (!device || device->driver != DriverKind::kMouse) continue;
+    hand.take(Pointer(world, probe.radius, view, probe.meets));
+    return hand;
   }
-  return {};
+  if (std::optional<Carrier> carrier = Carrier::of(world)) hand.take(*std::move(carrier));
+  return hand;
 }
 
 // A file name cut to a panel's width, in whole characters.
@@ -58,10 +63,7 @@ float tint_of(const World& world) {
 WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
     : s_(session),
       camera_(default_viewpoint(session.world), drawn_box(session.world, false)),
-      of_mouse_(mouse_probe_of(session.world)),
-      pointer_(session.world, of_mouse_.value_or(MouseProbe{}).radius, camera_.viewpoint(),
-               of_mouse_.value_or(MouseProbe{}).meets),
-      carrier_(of_mouse_ ? std::nullopt : Carrier::of(session.world)),
+      hand_(hand_in(session.world, camera_.viewpoint())),
       options_(renderer.options()),
       tint_(tint_of(session.world)),
       pictures_(session.window, session.world, renderer) {
@@ -73,16 +75,18 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
     state_.probes.push_back(
         {cut(summary.name, kLongestName), cut(summary.source, kLongestTitle), probe ? probe->color : kToolColor, {}});
     if (summary.source == "mouse") mouse_probe_ = i;
-    if (carrier_ && session.journal.probes()[i] == carrier_->tool()) carried_ = i;
+    if (session.journal.probes()[i] == hand_.tool()) carried_ = i;
   }
   state_.stop_keys = session.devices ? session.stop_keys : std::string();
   state_.show_devices = session.devices != nullptr;
   for (const std::string& line : session.question) state_.question.push_back(printable(line));
   mouse_.x = 0.5 * session.window.width();
   mouse_.y = 0.5 * session.window.height();
-  probe_at_ = carrier_ ? carrier_->position() : pointer_.update(0.0);
-  if (of_mouse_ || carrier_) add_mouse(session.world, probe_at_);
-  if (carried_ && carrier_->taken() == kNoEntity)
+  if (const std::optional<dvec3> at = hand_.update(0.0)) {
+    probe_at_ = *at;
+    add_mouse(session.world, probe_at_);
+  }
+  if (carried_ && hand_.taken_device() == kNoEntity)
     say("drag `" + session.keeper.summaries()[*carried_].name + "` with the left button to move it", false);
 }
 
@@ -94,26 +98,21 @@ ViewRay WindowLoop::ray() const {
 // absence is a time-out. A hung picture stops the heartbeat too.
 void WindowLoop::point(double dt) {
   const double force = mouse_probe_ ? state_.probes[*mouse_probe_].history.newest().force : 0.0;
-  cursor_.update(drag_ == Drag::kPress, force, dt);  // a pull stretches towards the hand
-  if (!of_mouse_ && !carrier_) return;
-  if (carrier_) {
-    if (drag_ == Drag::kCarry) carrier_->follow(ray(), camera_.viewpoint());
-    carrier_->update(dt);
-    probe_at_ = carrier_->position();
-  } else if (pointed_ && !looks_around()) {
-    if (drag_ == Drag::kPull) pointer_.follow(ray(), camera_.viewpoint());
-    probe_at_ = pointer_.update(dt);
+  cursor_.update(hand_.grip() == MouseHand::Grip::kPress, force, dt);  // a pull stretches towards the hand
+  if (!hand_.has_probe() && !hand_.has_tool()) return;
+  if (hand_.has_tool() || (pointed_ && !looks_around())) {
+    if (drag_ == Drag::kHand) hand_.follow(ray(), camera_.viewpoint());
+    probe_at_ = *hand_.update(dt);
   }
   if (pictures_.seconds() < kHungPicture) {
-    s_.world.mouse->samples.write() = {probe_at_, of_mouse_ && pointer_.free(),
-                                       carrier_ ? carrier_->taken() : kNoEntity, pointer_.probe_hold()};
+    s_.world.mouse->samples.write() = {probe_at_, hand_.free(), hand_.taken_device(), hand_.probe_hold()};
     s_.world.mouse->samples.publish();
   }
-  state_.cursor = of_mouse_ && pointed_ && !looks_around();
+  state_.cursor = hand_.has_probe() && pointed_ && !looks_around();
   state_.cursor_x = cursor_.x();
   state_.cursor_y = cursor_.y();
   state_.cursor_force = force;
-  state_.pressing = pointer_.pressing();
+  state_.pressing = hand_.pressing();
   s_.window.hide_cursor(state_.cursor && !wants_mouse_);
 }
 
@@ -162,7 +161,7 @@ PictureOrder WindowLoop::order(bool shown) {
   next.tint = tint_;
   const bool asked = drag_ == Drag::kAsked;
   const double x = asked ? pressed_x_ : cursor_.x(), y = asked ? pressed_y_ : cursor_.y();
-  next.question = {x, y, next.width, next.height, ++questions_, pointer_.holds()};
+  next.question = {x, y, next.width, next.height, ++questions_, hand_.holds()};
   asked_ray_ = ray_through(next.view, x, y, next.width, next.height);
   next.frame = next_frame();
   next.frame_width = s_.frame_width;
@@ -206,8 +205,8 @@ Status WindowLoop::learn(const PictureDone& done) {
   shooting_.clear();
   if (!done.answer) return Done{};
   answer_ = done.answer;
-  pointer_.see(done.answer->seen, asked_ray_);
-  if (drag_ == Drag::kAsked && done.answer->question.number >= decides_) decide(done.answer->seen);
+  hand_.see(done.answer->seen, asked_ray_);
+  if (drag_ == Drag::kAsked && done.answer->question.number >= decides_) decide();
   return Done{};
 }
 

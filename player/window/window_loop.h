@@ -8,20 +8,13 @@
 #include "player/window/overlay.h"
 #include "player/window/window_picture.h"
 #include "player/window/window_session.h"
-#include "window/camera_control.h"
-#include "window/carrier.h"
-#include "window/pointer.h"
+#include "viewer/hand/mouse_hand.h"
 
 namespace pliant {
 
-// Action of a held mouse button. kAsked: depends on the object under the cursor, which is not known yet.
-enum class Drag : std::uint8_t { kNone, kAsked, kPress, kPull, kCarry, kOrbit, kPan };
-
-// The probe that the mouse moves.
-struct MouseProbe {
-  double radius = 0.0;  // [m]
-  ProbeMeets meets = ProbeMeets::kAll;
-};
+// Action of a held mouse button. kAsked: depends on the object under the cursor, which is not known yet. kHand: its
+// grip.
+enum class Drag : std::uint8_t { kNone, kAsked, kHand, kOrbit, kPan };
 
 // State of one session while it runs. The touch clock owns the world meanwhile: this side reads only constant data
 // (copied before the start) and data from exchanges.
@@ -40,7 +33,7 @@ class WindowLoop {
   void emergency_stop();
   void press_widgets();
   void press(const InputEvent& event);
-  void decide(const std::optional<Picked>& seen);
+  void decide();
   void release();
   void move(const InputEvent& event);
   void wheel(const InputEvent& event);
@@ -59,9 +52,7 @@ class WindowLoop {
 
   WindowSession& s_;
   CameraControl camera_;
-  std::optional<MouseProbe> of_mouse_;  // the probe at the mouse
-  Pointer pointer_;
-  std::optional<Carrier> carrier_;
+  MouseHand hand_;
   HeavyCursor cursor_;
   RenderOptions options_, ordered_options_;  // as wanted now, and of the current picture
   OverlayState state_;

@@ -1,23 +1,15 @@
-#include "player/window/window_loop.h"
-
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
-
 #include <cmath>
 
-#include "editor/ui/script.h"
 #include "lab/console/exit.h"
+#include "player/window/window_loop.h"
 #include "runtime/printable.h"
+#include "viewer/window/keys.h"
 
 namespace pliant {
 namespace {
 
 constexpr double kSamePlace = 2.0;    // [pixel]
 constexpr double kPressWithin = 3.0;  // [s] for which a script waits for its widget
-
-std::size_t imgui_button(MouseButton button) {
-  return button == MouseButton::kLeft ? 0 : button == MouseButton::kRight ? 1 : 2;
-}
 
 }  // namespace
 
@@ -71,32 +63,21 @@ void WindowLoop::press(const InputEvent& event) {
     const auto here = [&](const PickQuestion& q) {
       return std::hypot(q.x - pressed_x_, q.y - pressed_y_) < kSamePlace;
     };
-    if (answer_ && here(answer_->question)) decide(answer_->seen);
+    if (answer_ && here(answer_->question)) decide();
   }
 }
 
 // Decides what was pressed: a panel, a touchable object, the tool, or nothing, which orbits the view.
-void WindowLoop::decide(const std::optional<Picked>& seen) {
-  if (wants_mouse_) {
+void WindowLoop::decide() {
+  if (wants_mouse_)
     drag_ = Drag::kNone;
-  } else if (of_mouse_ && wants_pull_ && pointer_.over_body()) {
-    drag_ = Drag::kPull;
-    pointer_.grab();
-  } else if (of_mouse_ && pointer_.over_touchable()) {
-    drag_ = Drag::kPress;
-    pointer_.hold(true);
-  } else if (carrier_ && seen && seen->object == carrier_->tool()) {
-    drag_ = Drag::kCarry;
-    carrier_->grab(seen->point, tool_at_);
-  } else {
-    drag_ = Drag::kOrbit;
-  }
+  else
+    drag_ = hand_.press(wants_pull_, tool_at_) == MouseHand::Grip::kNone ? Drag::kOrbit : Drag::kHand;
 }
 
 void WindowLoop::release() {
   drag_ = Drag::kNone;
-  pointer_.hold(false);
-  if (carrier_) carrier_->release();
+  hand_.release();
 }
 
 void WindowLoop::move(const InputEvent& event) {
@@ -112,15 +93,10 @@ void WindowLoop::move(const InputEvent& event) {
 void WindowLoop::wheel(const InputEvent& event) {
   mouse_.wheel += event.y;
   if (wants_mouse_) return;
-  const int steps = event.y > 0 ? 1 : -1;
-  if (drag_ == Drag::kPress) {
-    pointer_.deepen(steps);
-  } else if (drag_ == Drag::kPull) {
-    pointer_.push(event.y, camera_.viewpoint());
-  } else if (drag_ == Drag::kCarry) {
-    carrier_->push(event.y, camera_.viewpoint());
-  } else if ((event.modifiers & kControl) && of_mouse_) {
-    pointer_.stand(steps);
+  if (drag_ == Drag::kHand) {
+    hand_.wheel(event.y, camera_.viewpoint());
+  } else if ((event.modifiers & kControl) && hand_.has_probe()) {
+    hand_.stand(event.y > 0 ? 1 : -1);
   } else {
     camera_.zoom(event.y);
   }
@@ -154,78 +130,29 @@ void WindowLoop::press_widgets() {
 }
 
 void WindowLoop::key(int key) {
-  RenderOptions& options = options_;
-  switch (key) {
-    case GLFW_KEY_ESCAPE:
-      if (!state_.help) close_ = true;
-      state_.help = false;
-      break;
-    case GLFW_KEY_F1:
-      state_.help = !state_.help;
-      break;
-    case GLFW_KEY_TAB:
-      state_.figures = !state_.figures;
-      break;
-    case GLFW_KEY_D:
-      state_.show_devices = !state_.show_devices;
-      state_.figures |= state_.show_devices;
-      break;
-    case GLFW_KEY_F12:
-      ++screenshots_;
-      break;
-    case GLFW_KEY_F:
-      camera_.frame();
-      break;
-    case GLFW_KEY_HOME:
-      camera_.home();
-      break;
-    case GLFW_KEY_1:
-    case GLFW_KEY_KP_1:
-      camera_.look_from(0, 0);
-      break;
-    case GLFW_KEY_3:
-    case GLFW_KEY_KP_3:
-      camera_.look_from(glm::half_pi<double>(), 0);
-      break;
-    case GLFW_KEY_7:
-    case GLFW_KEY_KP_7:
-      camera_.look_from(0, glm::half_pi<double>());
-      break;
-    case GLFW_KEY_SPACE:
-      touch_->pause(!touch_->paused());
-      break;
-    case GLFW_KEY_R:
-      open(s_.level);
-      break;
-    case GLFW_KEY_W:
-      options.wireframe = !options.wireframe;
-      break;
-    case GLFW_KEY_Z:
-      options.zones = !options.zones;
-      break;
-    case GLFW_KEY_H:
-      options.tint_height = options.tint_height > 0 ? 0.0f : tint_;
-      break;
-    case GLFW_KEY_C:
-      options.contact_frames = !options.contact_frames;
-      break;
-    case GLFW_KEY_A:
-      options.forces = !options.forces;
-      break;
-    case GLFW_KEY_S:
-      options.shadows = !options.shadows;
-      break;
-    case GLFW_KEY_T:
-      options.tetrahedra = !options.tetrahedra;
-      break;
-    case GLFW_KEY_K:
-      options.contacts = !options.contacts;
-      break;
-    case GLFW_KEY_G:
-      options.handles = !options.handles;
-      break;
-    default:
-      break;
+  const KeyRow* const row = window_key(key);
+  if (!row) return;
+  const std::string_view id = row->id;
+  for (const Switch& each : switches())
+    if (id == each.id && each.of) options_.*each.of = !(options_.*each.of);
+  if (id == "view.height") options_.tint_height = options_.tint_height > 0 ? 0.0f : tint_;
+  if (id == "view.frame") camera_.frame();
+  if (id == "view.home") camera_.home();
+  if (id == "view.front") camera_.look_from(0, 0);
+  if (id == "view.right") camera_.look_from(glm::half_pi<double>(), 0);
+  if (id == "view.top") camera_.look_from(0, glm::half_pi<double>());
+  if (id == "view.figures") state_.figures = !state_.figures;
+  if (id == "view.devices") {
+    state_.show_devices = !state_.show_devices;
+    state_.figures |= state_.show_devices;
+  }
+  if (id == "play.toggle") touch_->pause(!touch_->paused());
+  if (id == "play.restart") open(s_.level);
+  if (id == "file.screenshot") ++screenshots_;
+  if (id == "help.keys") state_.help = !state_.help;
+  if (id == "file.close") {
+    close_ |= !state_.help;
+    state_.help = false;
   }
 }
 
@@ -235,11 +162,11 @@ void WindowLoop::handle(const InputEvent& event) {
       move(event);
       break;
     case InputKind::kPress:
-      mouse_.down[imgui_button(event.button)] = down_[imgui_button(event.button)] = true;
+      mouse_.down[static_cast<std::size_t>(event.button)] = down_[static_cast<std::size_t>(event.button)] = true;
       press(event);
       break;
     case InputKind::kRelease:
-      down_[imgui_button(event.button)] = false;  // mouse_.down is cleared after a picture has seen it
+      down_[static_cast<std::size_t>(event.button)] = false;  // mouse_.down is cleared after a picture has seen it
       if (event.button == dragging_) release();
       break;
     case InputKind::kWheel:
@@ -247,7 +174,7 @@ void WindowLoop::handle(const InputEvent& event) {
       break;
     case InputKind::kKey:
       if (event.repeated) break;
-      if (!s_.stop_keys.empty() && ui::keys_text(event.key, event.modifiers) == s_.stop_keys)
+      if (!s_.stop_keys.empty() && keys_text(event.key, event.modifiers) == s_.stop_keys)
         emergency_stop();
       else
         key(event.key);

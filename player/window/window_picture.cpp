@@ -4,41 +4,18 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <exception>
 
 #include "content/files/file_io.h"
 #include "content/files/image.h"
 #include "lab/console/exit.h"
 #include "runtime/clock.h"
+#include "viewer/picture/window_png.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kSlowDraw = 70.0;      // [ms] a slower renderer (GPU, or CPU in its place) draws with fewer pixels,
-constexpr double kFastDraw = 20.0;      // [ms] and a faster one with more, up to full resolution
-constexpr double kWantedDraw = 40.0;    // [ms]
 constexpr double kLongestDraw = 500.0;  // [ms] for a screenshot
-constexpr double kCoarsest = 0.25;      // [1]
-
-// Reads back the window's content with all overlays.
-Image read_back(int width, int height) {
-  Image image;
-  image.name = "screenshot";
-  image.width = static_cast<std::uint32_t>(width);
-  image.height = static_cast<std::uint32_t>(height);
-  const std::size_t row = std::size_t{4} * image.width;
-  std::vector<std::uint8_t> bottom_up(row * image.height);
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, bottom_up.data());
-  for (std::size_t y = image.height; y-- > 0;)
-    image.rgba.insert(image.rgba.end(), bottom_up.begin() + static_cast<std::ptrdiff_t>(y * row),
-                      bottom_up.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;  // the window is opaque
-  return image;
-}
-
 }  // namespace
 
 WindowPictures::WindowPictures(Window& window, World& world, Renderer& renderer)
@@ -135,20 +112,9 @@ void WindowPictures::draw_when_ordered() {
 }
 
 void WindowPictures::take_snapshots() {
-  while (world_.snapshots->acquire()) {
-    const Snapshot& snapshot = world_.snapshots->read();
-    renderer_.update(snapshot);
-    awake_ = 0;
-    for (const ObjectSnapshot& object : snapshot.objects) awake_ += object.awake_vertices;
-  }
-  if (world_.soft_snapshots && world_.soft_snapshots->acquire()) renderer_.update(world_.soft_snapshots->read());
-}
-
-// A late picture is worse than a coarse one.
-void WindowPictures::choose_share(double draw_ms) {
-  if (draw_ms < kSlowDraw && (draw_ms > kFastDraw || share_ == 1.0)) return;
-  share_ = std::clamp(share_ * std::sqrt(kWantedDraw / std::max(draw_ms, 1.0)), kCoarsest, 1.0);
-  if (share_ > 0.9) share_ = 1.0;
+  renderer_.take(world_);
+  done_.awake_vertices = 0;
+  for (const ObjectSnapshot& object : world_.snapshots->read().objects) done_.awake_vertices += object.awake_vertices;
 }
 
 FrameStats WindowPictures::draw_scene(double share) {
@@ -173,26 +139,18 @@ void WindowPictures::draw() {
   }
   // A picture that is kept may take longer.
   const bool stays = !order_.screenshot.empty();
-  const double finer = share_ * std::sqrt(kLongestDraw / std::max(draw_ms_, 1.0));
-  done_.stats = draw_scene(stays ? std::clamp(finer, share_, 1.0) : share_);
-  if (!stays) {
-    draw_ms_ = done_.stats.draw_ms;
-    choose_share(draw_ms_);
-  }
+  done_.stats = draw_scene(stays ? budget_.share_within(kLongestDraw) : budget_.share());
+  if (!stays) budget_.drawn(done_.stats.draw_ms);
   done_.answer = renderer_.picked();
-  done_.awake_vertices = awake_;
-  done_.resolution = share_;
+  done_.resolution = budget_.share();
   if (order_.shown) {
     overlay_->draw(order_.overlay, renderer_.options(), order_.tint, order_.mouse, order_.width, order_.height,
                    order_.dt);
     done_.wants_mouse = overlay_->wants_mouse();
     done_.orders = overlay_->take_orders();
     done_.widgets = ui::widgets();
-    if (stays) {
-      const Image image = read_back(order_.width, order_.height);
-      done_.screenshot =
-          write_file(order_.screenshot, encode_png(image.width, image.height, image.rgba.data()), Existing::kRefuse);
-    }
+    if (stays)
+      done_.screenshot = write_file(order_.screenshot, window_png(order_.width, order_.height), Existing::kRefuse);
     window_.present();
   }
   done_.options = renderer_.options();

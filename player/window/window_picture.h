@@ -12,7 +12,8 @@
 #include "components/world.h"
 #include "player/window/overlay.h"
 #include "systems/visual/gpu/framebuffer.h"
-#include "window/window.h"
+#include "viewer/picture/picture_budget.h"
+#include "viewer/window/window.h"
 
 namespace pliant {
 
@@ -69,7 +70,6 @@ class WindowPictures {
   void draw_when_ordered();
   void take_snapshots();
   FrameStats draw_scene(double share);
-  void choose_share(double draw_ms);
   void draw();
 
   Window& window_;
@@ -78,9 +78,7 @@ class WindowPictures {
   float scale_;
   std::optional<Overlay> overlay_;
   gpu::Framebuffer coarse_;  // the picture at less than full resolution
-  double share_ = 1.0;       // [1] of the window's resolution, each way
-  double draw_ms_ = 0.0;     // [ms] of the previous picture
-  std::uint64_t awake_ = 0;
+  PictureBudget budget_;
   PictureOrder order_;  // owned by this thread during a picture, else by the other; likewise done_
   PictureDone done_;
   std::exception_ptr failure_;  // of the thread, before its first picture

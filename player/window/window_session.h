@@ -15,7 +15,7 @@
 #include "lab/files/output_folder.h"
 #include "player/record/keeper.h"
 #include "player/run/frames.h"
-#include "window/window.h"
+#include "viewer/window/window.h"
 
 namespace pliant {
 

@@ -217,6 +217,11 @@ std::optional<PickAnswer> Renderer::picked(bool wait) {
   return parts_->picking.take(parts_->surfaces, wait);
 }
 
+void Renderer::take(World& world) {
+  while (world.snapshots->acquire()) update(world.snapshots->read());
+  if (world.soft_snapshots && world.soft_snapshots->acquire()) update(world.soft_snapshots->read());
+}
+
 RenderOptions& Renderer::options() {
   return parts_->options;
 }

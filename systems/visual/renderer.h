@@ -82,6 +82,7 @@ class Renderer {
   // Takes the newest zones, probes and poses; call for every acquired snapshot, before draw.
   void update(const Snapshot& snapshot);
   void update(const SoftSnapshot& snapshot);
+  void take(World& world);  // all that its clocks have published since
   RenderOptions& options();
   // Draws into the framebuffer `target` of width x height pixels.
   FrameStats draw(const Viewpoint& viewpoint, std::uint32_t target, int width, int height);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "editor/ui/theme.h"
+#include "viewer/ui/theme.h"
 
 namespace pliant::ui {
 namespace {

@@ -1,7 +1,7 @@
 // Text that a box holds: all of it, or as much as fits and an ellipsis.
 #include <gtest/gtest.h>
 
-#include "editor/ui/widgets.h"
+#include "viewer/ui/widgets.h"
 
 namespace pliant::ui {
 namespace {

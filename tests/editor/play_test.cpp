@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -19,6 +20,7 @@
 #include "engine/run/sources.h"
 #include "pliant/driver.h"
 #include "scenes/scenes.h"
+#include "systems/hash_state.h"
 
 namespace pliant {
 namespace {
@@ -76,6 +78,12 @@ PlayStatus after(PlayRun& run, std::uint64_t ticks) {
   run.wait();
   EXPECT_EQ(run.status().error, "");
   return run.status();
+}
+
+template <class Condition>
+bool comes_true(Condition condition) {
+  for (int i = 0; i < 1000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return condition();
 }
 
 // A sheet of 10 cm in y = 0 and a probe above its middle, which the script given presses in.
@@ -221,6 +229,88 @@ TEST_F(PlayTest, GoingBackAndOnAgainHasTheSameBits) {
   EXPECT_EQ(back->past()->ticks.size(), 1500u);
 }
 
+// Which the recording of a replay keeps too: going back twice is going back once.
+TEST_F(PlayTest, AProbeThatChangedItsSourceIsHadAgainEvenFromARepeatedPast) {
+  Deformable law;
+  law.reach = 0.02;
+  const State state = pressed_sheet(law);
+  const fs::path file = folder / "level.glb";
+  const PlaySource press = script(folder, "0,0,0.01,0\n0.3,0,-0.004,0\n0.9,0.01,-0.003,0.01\n");
+  PlayOptions options;
+  options.sources = {{"tip", press}};
+  const auto run = run_of(state, file, options);
+  after(*run, 400);
+  run->set_source("tip", {PlaySource::Kind::kNone, {}});
+  after(*run, 100);
+  PlaySource later = press;
+  later.from = 0.5;
+  run->set_source("tip", later);
+  run->set("sheet", "stiffness", 350);
+  const PlayStatus pressed = after(*run, 500);
+  EXPECT_TRUE(pressed.effectors[0].reading.touching);
+  std::shared_ptr<const PlayPast> past = run->past();
+  const std::size_t events = past->events.size();
+  EXPECT_GE(events, 3u) << "two sources and a stiffness";
+  for (int times = 0; times < 2; ++times) {
+    PlayOptions again = options;
+    again.past = past;
+    again.until = 1000;
+    const auto back = run_of(state, file, again);
+    EXPECT_EQ(back->status().hash, pressed.hash) << times;
+    past = back->past();
+    EXPECT_EQ(past->events.size(), events) << times;
+  }
+}
+
+// The part of the stage, without a GPU: it prepares a picture while the run stands still, then reads snapshots. Under a
+// thread sanitizer this is the seam of the three threads.
+TEST_F(PlayTest, APictureIsMadeAndReadWhileTheRunGoesOn) {
+  for (const bool waits : {true, false}) {
+    Deformable law;
+    law.reach = 0.02;
+    PlayOptions options;
+    options.sources = {{"tip", script(folder, "0,0,0.01,0\n0.1,0,-0.004,0\n0.4,0.01,-0.003,0.01\n")}};
+    options.repeats = true;
+    options.shown = waits;
+    options.speed = 4.0;
+    options.level = [state = pressed_sheet(law)]() -> Result<Level> { return level_of(state); };
+    auto run = std::make_shared<PlayRun>(std::move(options));
+    std::atomic<std::uint64_t> seen{0}, made{0};
+    std::thread stage([run, &seen, &made] {
+      while (!run->opened()) std::this_thread::yield();
+      World* world = nullptr;
+      // A whole world, as the renderer reads it.
+      ASSERT_TRUE(run->make_picture([&](World& of) {
+        world = &of;
+        Hash hash;
+        hash_state(of, hash);
+        made = hash.value();
+      }));
+      std::uint64_t last = 0;
+      while (run->opened()) {
+        if (!world->snapshots->acquire()) continue;
+        EXPECT_GE(world->snapshots->read().tick, last) << "pictures do not go back";
+        last = world->snapshots->read().tick;
+        ++seen;
+      }
+      // The run has ended, and its world is still there for the picture.
+      EXPECT_EQ(world->snapshots->read().probes.size(), 1u);
+    });
+    ASSERT_TRUE(comes_true([&] { return run->status().tick > 800 && seen > 20; })) << run->status().tick;
+    EXPECT_NE(made, 0u);
+    run->set("sheet", "stiffness", 400);
+    run->pause(true);
+    run->wait();
+    EXPECT_EQ(run->status().phase, PlayPhase::kPaused);
+    const std::uint64_t stood = run->status().tick;
+    EXPECT_EQ(after(*run, 40).tick, stood + 40);
+    EXPECT_EQ(run->past()->ticks.size(), stood + 40);
+    run->end();
+    stage.join();
+    run.reset();
+  }
+}
+
 TEST_F(PlayTest, TheMouseGetsAProbeOfItsOwnWhereNothingElseIsMovedByIt) {
   for (const bool level_has_one : {false, true}) {
     State state = pressed_sheet({});
@@ -345,11 +435,6 @@ Log& device_log() {
   log.largest = 0.0;
   log.throws = false;
   return log;
-}
-template <class Condition>
-bool comes_true(Condition condition) {
-  for (int i = 0; i < 1000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  return condition();
 }
 
 TEST_F(PlayTest, HoweverPlayingEndsADeviceIsWrittenZeroLastAndClosed) {

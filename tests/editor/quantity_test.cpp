@@ -1,5 +1,5 @@
 // Text that number fields accept, and text that is rejected rather than guessed.
-#include "editor/ui/quantity.h"
+#include "viewer/ui/quantity.h"
 
 #include <gtest/gtest.h>
 

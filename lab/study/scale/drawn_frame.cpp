@@ -38,7 +38,7 @@ double DrawnFrames::draw(World& world, Tick tick) {
   const std::uint64_t begin = processor_ns(clock);
   do {
     publish(world, tick);
-    while (world.snapshots->acquire()) renderer_->update(world.snapshots->read());
+    renderer_->take(world);
   } while (waits_to_be_published(world));
   picture_ = renderer_->picture(viewpoint_, kDrawnWidth, kDrawnHeight);
   return static_cast<double>(processor_ns(clock) - begin) * 1e-3;
