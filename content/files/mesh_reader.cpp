@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kMostCorners = 10000;       // of a face: cutting ears takes the square of it
-constexpr std::size_t kMostVertices = 1u << 26;   // of a file
-constexpr const char* kNoName = "defaultobject";  // faces before any `o` or `g` of an OBJ
+constexpr std::size_t kMostCorners = 10000;          // of a face: cutting ears takes the square of it
+constexpr std::size_t kMostFileVertices = 1u << 26;  // of a file
+constexpr const char* kNoName = "defaultobject";     // faces before any `o` or `g` of an OBJ
 
 struct CornerHash {
   std::size_t operator()(const FaceCorner& c) const {
@@ -29,13 +29,13 @@ struct CornerHash {
 };
 
 // Twice the area of a triangle in the plane, positive if it is counter-clockwise.
-double turn(const dvec2& a, const dvec2& b, const dvec2& c) {
+double twice_area(const dvec2& a, const dvec2& b, const dvec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 // Whether p is inside of or on the triangle, which is counter-clockwise.
-bool holds(const dvec2& a, const dvec2& b, const dvec2& c, const dvec2& p) {
-  return turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+bool ear_holds(const dvec2& a, const dvec2& b, const dvec2& c, const dvec2& p) {
+  return twice_area(a, b, p) >= 0.0 && twice_area(b, c, p) >= 0.0 && twice_area(c, a, p) >= 0.0;
 }
 
 // The first corner whose interior angle is over 180 degrees; 0 if there is none.
@@ -73,11 +73,11 @@ void cut_ears(const std::vector<vec3>& at, std::vector<uvec3>& triangles) {
     std::size_t ear = n;
     for (std::size_t i = 0; i < n && ear == n; ++i) {
       const dvec2 &a = p[left[(i + n - 1) % n]], &b = p[left[i]], &c = p[left[(i + 1) % n]];
-      if (!(turn(a, b, c) > 0.0)) continue;
+      if (!(twice_area(a, b, c) > 0.0)) continue;
       bool free = true;
       for (std::size_t k = 0; k < n && free; ++k) {
         const dvec2& q = p[left[k]];
-        if (q != a && q != b && q != c) free = !holds(a, b, c, q);
+        if (q != a && q != b && q != c) free = !ear_holds(a, b, c, q);
       }
       if (free) ear = i;
     }
@@ -138,23 +138,23 @@ Result<Primitive> primitive_of(const MeshContent& content, const FaceList& faces
 }
 
 // Names in files are arbitrary bytes; names in a Level are UTF-8.
-std::string utf8(const std::string& bytes) {
+std::string utf8_of(const std::string& bytes) {
   return Json::parse(Json(bytes).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
-Status check_name(const std::string& name) {
+Status check_length(const std::string& name) {
   if (name.size() <= most(limits::kName)) return Done{};
   return error_at("", beyond("has a name of", limits::kName, static_cast<double>(name.size()), "shorten it"));
 }
 
-Result<Level> level_of(const MeshContent& content, const std::string& stem) {
+Result<Level> level_from(const MeshContent& content, const std::string& stem) {
   Level level;
   level.materials = content.materials;
   for (Material& material : level.materials) {
-    material.name = utf8(material.name);
-    if (const Status fine = check_name(material.name); !fine) return fine.error();
+    material.name = utf8_of(material.name);
+    if (const Status fine = check_length(material.name); !fine) return fine.error();
   }
-  if (content.root) level.nodes.emplace_back().name = content.root->empty() ? "node_0" : utf8(*content.root);
+  if (content.root) level.nodes.emplace_back().name = content.root->empty() ? "node_0" : utf8_of(*content.root);
   if (content.objects.size() + 1 > most(limits::kElements))
     return error_at("",
                     beyond("has", limits::kElements, static_cast<double>(content.objects.size() + 1), "simplify it"));
@@ -163,9 +163,9 @@ Result<Level> level_of(const MeshContent& content, const std::string& stem) {
     const auto here = static_cast<std::int32_t>(level.nodes.size());
     LevelNode node;
     node.parent = content.root ? 0 : -1;
-    node.name = object.name.empty() ? fmt::format("node_{}", here) : utf8(object.name);
+    node.name = object.name.empty() ? fmt::format("node_{}", here) : utf8_of(object.name);
     if (node.name == kNoName && !stem.empty()) node.name = stem;
-    if (const Status fine = check_name(node.name); !fine) return fine.error();
+    if (const Status fine = check_length(node.name); !fine) return fine.error();
     LevelMesh mesh;
     mesh.name = node.name;
     for (const FaceList& faces : object.lists) {
@@ -173,7 +173,7 @@ Result<Level> level_of(const MeshContent& content, const std::string& stem) {
       Result<Primitive> primitive = primitive_of(content, faces);
       if (!primitive) return primitive.error();
       vertices += primitive->position.size();
-      if (vertices > kMostVertices) return Error{"", "has more than 67 million vertices", "split it"};
+      if (vertices > kMostFileVertices) return Error{"", "has more than 67 million vertices", "split it"};
       mesh.primitives.push_back(std::move(*primitive));
     }
     if (!mesh.primitives.empty()) {
@@ -220,8 +220,8 @@ Result<Level> read_mesh_file(const Bytes& bytes, const std::string& format, cons
                                                   : read_stl(bytes);
   if (!content) return content.error();
   textures = content->textures;
-  for (std::string& name : textures) name = utf8(name);
-  return level_of(*content, utf8(path.stem().string()));
+  for (std::string& name : textures) name = utf8_of(name);
+  return level_from(*content, utf8_of(path.stem().string()));
 }
 
 }  // namespace pliant

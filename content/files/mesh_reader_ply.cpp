@@ -46,11 +46,6 @@ bool kind_of(std::string_view word, Kind& kind) {
   return false;
 }
 
-std::uint64_t size_of(Kind kind) {
-  constexpr std::uint64_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[static_cast<std::size_t>(kind)];
-}
-
 Use use_of(std::string_view word) {
   constexpr std::pair<const char*, Use> kWords[] = {
       {"x", Use::kX},        {"y", Use::kY}, {"z", Use::kZ},  {"nx", Use::kNormalX}, {"ny", Use::kNormalY},
@@ -228,7 +223,7 @@ Status read_row(PlyRow& row, const Element& element, std::int64_t number, const 
   return Done{};
 }
 
-Status read_element(TetText& text, const Element& element, const PlyHeader& header, PlyBody& out) {
+Status read_ply_element(TetText& text, const Element& element, const PlyHeader& header, PlyBody& out) {
   std::string_view line;
   for (std::int64_t n = 0; n < element.count; ++n) {
     if (!text.binary()) {
@@ -263,7 +258,7 @@ Result<MeshContent> read_ply(const Bytes& bytes) {
     if (axes != 3) return Error{"", "has vertices without x, y and z", "export it again"};
   }
   for (const Element& element : header->elements)
-    if (const Status status = read_element(text, element, *header, out); !status) return status.error();
+    if (const Status status = read_ply_element(text, element, *header, out); !status) return status.error();
   if (out.content.position.size() != static_cast<std::size_t>(header->vertices))
     return Error{"", "has vertices in two places", "export it again"};
   out.content.objects.emplace_back().lists.push_back(std::move(out.faces));

@@ -51,7 +51,7 @@ class StlBuilder {
   Known places_, normals_;
 };
 
-Error not_finite(std::uint64_t facet) {
+Error facet_not_finite(std::uint64_t facet) {
   return {"", fmt::format("has facet {} at no finite place", facet), "repair the mesh"};
 }
 
@@ -71,7 +71,7 @@ Status read_binary(const Bytes& bytes, MeshContent& out) {
     float v[12];
     std::memcpy(v, &bytes[kHead + kTriangle * t], sizeof v);
     for (int i = 3; i < 12; ++i)
-      if (!std::isfinite(v[i])) return not_finite(t);
+      if (!std::isfinite(v[i])) return facet_not_finite(t);
     builder.add({v[0], v[1], v[2]}, {{v[3], v[4], v[5]}, {v[6], v[7], v[8]}, {v[9], v[10], v[11]}}, faces);
   }
   return Done{};
@@ -119,7 +119,7 @@ Status read_text(const Bytes& bytes, MeshContent& out) {
         if (!expect("vertex") || !numbers(corner)) return broken("lacks three vertices of three numbers");
       if (!expect("endloop") || !expect("endfacet")) return broken("has another number of vertices than three");
       for (const vec3& corner : corners)
-        if (!std::isfinite(corner.x + corner.y + corner.z)) return not_finite(facet);
+        if (!std::isfinite(corner.x + corner.y + corner.z)) return facet_not_finite(facet);
       builder.add(normal, corners, out.objects.back().lists.front());
       ++facet;
     } else {

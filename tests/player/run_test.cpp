@@ -187,16 +187,17 @@ TEST_F(Run, AMeshInMillimetresIsHintedAtAndTouchedInItsUnit) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return pliant(arguments);
   };
-  const Said wrong = touch("wrong", {}), metres = touch("m", {"--unit", "m"}), said = touch("mm", {"--unit", "mm"}),
+  const Said wrong = touch("wrong", {}), in_metres = touch("m", {"--unit", "m"}), said = touch("mm", {"--unit", "mm"}),
              number = touch("f", {"--unit", "0.001"});
   EXPECT_EQ(wrong.status, 1);
   EXPECT_NE(wrong.err.find("m across; say its unit, e.g. `--unit mm`"), std::string::npos) << wrong.err;
-  ASSERT_EQ(metres.status, 0) << metres.err;
+  ASSERT_EQ(in_metres.status, 0) << in_metres.err;
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(metres.err.find("unusual for metres"), std::string::npos) << metres.err;
-  EXPECT_NE(metres.err.find(Json::parse(pliant({"inspect", "big.obj", "--json"}).out)["unit_hint"].get<std::string>()),
-            std::string::npos)
-      << "one sentence for both: " << metres.err;
+  EXPECT_NE(in_metres.err.find("unusual for metres"), std::string::npos) << in_metres.err;
+  EXPECT_NE(
+      in_metres.err.find(Json::parse(pliant({"inspect", "big.obj", "--json"}).out)["unit_hint"].get<std::string>()),
+      std::string::npos)
+      << "one sentence for both: " << in_metres.err;
   EXPECT_EQ(said.err.find("unusual for metres"), std::string::npos) << said.err;
   EXPECT_NEAR(report("mm")["probes"][0]["max_depth_m"], 0.002, 1e-6);
   ASSERT_EQ(number.status, 0) << number.err;
