@@ -9,6 +9,7 @@
 #include "editor/ui/script_words.h"
 #include "viewer/ui/seen.h"
 #include "viewer/ui/widgets.h"
+#include "viewer/window/keys.h"
 
 namespace pliant::ui {
 namespace {
