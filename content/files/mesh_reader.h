@@ -1,8 +1,8 @@
-// OBJ, OFF, PLY and STL, read in one pass that checks what it reads: a face with a missing vertex, an inconsistent count
-// and a truncated file are errors, never repaired. Nodes, triangles, normals and texture coordinates are those that
-// Assimp reads, with these differences. Vertices stand in the order of their first use by a face; those that an OBJ
-// lists twice stay two. In an OBJ the faces before the first `usemtl` keep the default material, and an object that is
-// named again goes on. Faces of over four corners are split by cutting ears.
+// OBJ, OFF, PLY and STL, read in one pass that checks what it reads: a face with a missing vertex, an inconsistent
+// count and a truncated file are errors, never repaired. Nodes, triangles, normals and texture coordinates are those
+// that Assimp reads, with these differences. Vertices stand in the order of their first use by a face; those that an
+// OBJ lists twice stay two. In an OBJ the faces before the first `usemtl` keep the default material, and an object that
+// is named again goes on. Faces of over four corners are split by cutting ears.
 #pragma once
 
 #include <filesystem>

@@ -17,7 +17,6 @@ namespace {
 
 using scenes::Stage;
 
-
 TEST(Touch, SurfaceStandsExactlyUnderEveryProbeForEveryShapeAndStaysFarAwayAtRest) {
   for (const Shape shape : kEveryShape) {
     Stage stage;

@@ -50,9 +50,7 @@ StoredEnergy ContactLaw::stored(double depth) const {
     // force(d) + arm (d - q) increases with d: at most zero at 0 (q, y >= 0), at least zero at max(q, y).
     double low = 0.0, high = std::max(relaxed_depth, free_depth);
     for (int i = 0; i < 60 && high - low > 1e-15 * high; ++i) {
-      from = !law.curved() && hertz == 0.0
-                 ? (arm * relaxed_depth + offset) / (arm + stiffness)
-                 : 0.5 * (low + high);
+      from = !law.curved() && hertz == 0.0 ? (arm * relaxed_depth + offset) / (arm + stiffness) : 0.5 * (low + high);
       const double r = force(from) - offset + arm * (from - relaxed_depth);
       if (std::abs(r) <= 1e-14 * (offset + arm * relaxed_depth)) break;
       (r > 0 ? high : low) = from;

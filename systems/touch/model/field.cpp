@@ -65,8 +65,7 @@ double residual_after(const ObjectState& object, const Mesh& mesh, const HeightF
     return m[0] * h + m[1] * r + m[2] * field.arm[vertex].w;
   }
   if (!painted.linear.empty()) return painted.linear[vertex].x * h + painted.linear[vertex].y * r;
-  if (motion.arm())
-    return motion.solid[0][0] * h + motion.solid[0][1] * r + motion.solid[0][2] * field.arm[vertex].w;
+  if (motion.arm()) return motion.solid[0][0] * h + motion.solid[0][1] * r + motion.solid[0][2] * field.arm[vertex].w;
   return motion.linear.hh * h + motion.linear.hv * r;
 }
 

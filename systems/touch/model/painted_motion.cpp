@@ -26,8 +26,7 @@ Motion paint(const Motion& motion, double stiffness, double damping, double rela
   out.mass /= stiffness;
   out.damping *= damping / stiffness;
   out.arm_stiffness *= relaxation;
-  if (motion.arm())
-    out.solid = solid_step(out.mass, out.damping, 1.0, out.arm_stiffness, out.arm_time, out.dt);
+  if (motion.arm()) out.solid = solid_step(out.mass, out.damping, 1.0, out.arm_stiffness, out.arm_time, out.dt);
   out.linear = exact_step(out.mass, out.damping, 1.0, out.dt);
   return out;
 }

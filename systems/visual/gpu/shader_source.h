@@ -19,8 +19,8 @@ struct ShaderSource {
 // $PLIANT_SHADERS, a folder of replacement shaders; empty if it is not set.
 std::filesystem::path shader_folder();
 
-// `name` from the shader folder if there is one, else the embedded file. law_list.glsl and shape_list.glsl are made from
-// the lists of components/built_in.h.
+// `name` from the shader folder if there is one, else the embedded file. law_list.glsl and shape_list.glsl are made
+// from the lists of components/built_in.h.
 Result<ShaderSource> load_shader(const std::string& name);
 // The same for given text; includes are found as by load_shader.
 Result<ShaderSource> expand_shader(const std::string& name, const std::string& text);
