@@ -231,7 +231,7 @@ Status read_ply_element(TetText& text, const Element& element, const PlyHeader& 
         if (!text.line(line)) return damaged(fmt::format("ends before {} {} of {}", element.name, n, element.count));
       } while (line.empty());
     } else if (text.left() == 0 && !element.properties.empty()) {
-      return damaged(fmt::format("ends before the last of {} {}", element.count, element.name));
+      return damaged(fmt::format("ends before {} {} of {}", element.name, n, element.count));
     }
     PlyRow row(text, line);
     if (const Status status = read_row(row, element, n, header, out); !status) return status;

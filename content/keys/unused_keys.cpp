@@ -156,8 +156,8 @@ std::vector<UnusedKey> find_unused_keys(const Level& level) {
     if (!node.in_scene) continue;
     const bool moves = node.probe || node.handle || moving.count(node.name);
     if (node.device && !moves)
-      found.push_back({static_cast<std::int32_t>(n), "PLIANT_haptic_device",
-                       "moves nothing: no probe or tool names it; name it as the `device` of one, or remove it"});
+      found.push_back({static_cast<std::int32_t>(n), "PLIANT_haptic_device", "moves nothing: no probe or tool names it",
+                       "name it as the `device` of one, or remove it"});
     else
       find_in_node(level, n, found);
   }

@@ -165,8 +165,8 @@ void drop_unused(Welded& welded) {
 }  // namespace
 
 Result<Gathered> gather(const std::string& name, std::span<const Primitive> primitives, const mat4& to_object) {
-  const Error malformed{"mesh `" + name + "`",
-                        "a triangle names a vertex that does not exist; repair or re-export the file"};
+  const Error malformed{"mesh `" + name + "`", "a triangle names a vertex that does not exist",
+                        "repair or re-export the file"};
   std::size_t vertices = 0, triangles = 0;
   for (const Primitive& p : primitives) {
     vertices += p.position.size();

@@ -78,7 +78,7 @@ Result<std::unique_ptr<PacketPort>> open_service(const std::string&) {
 }  // namespace
 
 Result<HaplyState> parse_haply(std::string_view message, const std::string& wanted) {
-  const Error damaged{"haply", "the service sent no JSON of a state; is something else on its port?"};
+  const Error damaged{"haply", "the service sent no JSON of a state", "see what else is on its port"};
   const Error false_numbers{"haply", "the service sent a pose whose numbers cannot be"};
   const json all = json::parse(message, nullptr, false);
   if (all.is_discarded() || !all.is_object()) return damaged;

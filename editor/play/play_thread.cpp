@@ -272,7 +272,7 @@ void PlayRun::turn(Inside& in) {
   if (in.realtime) {
     if (!in.session->running()) {
       status = in.session->stop();
-      if (status) status = Error{"play", "the touch clock has ended; press Play again"};
+      if (status) status = Error{"play", "the touch clock has ended", "press Play again"};
     } else {
       in.move_hand(passed);
       in.take_rows();

@@ -213,7 +213,7 @@ Result<SavedState> unpack_state(const std::vector<std::uint8_t>& bytes) {
     return Error{kWhere,
                  "the state has version " + std::to_string(version) + ", this is " + std::to_string(kStateVersion),
                  "save it again"};
-  const Error damaged{kWhere, "the state ends too early or is damaged; save it again"};
+  const Error damaged{kWhere, "the state ends too early or is damaged", "save it again"};
   std::uint64_t expected = 0;
   std::memcpy(&expected, bytes.data() + bytes.size() - kEnd, kEnd);
   if (expected != hash_of(bytes, bytes.size() - kEnd)) return damaged;

@@ -265,7 +265,7 @@ WindowFigures WindowLoop::run() {
     keep();
     figures_.hung = !pictures_.wait(kHungEnd);
     if (figures_.hung && status)
-      status = Error{"picture", "the graphics driver does not answer; update it, or use --headless"};
+      status = Error{"picture", "the graphics driver does not answer", "update it, or use --headless"};
     if (begun_ && status) status = learn(pictures_.done());
   } catch (const std::exception& error) {
     if (status) status = explain(error);
