@@ -76,6 +76,12 @@ void adopt(ToolTouchState& tool, const HandleModel& model) {
   tool.contacts.start(model.contacts);
   tool.late = 0;
   use(tool, tool.wanted);
+  // A transfer no longer than a tick would begin anew with every model and keep the force constant.
+  if (kJoinShare * model.soft_step <= model.contacts.tick) {
+    tool.joins = false;
+    tool.fade.setZero();
+    return;
+  }
   if (tool.used == ToolForce::kContacts) tool.settling = settle_ticks(model);
 }
 

@@ -167,6 +167,28 @@ TEST(ToolFeedback, AModelsUpdateIsNoJump) {
   }
 }
 
+// A transfer that begins anew with every model must not keep the force of the first.
+TEST(ToolFeedback, ModelsThatComeWithEveryTickAreFelt) {
+  for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts})
+    for (const double ticks : {0.5, 1.0, 1.5, 2.0, 2.6}) {
+      Stage stage(coupling(200.0));
+      stage.state().wanted = mode;
+      stage.model.soft_step = ticks * kTick;
+      double due = 0.0;
+      for (int i = 0; i < 60; ++i) {
+        if (i >= due) {
+          const double newton = 0.02 * std::min(i, 50);
+          stage.model.force.setZero();
+          stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = newton;
+          stage.publish();
+          due += std::max(1.0, ticks);
+        }
+        stage.tick();
+      }
+      EXPECT_NEAR(stage.state().wrench[1], 1.0, 1e-3) << ticks << ' ' << static_cast<int>(mode);
+    }
+}
+
 constexpr std::size_t kUpdateTicks = 6;  // an update's own tick and the five after it
 
 // The largest change in the ticks of the update at tick `at`, over the largest in the others `around` it.
