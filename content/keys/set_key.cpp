@@ -20,6 +20,19 @@ Json value_of_text(const std::string& text) {
   return json.is_discarded() ? Json(text) : json;
 }
 
+// The nodes that `text` refers to: all of that name, or the one of that glTF number where no node has the name; `*`:
+// all.
+std::vector<std::size_t> nodes_of(const Level& level, const std::string& text) {
+  std::vector<std::size_t> named;
+  for (std::size_t i = 0; i < level.nodes.size(); ++i)
+    if (text == "*" || level.nodes[i].name == text) named.push_back(i);
+  const Json number = Json::parse(text, nullptr, false);
+  if (!named.empty() || !number.is_number_unsigned()) return named;
+  for (std::size_t i = 0; i < level.nodes.size(); ++i)
+    if (number == (level.source ? level.nodes[i].source : static_cast<std::int32_t>(i))) return {i};
+  return named;
+}
+
 // Node names may contain dots: the node is the part before an extension's name.
 bool split(const Level& level, const std::string& path, Assignment& out) {
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
@@ -29,9 +42,7 @@ bool split(const Level& level, const std::string& path, Assignment& out) {
     out.extension = path.substr(dot + 1, end - dot - 1);
     out.key = path.substr(end + 1);
     if (!find_extension(out.extension)) continue;
-    if (out.node == "*" || find_extension(out.extension)->on_scene) return true;
-    for (const LevelNode& node : level.nodes)
-      if (node.name == out.node) return true;
+    if (find_extension(out.extension)->on_scene || !nodes_of(level, out.node).empty()) return true;
   }
   // Not understood: split at the first two dots for the error message.
   const std::size_t first = path.find('.');
@@ -43,13 +54,9 @@ bool split(const Level& level, const std::string& path, Assignment& out) {
 
 // A node is referred to as in a file, by name or by glTF number; a matching name has precedence.
 Json name_of_node(const Level& level, const std::string& text) {
-  const auto is_named = [&](const LevelNode& node) { return node.name == text; };
-  if (std::any_of(level.nodes.begin(), level.nodes.end(), is_named)) return text;
-  const Json number = Json::parse(text, nullptr, false);
-  if (!number.is_number_unsigned()) return text;
-  for (std::size_t i = 0; i < level.nodes.size(); ++i)
-    if (number == (level.source ? level.nodes[i].source : static_cast<std::int32_t>(i))) return level.nodes[i].name;
-  return text;
+  if (text == "*") return text;
+  const std::vector<std::size_t> found = nodes_of(level, text);
+  return found.empty() ? text : level.nodes[found.front()].name;
 }
 
 // An extension that was modified, and the last assignment to it.
@@ -106,20 +113,21 @@ Status set_one(Level& level, const std::string& assignment, std::vector<Touched>
     assign(*extension, *key, it.value, &level, where, touched);
     return Done{};
   }
-  bool node_exists = it.node == "*", done = false;
-  for (LevelNode& node : level.nodes) {
-    const bool here = it.node == "*" || node.name == it.node;
-    node_exists |= here;
-    if (extension->present(&node)) nodes.push_back(node.name);
-    if (!here || !extension->present(&node)) continue;
+  const std::vector<std::size_t> meant = nodes_of(level, it.node);
+  bool done = false;
+  for (const std::size_t i : meant) {
+    LevelNode& node = level.nodes[i];
+    if (!extension->present(&node)) continue;
     assign(*extension, *key, it.value, &node, where, touched);
     done = true;
   }
+  for (const LevelNode& node : level.nodes)
+    if (extension->present(&node)) nodes.push_back(node.name);
   std::string have;
   for (std::size_t i = 0; i < nodes.size() && i < 5; ++i) have += (i ? ", " : "") + nodes[i];
   const std::string hint = have.empty() ? "no node of this level has one" : "nodes that have one: " + have;
   const std::string near = suggestion(it.node, nodes);
-  if (!node_exists)
+  if (meant.empty() && it.node != "*")
     return Error{where, "names the node '" + it.node + "', which the level does not have", near.empty() ? hint : near,
                  "name.unknown"};
   if (!done) return Error{where, "names a node without PLIANT_" + it.extension, hint, "name.unknown"};

@@ -90,6 +90,10 @@ const UnusedRow kRows[] = {
      [](const LevelNode& n) { return !n.soft_body->mesh.empty(); },
      {"is of a lattice, and `mesh` gives the tetrahedra", "remove one of them"}},
     {"soft_body",
+     "thickness",
+     [](const LevelNode& n) { return !n.soft_body->mesh.empty() || n.soft_body->fill != Fill::kWall; },
+     {"is of a `fill` of `wall`", "set `fill` to `wall`, or remove the key"}},
+    {"soft_body",
      "under_gravity",
      [](const LevelNode& n) { return n.handle.has_value(); },
      {"is of bodies that are pinned, and a tool always begins as it rests in the hand", "remove the key"}},
@@ -124,6 +128,17 @@ void find_in_node(const Level& level, std::size_t n, std::vector<UnusedKey>& fou
       found.push_back({static_cast<std::int32_t>(n), fmt::format("PLIANT_{}/{}", row.extension, row.key),
                        row.words.what, row.words.cure});
   }
+  // An error budget chooses the law of a sphere by it.
+  if (!node.deformable || !(node.deformable->young > 0.0) || !(node.deformable->thickness > 0.0) ||
+      node.deformable->error > 0.0)
+    return;
+  bool spheres = false, points = false;
+  for (const LevelNode& each : level.nodes)
+    if (each.in_scene && each.probe) (each.probe->radius > 0.0 ? spheres : points) = true;
+  if (spheres && !points)
+    found.push_back({static_cast<std::int32_t>(n), "PLIANT_deformable/thickness",
+                     "is of a flat punch, which a probe of radius 0 is, and all probes are spheres",
+                     "give one the radius 0, or remove the key"});
 }
 
 void find_in_scene(const Level& level, std::vector<UnusedKey>& found) {

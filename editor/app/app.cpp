@@ -31,6 +31,7 @@ constexpr float kTopPad = 9;           // [point] above the buttons of the top b
 constexpr float kTopRow = 32;          // [point] of a second row of it
 constexpr float kLeastLeft = 160, kLeastRight = 300, kLeastBottom = 90, kLeastView = 200, kGoodView = 320;  // [point]
 constexpr double kToastSeconds = 6.0;
+constexpr int kFramesAfterScript = 5;                  // for what its last step does
 constexpr double kIdleWait = 0.25, kBusyWait = 0.016;  // [s] between frames
 constexpr float kClick = 4;                            // [point] a press that moves farther is a drag
 
@@ -136,14 +137,12 @@ Status App::run() {
         take_screenshot(fs::path(options_.out) / "failed.png");
         return s;
       }
-      if (script_->done() && settled()) {
-        if (wants_out_) {  // nobody is there to answer
-          take_screenshot(fs::path(options_.out) / "failed.png");
-          return script_->ended(
-              "closes a level with changes that are in no file, and answers no question; end with "
-              "`click Unsaved/Discard` or `click Unsaved/Save`");
-        }
-        script_.reset();
+      if (script_->done() && settled() && ++frames_after_script_ > kFramesAfterScript) {
+        take_screenshot(fs::path(options_.out) / "failed.png");
+        if (wants_out_)
+          return script_->ended("closes a level with changes that are in no file, and answers no question",
+                                "end with `click Unsaved/Discard` or `click Unsaved/Save`");
+        return script_->ended("leaves the editor open", "end with `close`");
       }
     }
     if (std::exchange(look_changed_, false)) {

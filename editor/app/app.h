@@ -118,6 +118,7 @@ class App {
   std::vector<std::unique_ptr<ViewTool>> tools_;
   std::vector<Action> actions_;
   std::optional<ui::Script> script_;
+  int frames_after_script_ = 0;
   std::map<std::string, bool> open_;   // dialogs
   std::set<std::string> wanted_tabs_;  // brought to the front in the next frame
   std::string wanted_menu_;            // opens in the next frame

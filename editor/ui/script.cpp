@@ -134,8 +134,8 @@ bool Script::done() const {
   return steps_.empty() && frames_.empty() && rest_ > kRestFrames;
 }
 
-Error Script::ended(std::string why) const {
-  return {fmt::format("{}:{}", file_, line_), std::move(why)};
+Error Script::ended(std::string why, std::string cure) const {
+  return {fmt::format("{}:{}", file_, line_), std::move(why), std::move(cure)};
 }
 
 }  // namespace pliant::ui

@@ -59,8 +59,8 @@ class Script {
   };
   // Appends the events of the next frame. The error names the line.
   Status next(const Surroundings& at, std::vector<InputEvent>& events);
-  bool done() const;                   // and what it did last has been answered
-  Error ended(std::string why) const;  // at its last line
+  bool done() const;                                     // and what it did last has been answered
+  Error ended(std::string why, std::string cure) const;  // at its last line
 
  private:
   struct Step {

@@ -52,7 +52,9 @@ Note note_of(SafetyLimit limit, const LimitCount& count, const std::string& who,
       note.what = fmt::format(
           "{}: the {} changed faster than max_slew {:g} {}/s{} let it in {} (off by at most {})", who, q.name, q.slew,
           q.unit, q.stiffness > 0 ? fmt::format(" and max_stiffness {:g} N/m", q.stiffness) : "", ticks, percent);
-      note.cure = "move slower, or raise max_slew where the device can render it";
+      note.cure = q.stiffness > 0
+                      ? "move slower, or raise the one of the two that is met, where the device can render it"
+                      : "move slower, or raise max_slew where the device can render it";
       return note;
   }
   UNREACHABLE();

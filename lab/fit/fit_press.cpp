@@ -23,7 +23,8 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-OrderedJson law_json(const LawFit& fit) {
+// `held_out`: whether there are rows that the fit has not seen; without them their error is null.
+OrderedJson law_json(const LawFit& fit, bool held_out) {
   OrderedJson parameters = OrderedJson::array();
   for (const FittedParameter& p : fit.parameters) {
     OrderedJson one{{"key", p.key}, {"unit", p.unit}, {"value", p.value}};
@@ -38,8 +39,8 @@ OrderedJson law_json(const LawFit& fit) {
           {"parameters", parameters},
           {"rms_N", fit.rms},
           {"rms_share", fit.share},
-          {"held_out_rms_N", fit.held_rms},
-          {"held_out_rms_share", fit.held_share},
+          {"held_out_rms_N", held_out ? OrderedJson(fit.held_rms) : OrderedJson()},
+          {"held_out_rms_share", held_out ? OrderedJson(fit.held_share) : OrderedJson()},
           {"residual_correlation", fit.correlation},
           {"converged", fit.converged},
           {"singular", fit.singular}};
@@ -47,7 +48,7 @@ OrderedJson law_json(const LawFit& fit) {
 
 std::string report_of(const PressRecord& record, const RecordFit& fit, const FitOptions& options) {
   OrderedJson laws = OrderedJson::array();
-  for (const LawFit& law : fit.laws) laws.push_back(law_json(law));
+  for (const LawFit& law : fit.laws) laws.push_back(law_json(law, fit.fitted < record.size()));
   const OrderedJson report{{"record", record.name},
                            {"rows", record.size()},
                            {"rows_fitted", fit.fitted},
@@ -166,8 +167,10 @@ void draw_record(Pen& pen, const PressRecord& record, const RecordFit& fit, cons
 void say(const PressRecord& record, const RecordFit& fit, const FitOptions& options) {
   print("{}: {} rows, {} fitted, {} held out\n", record.name, record.size(), fit.fitted, record.size() - fit.fitted);
   for (const LawFit& law : fit.laws)
-    print("  {:<12} RMS {:.3g} N ({:.2g} %), held out {:.3g} N ({:.2g} %){}\n", law.model.law, law.rms, 100 * law.share,
-          law.held_rms, 100 * law.held_share, &law == &fit.laws[fit.best] ? "  <- taken" : "");
+    print("  {:<12} RMS {:.3g} N ({:.2g} %){}{}\n", law.model.law, law.rms, 100 * law.share,
+          fit.fitted < record.size() ? fmt::format(", held out {:.3g} N ({:.2g} %)", law.held_rms, 100 * law.held_share)
+                                     : "",
+          &law == &fit.laws[fit.best] ? "  <- taken" : "");
   for (const FittedParameter& p : fit.laws[fit.best].parameters)
     print("  {} = {:.6g} {}{}\n", p.key, p.value, p.unit,
           p.on_bound || fit.laws[fit.best].singular

@@ -231,6 +231,19 @@ TEST(KeyTable, KeysThatDependOnEachOtherAreSetInAnyOrder) {
   EXPECT_NE(level.nodes[0].deformable->stiffness, 7.0);
 }
 
+TEST(KeyTable, ANodeIsNamedByItsNameOrItsNumber) {
+  Level level;
+  level.nodes.resize(3);
+  for (LevelNode& node : level.nodes) node.deformable = Deformable{};
+  level.nodes[0].name = "1";  // a name has precedence
+  ASSERT_TRUE(set_key(level, "1.deformable.stiffness=7").ok());
+  ASSERT_TRUE(set_key(level, "2.deformable.stiffness=8").ok());  // of two nodes without a name, the last
+  EXPECT_EQ(level.nodes[0].deformable->stiffness, 7.0);
+  EXPECT_EQ(level.nodes[1].deformable->stiffness, Deformable{}.stiffness);
+  EXPECT_EQ(level.nodes[2].deformable->stiffness, 8.0);
+  EXPECT_FALSE(set_key(level, "3.deformable.stiffness=9").ok());
+}
+
 TEST(KeyTable, TheSchemasInDocsAreThoseOfTheTable) {
   for (const SchemaFile& schema : extension_schemas()) {
     const std::string path = kDocs + "schemas/" + schema.name;

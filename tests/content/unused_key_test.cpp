@@ -78,6 +78,29 @@ TEST(UnusedKeys, PoissonAndThicknessNeedYoung) {
   EXPECT_THAT(unused(with(5e3)), IsEmpty());
 }
 
+TEST(UnusedKeys, ThicknessIsOfAFlatPunchAndOfAWall) {
+  Level level = level_with([](LevelNode& n) {
+    n.deformable.emplace();
+    n.deformable->young = 5e3;
+    n.deformable->thickness = 0.01;
+  });
+  Probe sphere;
+  sphere.radius = 0.003;
+  level.nodes.push_back({.name = "ball", .probe = sphere});
+  EXPECT_THAT(unused(level), ElementsAre("PLIANT_deformable/thickness"));
+  level.nodes.push_back({.name = "tip", .probe = Probe{}});
+  EXPECT_THAT(unused(level), IsEmpty());
+  const auto body = [](Fill fill) {
+    return level_with([&](LevelNode& n) {
+      n.soft_body.emplace();
+      n.soft_body->thickness = 0.002;
+      n.soft_body->fill = fill;
+    });
+  };
+  EXPECT_THAT(unused(body(Fill::kSolid)), ElementsAre("PLIANT_soft_body/thickness"));
+  EXPECT_THAT(unused(body(Fill::kWall)), IsEmpty());
+}
+
 TEST(UnusedKeys, ADeviceThatNoProbeNamesMovesNothing) {
   Level level = level_with([](LevelNode& n) { n.device.emplace(); });
   EXPECT_THAT(unused(level), ElementsAre("PLIANT_haptic_device"));

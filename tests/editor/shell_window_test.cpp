@@ -174,6 +174,10 @@ TEST_F(ShellWindowTest, NothingOverlapsOrIsCutOffFrom800x600On) {
   }
 }
 
+TEST_F(ShellWindowTest, AScriptThatLeavesTheEditorOpenEndsWithASentence) {
+  expect_fails("small.glb", "click Scene/finger/row\nwait 0.1\n", "leaves the editor open; end with `close`");
+}
+
 TEST_F(ShellWindowTest, AScriptThatLeavesTheQuestionOfChangesOpenEndsWithASentence) {
   for (const std::string end : {"close", "key Ctrl+Q"}) {
     // Of its own: what was not saved is kept for recovery.
