@@ -53,10 +53,10 @@ std::vector<Action> make_actions(App& app) {
   std::vector<Action> all;
   const auto add = [&](Action action) { all.push_back(std::move(action)); };
   // An action that the window of a run has too.
-  const auto shared = [&](
-                          const char* id, const char* group, auto run,
-                          std::function<bool(const Editor&)> enabled = [](const Editor&) { return true; }) {
-    all.push_back({id, group, key_row(id).label, key_row(id).editor, run, std::move(enabled)});
+  const auto shared = [&](const char* id, const char* group, std::function<void(Editor&)> run,
+                          std::function<bool(const Editor&)> enabled = {}) {
+    if (!enabled) enabled = [](const Editor&) { return true; };
+    all.push_back({id, group, key_row(id).label, key_row(id).editor, std::move(run), std::move(enabled)});
   };
   const auto toggle = [&](const char* id, const char* label, const char* keys, bool ViewSettings::*of) {
     all.push_back({id, "View", label, keys, [of](Editor& e) { e.view.*of = !(e.view.*of); },
