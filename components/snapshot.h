@@ -26,10 +26,10 @@ struct ObjectSnapshot {
   bool on_gpu = false;  // no zones: the whole field is these sources, evaluated by the GPU
   std::uint32_t term_count = 0;
   std::vector<FieldSource> terms;  // capacity for every source and release
-  // Fields that the GPU steps on its copy: their inputs up to this snapshot's tick while `told`, else `zones` holds the
+  // Fields that the GPU steps on its copy: their inputs up to this snapshot's tick while `fed`, else `zones` holds the
   // field.
   std::shared_ptr<FieldFeed> feed;
-  bool told = false;
+  bool fed = false;
 };
 
 // One place where a probe presses.

@@ -33,8 +33,8 @@ void LongWork::say(const std::string& doing, double done) {
   const std::uint64_t now = now_ns();
   if (WatchedWork* const watch = watch_of_thread) {
     watch->doing_ = doing;
-    if (watch->told_ > 0 && now - watch->told_ < kBetweenTellings) return;
-    watch->told_ = now;
+    if (watch->reported_ > 0 && now - watch->reported_ < kBetweenTellings) return;
+    watch->reported_ = now;
     const double share = watch->from_ + std::clamp(done, 0.0, 1.0) * (watch->to_ - watch->from_);
     watch->share_ = std::max(watch->share_, share);
     if (!watch->progress_(watch->share_, doing)) throw WorkStopped{};

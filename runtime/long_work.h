@@ -29,7 +29,7 @@ class WatchedWork {
   double from_ = 0.0, to_ = 1.0;  // [1] of the whole: the current part
   double share_ = 0.0;            // [1] as last reported
   std::string doing_;             // as last reported
-  std::uint64_t told_ = 0;        // [ns] time of the last report
+  std::uint64_t reported_ = 0;    // [ns] time of the last report
 };
 
 // The work that follows on this thread covers `from` to `to` [1] of the watched whole.

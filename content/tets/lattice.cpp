@@ -53,7 +53,8 @@ struct Found {
 // Finds the cell that gives about kUsualTets tetrahedra; their number scales with the cell's inverse cube. Starts at
 // the cell that is right for a box filled by a third. For objects thinner than their cell the number is erratic; the
 // nearest of all attempts is then used.
-Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, const LatticeWish& wish, LongWork& progress) {
+Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, const LatticeOptions& options,
+                          LongWork& progress) {
   const Box box = region.box();
   const dvec3 size(box.size());
   const double longest = std::max({size.x, size.y, size.z});
@@ -62,9 +63,9 @@ Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, const L
   double cell = std::cbrt(12.0 * 0.33 * volume / static_cast<double>(kUsualTets));
   Found best;
   for (int n = 0; n < kTries; ++n) {
-    if (LatticeGrid::node_count(box, cell, wish.focus) > kMostUsualNodes) break;
-    const LatticeGrid grid(box, cell, wish.focus);
-    Result<Stuffing> stuffing = stuff(surface, region, grid, kMostUsualTets, progress, wish.stop);
+    if (LatticeGrid::node_count(box, cell, options.focus) > kMostUsualNodes) break;
+    const LatticeGrid grid(box, cell, options.focus);
+    Result<Stuffing> stuffing = stuff(surface, region, grid, kMostUsualTets, progress, options.stop);
     if (!stuffing) return stuffing.error();
     const double share = static_cast<double>(stuffing->tets.size()) / static_cast<double>(kUsualTets);
     const auto off = [](std::size_t tets) {
@@ -80,22 +81,23 @@ Result<Found> stuff_usual(const Mesh& surface, const FillRegion& region, const L
   return best;
 }
 
-Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, const LatticeWish& wish, LongWork& progress) {
-  const double cell = wish.cell;
+Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, const LatticeOptions& options,
+                         LongWork& progress) {
+  const double cell = options.cell;
   const std::string where = "mesh `" + surface.name + "`", makes = fmt::format("a cell of {:.3g} m makes", cell);
   const auto count = [&](const Limit& limit, double found) {
     return error_at(where, beyond(makes, limit, std::ceil(found), "choose a larger one"));
   };
-  const double nodes = LatticeGrid::node_count(region.box(), cell, wish.focus);
+  const double nodes = LatticeGrid::node_count(region.box(), cell, options.focus);
   if (nodes > static_cast<double>(most(limits::kLatticeNodes))) return count(limits::kLatticeNodes, nodes);
   // Where a full box would not have too many there is nothing to estimate.
   const dvec3 size(region.box().size());
   const bool may_be_beyond =
       kTetsPerCell * size.x * size.y * size.z / (cell * cell * cell) > static_cast<double>(most(limits::kTets));
-  const double tets = may_be_beyond && !wish.focus ? estimated_tets(region, cell) : 0.0;
+  const double tets = may_be_beyond && !options.focus ? estimated_tets(region, cell) : 0.0;
   if (tets > kSure * static_cast<double>(most(limits::kTets))) return count(limits::kTets, tets);
-  const LatticeGrid grid(region.box(), cell, wish.focus);
-  Result<Stuffing> stuffing = stuff(surface, region, grid, most(limits::kTets), progress, wish.stop);
+  const LatticeGrid grid(region.box(), cell, options.focus);
+  Result<Stuffing> stuffing = stuff(surface, region, grid, most(limits::kTets), progress, options.stop);
   if (!stuffing) return stuffing.error();
   if (stuffing->beyond)
     return Error{where, fmt::format("{} more than {} tetrahedra", makes, most(limits::kTets)),
@@ -104,14 +106,15 @@ Result<Found> stuff_cell(const Mesh& surface, const FillRegion& region, const La
 }
 
 // Why nothing could be filled, and the remedy.
-Error nothing_held(const Mesh& surface, const SurfaceShape& shape, const LatticeWish& wish) {
+Error nothing_held(const Mesh& surface, const SurfaceShape& shape, const LatticeOptions& options) {
   const std::string where = "mesh `" + surface.name + "`";
   const bool sheet = shape.kind == SurfaceKind::kSheet;
-  if (sheet && wish.fill == Fill::kWall && wish.thickness > 0.0)
-    return {where,
-            fmt::format("holds no tetrahedra: its layer of {} is thinner than the cell", length_text(wish.thickness)),
-            "make `thickness` larger or `cell` smaller"};
-  if (shape.kind == SurfaceKind::kWall && wish.fill == Fill::kWall)
+  if (sheet && options.fill == Fill::kWall && options.thickness > 0.0)
+    return {
+        where,
+        fmt::format("holds no tetrahedra: its layer of {} is thinner than the cell", length_text(options.thickness)),
+        "make `thickness` larger or `cell` smaller"};
+  if (shape.kind == SurfaceKind::kWall && options.fill == Fill::kWall)
     return {
         where,
         fmt::format("holds no tetrahedra: a wall of {} is thinner than any usual cell", length_text(shape.thickness)),
@@ -127,22 +130,22 @@ Error nothing_held(const Mesh& surface, const SurfaceShape& shape, const Lattice
 
 }  // namespace
 
-Result<TetMesh> fill_surface(const Mesh& surface, const LatticeWish& wish) {
-  if (!(wish.cell >= 0.0) || !std::isfinite(wish.cell))
+Result<TetMesh> fill_surface(const Mesh& surface, const LatticeOptions& options) {
+  if (!(options.cell >= 0.0) || !std::isfinite(options.cell))
     return Error{"mesh `" + surface.name + "`", "its cell is not a length",
                  "give it in metres, or 0 for one sized from the bounds"};
-  if (!(wish.thickness >= 0.0) || !std::isfinite(wish.thickness))
+  if (!(options.thickness >= 0.0) || !std::isfinite(options.thickness))
     return Error{"mesh `" + surface.name + "`", "its thickness is not a length", "give it in metres"};
   LongWork progress;
   const SurfaceShape shape = measure_shape(surface);
   const Inside inside(surface);
-  const FillRegion region(surface, inside, shape, wish.fill, wish.thickness);
-  if (shape.kind == SurfaceKind::kSheet && wish.fill == Fill::kWall && !(wish.thickness > 0.0))
-    return nothing_held(surface, shape, wish);
-  Result<Found> found =
-      wish.cell > 0.0 ? stuff_cell(surface, region, wish, progress) : stuff_usual(surface, region, wish, progress);
+  const FillRegion region(surface, inside, shape, options.fill, options.thickness);
+  if (shape.kind == SurfaceKind::kSheet && options.fill == Fill::kWall && !(options.thickness > 0.0))
+    return nothing_held(surface, shape, options);
+  Result<Found> found = options.cell > 0.0 ? stuff_cell(surface, region, options, progress)
+                                           : stuff_usual(surface, region, options, progress);
   if (!found) return found.error();
-  if (found->stuffing.tets.empty()) return nothing_held(surface, shape, wish);
+  if (found->stuffing.tets.empty()) return nothing_held(surface, shape, options);
   TetMesh mesh;
   mesh.name = surface.name;
   mesh.nodes = std::move(found->stuffing.nodes);
@@ -150,11 +153,11 @@ Result<TetMesh> fill_surface(const Mesh& surface, const LatticeWish& wish) {
   put_in_order(mesh, {});
   mesh.quality = measure_quality(mesh.nodes, mesh.tets);
   mesh.report.cell = mesh.report.coarsest = found->cell;
-  if (wish.focus)
+  if (options.focus)
     for (const dvec3& node : mesh.nodes)
-      mesh.report.coarsest = std::max(mesh.report.coarsest, found->cell * wish.focus->width_at(node));
-  report_wall(shape, wish.fill, wish.thickness, mesh.report);
-  report_thin_places(shape, region, wish, mesh);
+      mesh.report.coarsest = std::max(mesh.report.coarsest, found->cell * options.focus->width_at(node));
+  report_wall(shape, options.fill, options.thickness, mesh.report);
+  report_thin_places(shape, region, options, mesh);
   return mesh;
 }
 

@@ -24,7 +24,7 @@ inline constexpr std::size_t kMostUsualTets = 4 * kUsualTets;
 // for this gets fewer tetrahedra.
 inline constexpr double kMostUsualNodes = 100'000;
 
-struct LatticeWish {
+struct LatticeOptions {
   double cell = 0.0;         // [m] 0: chosen to give about kUsualTets
   Fill fill = Fill::kSolid;  // with `thickness` [m], as in SoftBodyParameters
   double thickness = 0.0;
@@ -36,7 +36,7 @@ struct LatticeWish {
 // sheet with `thickness`. All nodes are free, in Hilbert order; small parts are kept (tet_parts.h). Fills TetReport
 // except for the parts. Errors: a cell or thickness that is not a finite length, nothing enclosed, more than
 // limits::kTets. Progress messages go to stderr after a second.
-Result<TetMesh> fill_surface(const Mesh& surface, const LatticeWish& wish);
+Result<TetMesh> fill_surface(const Mesh& surface, const LatticeOptions& options);
 
 // The same for a solid, with every vertex of the surface embedded.
 Result<TetMesh> make_lattice(const Mesh& surface, double cell = 0.0);

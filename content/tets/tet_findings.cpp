@@ -60,11 +60,12 @@ void report_wall(const SurfaceShape& shape, Fill fill, double thickness, TetRepo
     note("is no thin wall, so \"fill\": \"wall\" changes nothing", "give it a `thickness`, or leave `fill` out");
 }
 
-void report_thin_places(const SurfaceShape& shape, const FillRegion& region, const LatticeWish& wish, TetMesh& mesh) {
+void report_thin_places(const SurfaceShape& shape, const FillRegion& region, const LatticeOptions& options,
+                        TetMesh& mesh) {
   if (shape.samples.empty()) return;
   TetReport& report = mesh.report;
-  const double cells = wish.cell > 0.0 ? kThinCellsOfNamed : kThinCells;
-  const auto width_at = [&](dvec3 place) { return wish.focus ? wish.focus->width_at(place) : 1.0; };
+  const double cells = options.cell > 0.0 ? kThinCellsOfNamed : kThinCells;
+  const auto width_at = [&](dvec3 place) { return options.focus ? options.focus->width_at(place) : 1.0; };
   std::vector<std::pair<double, const ThicknessSample*>> thin;
   for (const ThicknessSample& sample : shape.samples)
     if (const double t = region.thickness_at(sample); t > 0.0 && t < cells * report.cell * width_at(sample.place))
@@ -77,8 +78,8 @@ void report_thin_places(const SurfaceShape& shape, const FillRegion& region, con
   report.least_thickness = least;
   report.thinnest = vec3(at->place);
   const double width = width_at(at->place), cell = least / kHeldCells / width;
-  const double tets = wish.focus ? static_cast<double>(mesh.tets.size()) * std::pow(report.cell / cell, 3)
-                                 : kTetsPerCell * total_volume(mesh) / (cell * cell * cell);
+  const double tets = options.focus ? static_cast<double>(mesh.tets.size()) * std::pow(report.cell / cell, 3)
+                                    : kTetsPerCell * total_volume(mesh) / (cell * cell * cell);
   report.notes.push_back(
       {fmt::format("is thin over {:.0f} % of its surface, {} at ({:.3g}, {:.3g}, {:.3g}) m, for a cell of {}: it bends "
                    "there as single elements do, or crumples",

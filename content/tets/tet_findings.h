@@ -28,8 +28,9 @@ void report_wall(const SurfaceShape& shape, Fill fill, double thickness, TetRepo
 inline constexpr double kThinCells = 1.5, kThinCellsOfNamed = 1.0;  // [cells]
 inline constexpr double kHeldCells = 2.0;                           // [cells] across keep a wall or an ear connected
 inline constexpr double kThinShare = 0.02;                          // [1] of the area: every body has some thin edges
-// `mesh`: filled as `wish` specifies, with its report's cell set.
-void report_thin_places(const SurfaceShape& shape, const FillRegion& region, const LatticeWish& wish, TetMesh& mesh);
+// `mesh`: filled as `options` specifies, with its report's cell set.
+void report_thin_places(const SurfaceShape& shape, const FillRegion& region, const LatticeOptions& options,
+                        TetMesh& mesh);
 
 // Reports dropped parts (tet_parts.h), and remaining separate parts.
 void report_parts(std::uint32_t kept, std::uint32_t of_surface, TetReport& report);

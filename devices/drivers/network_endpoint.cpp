@@ -68,7 +68,7 @@ void NetworkEndpoint::describe_to(const NetworkFrame& frame, double now) {
   send(answer, now);
 }
 
-void NetworkEndpoint::tell_busy(const NetworkFrame& frame, bool stranger, double now) {
+void NetworkEndpoint::reply_busy(const NetworkFrame& frame, bool stranger, double now) {
   ++counts_.foreign;
   NetworkFrame answer;
   answer.kind = FrameKind::kBusy;
@@ -89,18 +89,18 @@ void NetworkEndpoint::answer_stranger(double now) {
   const std::size_t size = port_->stranger(bytes);
   NetworkFrame frame;
   if (size == 0 || parse_frame(std::span(bytes).first(size), frame, key()) != FrameFault::kNone) return;
-  if (frame.kind == FrameKind::kOpen || frame.kind == FrameKind::kAsk) tell_busy(frame, true, now);
+  if (frame.kind == FrameKind::kOpen || frame.kind == FrameKind::kAsk) reply_busy(frame, true, now);
 }
 
 void NetworkEndpoint::accept(const NetworkFrame& frame, double now) {
   if (frame.kind == FrameKind::kAsk) {
     const bool other = key_ && engine_ != 0 && frame.session != engine_;  // with a key, only an engine allowed to open
                                                                           // it may ask
-    return other ? tell_busy(frame, false, now) : describe_to(frame, now);
+    return other ? reply_busy(frame, false, now) : describe_to(frame, now);
   }
   if (frame.kind == FrameKind::kOpen) {
     // A second engine waits until the first has closed or timed out (one second).
-    if (engine_ != 0 && frame.session != engine_) return tell_busy(frame, false, now);
+    if (engine_ != 0 && frame.session != engine_) return reply_busy(frame, false, now);
     if (key_ && frame.peer != own_) {
       ++counts_.foreign;
       return;

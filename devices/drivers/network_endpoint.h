@@ -30,7 +30,7 @@ class NetworkEndpoint {
   void accept(const NetworkFrame& frame, double now);
   void answer_stranger(double now);
   void describe_to(const NetworkFrame& frame, double now);
-  void tell_busy(const NetworkFrame& frame, bool stranger, double now);
+  void reply_busy(const NetworkFrame& frame, bool stranger, double now);
   void forget();
   const FrameKey* key() const { return key_ ? &*key_ : nullptr; }
   std::size_t pack(NetworkFrame& frame, double now, FrameBytes& into);

@@ -220,18 +220,18 @@ void Guard::follow_orders(const GuardOrders& orders, double now) {
 }
 
 // A missing sample or model removes the force at once, and trips if it lasts.
-void Guard::decide(const GuardWish& wish, const GuardOrders& orders, double now) {
+void Guard::decide(const GuardInput& wanted, const GuardOrders& orders, double now) {
   if (orders.let_go) {
     missing_ = false;
     if (state() == DeviceState::kActive) to(DeviceState::kArmed, DeviceCause::kLetGo, now);
     return;
   }
-  const bool modelled = wish.known && wish.age <= kModelHolds;
+  const bool modelled = wanted.known && wanted.age <= kModelHolds;
   if (!fresh(now) || !modelled) {
-    if (!missing_) missing_since_ = fresh(now) ? now - wish.age : std::min(now, sensed_at_);
+    if (!missing_) missing_since_ = fresh(now) ? now - wanted.age : std::min(now, sensed_at_);
     missing_ = true;
     lose(fresh(now) ? DeviceCause::kModelStale : ready_ ? DeviceCause::kNoSample : DeviceCause::kNotReady, now);
-    if ((wish.known || !fresh(now)) && now - missing_since_ > kLatchAfter)
+    if ((wanted.known || !fresh(now)) && now - missing_since_ > kLatchAfter)
       trip(fresh(now) ? DeviceCause::kModelLost : DeviceCause::kLost, now);
     return;
   }
@@ -241,34 +241,34 @@ void Guard::decide(const GuardWish& wish, const GuardOrders& orders, double now)
       now - fresh_since_ >= kSettleTime)
     to(DeviceState::kArmed, DeviceCause::kArmedByItself, now);
   if (state() == DeviceState::kActive) {
-    if (!finite(wish.wrench) || !finite(wish.weight) || !finite(wish.velocity)) lose(DeviceCause::kBadForce, now);
+    if (!finite(wanted.wrench) || !finite(wanted.weight) || !finite(wanted.velocity)) lose(DeviceCause::kBadForce, now);
     if (parameters_.dead_man != 0 && !held && state() == DeviceState::kActive)
       to(DeviceState::kArmed, DeviceCause::kDeadManReleased, now);
     return;
   }
-  if (state() != DeviceState::kArmed || !finite(wish.wrench) || (warnings_ & kDeviceBatteryLow)) return;
+  if (state() != DeviceState::kArmed || !finite(wanted.wrench) || (warnings_ & kDeviceBatteryLow)) return;
   if (parameters_.dead_man != 0) {
     if (held) to(DeviceState::kActive, DeviceCause::kDeadManHeld, now);
-  } else if (!wish.easing && length(wish.wrench.force - wish.weight) < kEngageForce &&
-             length(wish.wrench.torque) < kGateTorque) {
+  } else if (!wanted.easing && length(wanted.wrench.force - wanted.weight) < kEngageForce &&
+             length(wanted.wrench.torque) < kGateTorque) {
     to(DeviceState::kActive, DeviceCause::kSmallForce, now);
   }
   if (state() == DeviceState::kActive) changed_at_ = now;
 }
 
-double Guard::force_limit(const GuardWish& wish) const {
-  const double most = lowest(lowest(can_.max_force, parameters_.max_force), wish.max_force);
+double Guard::force_limit(const GuardInput& wanted) const {
+  const double most = lowest(lowest(can_.max_force, parameters_.max_force), wanted.max_force);
   return most > 0.0 ? most : std::numeric_limits<double>::infinity();
 }
-double Guard::torque_limit(const GuardWish& wish) const {
-  const double most = lowest(lowest(can_.max_torque, parameters_.max_torque), wish.max_torque);
+double Guard::torque_limit(const GuardInput& wanted) const {
+  const double most = lowest(lowest(can_.max_torque, parameters_.max_torque), wanted.max_torque);
   return most > 0.0 ? most : std::numeric_limits<double>::infinity();
 }
 
 // Speed increases against a large force, faster than a pushing hand could cause.
-bool Guard::runs_away(const GuardWish& wish, double dt) {
-  const double size = length(last_.force), most = force_limit(wish);
-  const double against = size > 0.0 ? -dot(velocity_ - wish.velocity, last_.force) / size : 0.0;
+bool Guard::runs_away(const GuardInput& wanted, double dt) {
+  const double size = length(last_.force), most = force_limit(wanted);
+  const double against = size > 0.0 ? -dot(velocity_ - wanted.velocity, last_.force) / size : 0.0;
   if (size < kRunawayShare * std::min(most, kUsualForce)) {
     slow_speed_ = against;
     return false;
@@ -285,11 +285,11 @@ double Guard::risen_slowly(double before, double most, double dt) const {
 
 // If a larger share of the wanted force is released than in the last period, the hand has worked only against the
 // smaller one. If the limit is raised, the hand has stored at least the energy above it under the lower limit.
-void Guard::credit(const GuardWish& wish, double share, double most) {
-  const dvec3 whole = wish.wrench.force - wish.weight;
-  pushed_.follow(clamp_norm(whole, most), heard_ ? way_ - carried_ : dvec3(0), wish.stiffness);
-  twisted_.follow(wish.wrench.torque, turn_, wish.turning_stiffness);
-  if (whole == dvec3(0) && wish.wrench.torque == dvec3(0)) {
+void Guard::credit(const GuardInput& wanted, double share, double most) {
+  const dvec3 whole = wanted.wrench.force - wanted.weight;
+  pushed_.follow(clamp_norm(whole, most), heard_ ? way_ - carried_ : dvec3(0), wanted.stiffness);
+  twisted_.follow(wanted.wrench.torque, turn_, wanted.turning_stiffness);
+  if (whole == dvec3(0) && wanted.wrench.torque == dvec3(0)) {
     forfeit(credited_);
     credited_ = 0.0;
   }
@@ -318,12 +318,12 @@ void Guard::forfeit(double energy) {
   energy_.work += std::min(energy, std::max(0.0, -energy_.work));
 }
 
-DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
+DeviceWrench Guard::limited(const GuardInput& wanted, double dt) {
   ramp_ = parameters_.ramp > 0.0 ? std::min(1.0, ramp_ + dt / parameters_.ramp) : 1.0;
   if (warnings_ & kDeviceBatteryLow) fade_ = std::max(0.0, fade_ - dt / kFadeTime);
   const double gain = ramp_ * fade_;
-  DeviceWrench wrench = wish.wrench;
-  double force_most = force_limit(wish), torque_most = torque_limit(wish);
+  DeviceWrench wrench = wanted.wrench;
+  double force_most = force_limit(wanted), torque_most = torque_limit(wanted);
 
   // Thermal model: the mean square of the force relative to the continuous limit.
   const double bears = can_.continuous_force;
@@ -339,10 +339,10 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
     report_.max_force = force_most *= kWarmShare;
   }
   if (warnings_ & kDeviceWarm) torque_most *= kWarmShare;
-  carried_ += wish.velocity * dt;
+  carried_ += wanted.velocity * dt;
   force_most = risen_slowly(most_, force_most, dt);
   torque_most = risen_slowly(most_turn_, torque_most, dt);
-  credit(wish, gain, force_most);
+  credit(wanted, gain, force_most);
   most_turn_ = torque_most;
   most_ = force_most;
   if (std::isfinite(force_most)) report_.max_force = force_most;
@@ -351,13 +351,13 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
   wrench.torque = can_.renders_torque ? clamp_norm(gain * wrench.torque, torque_most) : dvec3(0);
   wrench.grip = can_.renders_grip ? std::max(0.0, gain * wrench.grip) : 0.0;
   if (can_.max_grip > 0.0) wrench.grip = std::min(wrench.grip, can_.max_grip);
-  const dvec3 weight = clamp_norm(gain * wish.weight, length(wrench.force));
+  const dvec3 weight = clamp_norm(gain * wanted.weight, length(wrench.force));
 
   // A brake cannot push: no force along the motion, and none that would start a motion in its last direction.
-  const double speed = length(velocity_ - wish.velocity);
+  const double speed = length(velocity_ - wanted.velocity);
   if (can_.resists_only) {
     if (speed > 0.0) {
-      const dvec3 along = (velocity_ - wish.velocity) / speed;
+      const dvec3 along = (velocity_ - wanted.velocity) / speed;
       wrench.force -= std::max(0.0, dot(wrench.force, along)) * along;
     } else {
       wrench.force = dvec3(0);
@@ -372,11 +372,11 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
   if (heard_) carried_ = dvec3(0);
   const EnergyAccount before = energy_;
   wrench.force =
-      push_.damp(before, wrench.force, weight, way, force_most, kSlowHand * dt, wish.stiffness, kUsualSpring);
+      push_.damp(before, wrench.force, weight, way, force_most, kSlowHand * dt, wanted.stiffness, kUsualSpring);
   wrench.torque = twist_.damp(before, wrench.torque, dvec3(0), turn_, torque_most, kSlowTurn * dt,
-                              wish.turning_stiffness, kUsualTurnSpring);
+                              wanted.turning_stiffness, kUsualTurnSpring);
   if (can_.resists_only && speed > 0.0) {
-    const dvec3 along = (velocity_ - wish.velocity) / speed;
+    const dvec3 along = (velocity_ - wanted.velocity) / speed;
     wrench.force -= std::max(0.0, dot(wrench.force, along)) * along;
   }
   push_.book(energy_, wrench.force - weight);
@@ -384,17 +384,17 @@ DeviceWrench Guard::limited(const GuardWish& wish, double dt) {
   return wrench;
 }
 
-DeviceWrench Guard::release(const GuardWish& wish, double now, const GuardOrders& orders) {
-  report_.wanted = wish.known ? wish.wrench : DeviceWrench{};
-  const double most = force_limit(wish);
+DeviceWrench Guard::release(const GuardInput& wanted, double now, const GuardOrders& orders) {
+  report_.wanted = wanted.known ? wanted.wrench : DeviceWrench{};
+  const double most = force_limit(wanted);
   report_.max_force = std::isfinite(most) ? most : 0.0;
-  decide(wish, orders, now);
-  if (state() == DeviceState::kActive && runs_away(wish, dt_)) trip(DeviceCause::kRunaway, now);
+  decide(wanted, orders, now);
+  if (state() == DeviceState::kActive && runs_away(wanted, dt_)) trip(DeviceCause::kRunaway, now);
   if (state() != DeviceState::kActive) {
     if (heat_ > 0.0) report_.heat = heat_ *= std::exp(-dt_ / kThermalTime);
     return {};
   }
-  const DeviceWrench wrench = limited(wish, dt_);
+  const DeviceWrench wrench = limited(wanted, dt_);
   if (energy_.work > kMostGiven + kPassivityShare * energy_.stored) {
     trip(DeviceCause::kGaveEnergy, now);
     return {};

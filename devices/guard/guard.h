@@ -51,7 +51,7 @@ struct GuardOrders {
 };
 
 // The touch tick's wanted force: the newest model evaluated at the device's current pose.
-struct GuardWish {
+struct GuardInput {
   bool known = false;                               // a model is available
   double age = 0.0;                                 // [s] its age
   DeviceWrench wrench;                              // before limits
@@ -73,7 +73,7 @@ class Guard {
 
   // One period: first the sample (null: none new), then the force to render.
   void sense(const DeviceSample* sample, double now, const GuardOrders& orders);
-  DeviceWrench release(const GuardWish& wish, double now, const GuardOrders& orders);
+  DeviceWrench release(const GuardInput& wanted, double now, const GuardOrders& orders);
   // End of the run: zero force from now on.
   void close(double now);
 
@@ -97,14 +97,14 @@ class Guard {
   void take(const DeviceSample& sample, double at);
   void watch(double now);
   void follow_orders(const GuardOrders& orders, double now);
-  void decide(const GuardWish& wish, const GuardOrders& orders, double now);
-  bool runs_away(const GuardWish& wish, double dt);
+  void decide(const GuardInput& wanted, const GuardOrders& orders, double now);
+  bool runs_away(const GuardInput& wanted, double dt);
   double risen_slowly(double before, double most, double dt) const;
-  void credit(const GuardWish& wish, double share, double most);
+  void credit(const GuardInput& wanted, double share, double most);
   void forfeit(double energy);
-  double force_limit(const GuardWish& wish) const;
-  double torque_limit(const GuardWish& wish) const;
-  DeviceWrench limited(const GuardWish& wish, double dt);
+  double force_limit(const GuardInput& wanted) const;
+  double torque_limit(const GuardInput& wanted) const;
+  DeviceWrench limited(const GuardInput& wanted, double dt);
   void send_nothing();
 
   DeviceCapabilities can_;
@@ -136,7 +136,7 @@ class Guard {
   std::size_t loss_ = 0;
   EnergyAccount energy_;
   PassivityDamper push_, twist_;
-  StoredInWish pushed_, twisted_;
+  StoredInInput pushed_, twisted_;
   double credited_ = 0.0;  // [J] in this contact
   DeviceWrench last_;
   bool disarmed_ = false;  // by the user: it does not arm itself

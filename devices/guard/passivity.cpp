@@ -55,7 +55,7 @@ void PassivityDamper::book(EnergyAccount& account, dvec3 sent) {
   work_ = 0.0;
 }
 
-void StoredInWish::follow(dvec3 wanted, dvec3 moved, double stiffness) {
+void StoredInInput::follow(dvec3 wanted, dvec3 moved, double stiffness) {
   const double square = dot(wanted, wanted);
   given_ = square > 0.0 ? std::max(0.0, given_ - 0.5 * dot(last_ + wanted, moved)) : 0.0;
   energy_ = stiffness > 0.0 ? std::max(given_, 0.5 * square / stiffness) : given_;

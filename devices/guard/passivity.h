@@ -9,7 +9,7 @@
 //
 // If the share of the wanted force rises (ramp, fade, a raised limit), it pushes a hand at rest and does work that the
 // hand has not put in against the lower force. The energy that the hand would have stored against the full force is
-// credited: StoredInWish.
+// credited: StoredInInput.
 #pragma once
 
 #include "components/hand_limits.h"
@@ -47,7 +47,7 @@ class PassivityDamper {
 };
 
 // [J] The energy that the hand would have stored against the full wanted force. Restarts when no force is wanted.
-class StoredInWish {
+class StoredInInput {
  public:
   // `wanted` [N]: the full force without the weight, at most the limit. `stiffness` [N/m] along it; 0: unknown.
   void follow(dvec3 wanted, dvec3 moved, double stiffness);

@@ -152,7 +152,7 @@ void Watchman::end() noexcept {
 }
 
 std::string LineWatch::start(const Driver& driver, const DeviceCapabilities& can) {
-  told_at_ = 0.0;
+  reported_at_ = 0.0;
   SafeLine line;
   if (!driver.safe_line(line)) return renders(can) && !can.simulated ? kNoSafeLine : "";
   const Status started = watchman_.start(line);
@@ -163,8 +163,8 @@ std::string LineWatch::start(const Driver& driver, const DeviceCapabilities& can
 void LineWatch::beat(const Driver& driver, double now) noexcept {
   if (!watchman_.watches()) return;
   watchman_.beat();
-  if (now - told_at_ < kRenewEvery) return;
-  told_at_ = now;
+  if (now - reported_at_ < kRenewEvery) return;
+  reported_at_ = now;
   SafeLine line;
   if (driver.safe_line(line)) watchman_.renew(line);
 }

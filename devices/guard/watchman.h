@@ -45,7 +45,7 @@ class LineWatch {
 
  private:
   Watchman watchman_;
-  double told_at_ = 0.0;  // [s] of the line
+  double reported_at_ = 0.0;  // [s] of the line
 };
 
 // Whether there is something to feel of a device.

@@ -15,7 +15,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kTellEvery = 0.05;    // [s] of reports for a person to read
+constexpr double kReportEvery = 0.05;  // [s] of reports for a person to read
 constexpr double kLateModel = 2e-3;    // [s] two ticks of the touch clock
 constexpr double kSlept = 0.020;       // [s] less is the two clocks' reading
 constexpr double kLongestWait = 5e-3;  // [s] for a reply: an order is heard at least so often
@@ -65,7 +65,7 @@ void Servo::adopt() {
   periods_ = jitter_ = trips_ = reads_ = {};
   came_ = false;
   virtual_periods_ = 0;
-  looped_ = failed_ = told_ = false;
+  looped_ = failed_ = reported_ = false;
   if (!guard_to_the_last(*inner_)) note_ = "more devices are open than a crash handler knows";
   if (const std::string sentence = watch_.start(*inner_, can_); !sentence.empty()) note_ = sentence;
   not_ready_ = 0;
@@ -166,30 +166,30 @@ GuardOrders Servo::take_orders(double) {
   return orders;
 }
 
-GuardWish Servo::wish(double now) {
+GuardInput Servo::input(double now) {
   const Message& message = models_.read();
-  GuardWish wish;
-  wish.known = message.known;
-  if (!message.known) return wish;
+  GuardInput wanted;
+  wanted.known = message.known;
+  if (!message.known) return wanted;
   const DeviceModel model = softened(message.model, can_.max_stiffness);
-  wish.age = std::max(0.0, now - message.at);
-  wish.wrench = local_force(model, guard_.position(), can_.senses_rotation ? guard_.rotation() : model.rotation,
-                            guard_.velocity(), guard_.spin(), wish.age);
-  wish.weight = model.weight;
-  wish.velocity = model.carried;
-  wish.stiffness = stiffness_along(model.force_by_position, wish.wrench.force);
-  wish.turning_stiffness = stiffness_along(model.torque_by_turn, wish.wrench.torque);
-  wish.max_force = model.max_force;
-  wish.max_torque = model.max_torque;
-  wish.easing = model.easing;
-  figures_.oldest_model = std::max(figures_.oldest_model, 1e6 * wish.age);
-  if (wish.age > kLateModel) ++figures_.late_models;
-  return wish;
+  wanted.age = std::max(0.0, now - message.at);
+  wanted.wrench = local_force(model, guard_.position(), can_.senses_rotation ? guard_.rotation() : model.rotation,
+                              guard_.velocity(), guard_.spin(), wanted.age);
+  wanted.weight = model.weight;
+  wanted.velocity = model.carried;
+  wanted.stiffness = stiffness_along(model.force_by_position, wanted.wrench.force);
+  wanted.turning_stiffness = stiffness_along(model.torque_by_turn, wanted.wrench.torque);
+  wanted.max_force = model.max_force;
+  wanted.max_torque = model.max_torque;
+  wanted.easing = model.easing;
+  figures_.oldest_model = std::max(figures_.oldest_model, 1e6 * wanted.age);
+  if (wanted.age > kLateModel) ++figures_.late_models;
+  return wanted;
 }
 
 // After exit() or a crash nothing is written: the device has been made safe. A device that renders the model itself
 // receives one that respects the guard's current limits even if no further frame arrives.
-void Servo::put(const GuardWish& wish, const DeviceWrench& wrench, bool make_safe) {
+void Servo::put(const GuardInput& wanted, const DeviceWrench& wrench, bool make_safe) {
   if (all_made_safe()) return;
   try {
     DeviceModel model;
@@ -197,8 +197,8 @@ void Servo::put(const GuardWish& wish, const DeviceWrench& wrench, bool make_saf
       model = softened(models_.read().model, can_.max_stiffness);
       model.position = guard_.position();
       model.rotation = guard_.rotation();
-      const double square = dot(wish.wrench.force, wish.wrench.force);
-      const double share = square > 0.0 ? std::clamp(dot(wrench.force, wish.wrench.force) / square, 0.0, 1.0) : 0.0;
+      const double square = dot(wanted.wrench.force, wanted.wrench.force);
+      const double share = square > 0.0 ? std::clamp(dot(wrench.force, wanted.wrench.force) / square, 0.0, 1.0) : 0.0;
       model = told_elsewhere(model, wrench, share, guard_.report().max_force);
     }
     if (!inner_->write_model(model, wrench)) inner_->write(wrench);
@@ -223,7 +223,7 @@ void Servo::period(double now) {
   failed_ = failed_ || threw;
   const GuardOrders orders = take_orders(now);
   guard_.sense(sampled ? &sample : nullptr, now, orders);
-  const GuardWish wanted = wish(now);
+  const GuardInput wanted = input(now);
   const DeviceWrench wrench = guard_.release(wanted, now, orders);
   put(wanted, wrench, guard_.take_make_safe());
   failed_ = failed_ || threw;
@@ -249,17 +249,17 @@ void Servo::measure(double now, bool sampled) {
     jitter_.add(ns(std::abs(since - wanted)));
     if (since > 1.5 * wanted) f.missed += static_cast<std::uint64_t>(std::lround(since / wanted)) - 1;
   } else {
-    told_at_ = now;
+    reported_at_ = now;
   }
   ++f.periods;
   ++(sampled ? f.samples : f.without_sample);
   if (sampled && can_.loop == DeviceLoop::kReply && f.periods > 1) trips_.add(ns(now - written_at_));
   last_ = now;
   if (can_.loop == DeviceLoop::kReply) written_at_ = running_ ? seconds(CLOCK_MONOTONIC) : now;
-  if (now - told_at_ < kTellEvery && guard_.report().transitions == told_transitions_ && told_) return;
-  if (now > told_at_) f.rate = static_cast<double>(f.periods - told_periods_) / (now - told_at_);
-  told_at_ = now;
-  told_periods_ = f.periods;
+  if (now - reported_at_ < kReportEvery && guard_.report().transitions == reported_transitions_ && reported_) return;
+  if (now > reported_at_) f.rate = static_cast<double>(f.periods - reported_periods_) / (now - reported_at_);
+  reported_at_ = now;
+  reported_periods_ = f.periods;
   tell();
 }
 
@@ -273,8 +273,8 @@ void Servo::tell() {
   figures_.read_p50 = reads_.percentile_us(0.5);
   figures_.read_max = reads_.max_us();
   figures_.has_priority = granted_;
-  told_transitions_ = guard_.report().transitions;
-  told_ = true;
+  reported_transitions_ = guard_.report().transitions;
+  reported_ = true;
   DeviceReport& out = reports_.write();
   out = guard_.report();
   out.figures = figures_;

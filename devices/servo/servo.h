@@ -71,8 +71,8 @@ class Servo final : public Driver {
   void send(const DeviceModel& model, bool let_go);
   double clock() const;
   GuardOrders take_orders(double now);
-  GuardWish wish(double now);
-  void put(const GuardWish& wish, const DeviceWrench& wrench, bool make_safe);
+  GuardInput input(double now);
+  void put(const GuardInput& wanted, const DeviceWrench& wrench, bool make_safe);
   void measure(double now, bool sampled);
   void tell();
   void run();
@@ -105,9 +105,9 @@ class Servo final : public Driver {
   DeviceSample newest_;
   double came_at_ = 0.0;  // [s]
   bool came_ = false;
-  double last_ = 0.0, written_at_ = 0.0, told_at_ = 0.0;
-  std::uint64_t told_periods_ = 0, told_transitions_ = 0;
-  bool told_ = false;
+  double last_ = 0.0, written_at_ = 0.0, reported_at_ = 0.0;
+  std::uint64_t reported_periods_ = 0, reported_transitions_ = 0;
+  bool reported_ = false;
   std::uint64_t not_ready_ = 0;  // samples
   double virtual_start_ = 0.0;
   std::uint64_t virtual_periods_ = 0;

@@ -286,7 +286,7 @@ bool App::shortcut_counts(const Action& action, const InputEvent& event) const {
   if (plain && dialog) return false;
   constexpr int kOfWidgets[] = {GLFW_KEY_SPACE, GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_LEFT,
                                 GLFW_KEY_RIGHT, GLFW_KEY_UP,    GLFW_KEY_DOWN};
-  return !(plain && ui::keyboard_leads() &&
+  return !(plain && ui::keyboard_has_focus() &&
            std::find(std::begin(kOfWidgets), std::end(kOfWidgets), event.key) != std::end(kOfWidgets));
 }
 

@@ -70,20 +70,20 @@ void Files::update() {
 
 // --- Asking for a file
 
-void Files::choose(const FileWish& wish, std::function<void(const fs::path&)> then) {
-  wish_ = wish;
+void Files::choose(const FileRequest& request, std::function<void(const fs::path&)> then) {
+  request_ = request;
   ++wishes_;
   then_ = std::move(then);
-  if (wish_.folder.empty()) {
+  if (request_.folder.empty()) {
     std::error_code failed;
-    wish_.folder = fs::current_path(failed);
+    request_.folder = fs::current_path(failed);
   }
   std::error_code failed;
-  wish_.folder = fs::absolute(wish_.folder, failed).lexically_normal();
+  request_.folder = fs::absolute(request_.folder, failed).lexically_normal();
   if (!native_ || !native_dialog_there()) return app_.show_panel("Files");
-  app_.editor.jobs.start("native dialog", "", [this, wish = wish_](const Jobs::Stop& stop) {
+  app_.editor.jobs.start("native dialog", "", [this, request = request_](const Jobs::Stop& stop) {
     fs::path file;
-    const bool came_up = native_dialog(wish, stop, file);
+    const bool came_up = native_dialog(request, stop, file);
     return [this, file, came_up](Editor&) {
       if (!came_up) {  // for instance, no service for it
         native_ = false;
@@ -102,10 +102,11 @@ void Files::chosen(const fs::path& file) {
 // --- Opening
 
 void Files::ask_open(const fs::path& folder) {
-  FileWish wish{.title = "Open a level or a mesh", .folder = folder.empty() ? app_.editor.document.folder() : folder};
-  if (wish.folder.empty() && !app_.settings.recent.empty())
-    wish.folder = fs::path(app_.settings.recent.front()).parent_path();
-  choose(wish, [this](const fs::path& file) { open(file); });
+  FileRequest request{.title = "Open a level or a mesh",
+                      .folder = folder.empty() ? app_.editor.document.folder() : folder};
+  if (request.folder.empty() && !app_.settings.recent.empty())
+    request.folder = fs::path(app_.settings.recent.front()).parent_path();
+  choose(request, [this](const fs::path& file) { open(file); });
 }
 
 void Files::open(const fs::path& file, double unit) {
@@ -220,8 +221,9 @@ void Files::save_copy() {
 
 void Files::ask_name(const char* title, bool copy, std::function<void()> then) {
   const Document& document = app_.editor.document;
-  const FileWish wish{.title = title, .save = true, .folder = document.folder(), .name = suggested_name(document)};
-  choose(wish, [this, copy, then](const fs::path& chosen) {
+  const FileRequest request{
+      .title = title, .save = true, .folder = document.folder(), .name = suggested_name(document)};
+  choose(request, [this, copy, then](const fs::path& chosen) {
     fs::path file = chosen;
     if (!is_level_name(file)) file += ".glb";
     const bool is_own = file == app_.editor.document.file() && !read_only_;

@@ -43,9 +43,9 @@ class Files {
 
   Autosave autosave;
   // Asks for a name; calls `then` with the choice.
-  void choose(const FileWish& wish, std::function<void(const std::filesystem::path&)> then);
+  void choose(const FileRequest& request, std::function<void(const std::filesystem::path&)> then);
   // For the built-in browser: the current request.
-  const FileWish& wish() const { return wish_; }
+  const FileRequest& request() const { return request_; }
   std::uint64_t wishes() const { return wishes_; }  // number of requests so far
   void chosen(const std::filesystem::path& file);   // by the built-in browser
   void given_up() { then_ = nullptr; }
@@ -70,7 +70,7 @@ class Files {
 
   App& app_;
   bool native_;
-  FileWish wish_;
+  FileRequest request_;
   std::uint64_t wishes_ = 0;
   std::function<void(const std::filesystem::path&)> then_;
   std::unique_ptr<FileLock> lock_;  // of the document's file; locked or not

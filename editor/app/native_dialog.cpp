@@ -29,12 +29,12 @@ bool there(const char* program) {
   return false;
 }
 
-std::vector<std::string> command_of(const FileWish& wish) {
-  const std::string start = (wish.folder / wish.name).string();
+std::vector<std::string> command_of(const FileRequest& request) {
+  const std::string start = (request.folder / request.name).string();
   if (there("zenity")) {
-    std::vector<std::string> command{"zenity", "--file-selection", "--title=" + wish.title, "--filename=" + start};
-    if (wish.save) command.push_back("--save");
-    if (!wish.save) {
+    std::vector<std::string> command{"zenity", "--file-selection", "--title=" + request.title, "--filename=" + start};
+    if (request.save) command.push_back("--save");
+    if (!request.save) {
       std::string filter = "--file-filter=Levels and meshes |";
       for (const std::string& ending : openable_endings()) filter += " *" + ending;
       command.push_back(filter);
@@ -42,7 +42,7 @@ std::vector<std::string> command_of(const FileWish& wish) {
     }
     return command;
   }
-  return {"kdialog", wish.save ? "--getsavefilename" : "--getopenfilename", start, "--title", wish.title};
+  return {"kdialog", request.save ? "--getsavefilename" : "--getopenfilename", start, "--title", request.title};
 }
 
 }  // namespace
@@ -51,11 +51,11 @@ bool native_dialog_there() {
   return there("zenity") || there("kdialog");
 }
 
-bool native_dialog(const FileWish& wish, const std::atomic<bool>& stop, fs::path& chosen) {
+bool native_dialog(const FileRequest& request, const std::atomic<bool>& stop, fs::path& chosen) {
   chosen.clear();
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return false;
-  const std::vector<std::string> command = command_of(wish);
+  const std::vector<std::string> command = command_of(request);
   std::vector<char*> words;
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);

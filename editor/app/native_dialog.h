@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-struct FileWish {
+struct FileRequest {
   std::string title;
   bool save = false;
   std::filesystem::path folder;  // initial folder
@@ -17,6 +17,6 @@ struct FileWish {
 bool native_dialog_there();
 // Blocks until answered; call on a separate thread. Empty: no choice, or `stop` was set. False: no dialog could be
 // shown.
-bool native_dialog(const FileWish& wish, const std::atomic<bool>& stop, std::filesystem::path& chosen);
+bool native_dialog(const FileRequest& request, const std::atomic<bool>& stop, std::filesystem::path& chosen);
 
 }  // namespace pliant

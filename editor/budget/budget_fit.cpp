@@ -10,8 +10,8 @@ namespace pliant {
 namespace {
 
 // The chosen keys with their values.
-std::vector<SaidKey> keys_set(const std::vector<ModelChoice>& choices, const Level& after, std::size_t node) {
-  std::vector<SaidKey> keys;
+std::vector<StatedKey> keys_set(const std::vector<ModelChoice>& choices, const Level& after, std::size_t node) {
+  std::vector<StatedKey> keys;
   for (const ModelChoice& choice : choices)
     for (const ChoosableKey& each : choice.keys) {
       const Extension& of = *find_extension(each.extension);
@@ -96,10 +96,10 @@ bool chooses_another(const std::vector<ModelChoice>& choices, double budget) {
                      [&](const ModelChoice& choice) { return with_budget(choice, budget).chosen != choice.chosen; });
 }
 
-std::vector<SaidKey> said_of(const State& state, NodeId id) {
+std::vector<StatedKey> stated_keys(const State& state, NodeId id) {
   const std::size_t at = state.place(id);
   if (at >= state.nodes.size()) return {};
-  std::vector<SaidKey> said;
+  std::vector<StatedKey> said;
   for (const ChoosableKey& each : choosable_keys(outline_of(state), at))
     if (each.said) said.push_back({each.extension, each.key, value_of_key(state, id, each.extension, each.key)});
   return said;
@@ -171,7 +171,7 @@ bool BudgetFits::use(Editor& editor, NodeId id) {
   std::string models;
   for (const ModelChoice& choice : *it->second.choices)
     models += (models.empty() ? "" : "; ") + choice.tried[choice.chosen].label;
-  if (!editor.apply("Use the model " + models, with_said(editor.state(), id, it->second.keys))) return false;
+  if (!editor.apply("Use the model " + models, with_stated(editor.state(), id, it->second.keys))) return false;
   it->second.used = fit_subject(editor.state(), id);
   return true;
 }

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "editor/app/editor.h"
-#include "editor/document/said_keys.h"
+#include "editor/document/stated_keys.h"
 #include "engine/choice/model_choice.h"
 
 namespace pliant {
@@ -33,7 +33,7 @@ struct BudgetFit {
   FitSubject subject;
   std::optional<FitSubject> used;                                        // the same object with the chosen keys
   Result<std::vector<ModelChoice>> choices = Error{"", "not measured"};  // surface and force law, or body and tool
-  std::vector<SaidKey> keys;                                             // chosen keys that the level does not state
+  std::vector<StatedKey> keys;                                           // chosen keys that the level does not state
   double seconds = 0.0;                                                  // duration of the measurement
 };
 
@@ -79,6 +79,6 @@ class BudgetFits {
 };
 
 // Keys stated in the level that the object's budget would otherwise choose.
-std::vector<SaidKey> said_of(const State& state, NodeId id);
+std::vector<StatedKey> stated_keys(const State& state, NodeId id);
 
 }  // namespace pliant

@@ -20,9 +20,9 @@ constexpr float kPlotShare = 0.32f;            // [1] of the width
 constexpr float kLeastPlot = 200, kMostPlot = 560, kLeastWords = 160, kLeastTable = 76;  // [point]
 
 // "shape punch, distance chord"
-std::string list_of(const std::vector<SaidKey>& keys) {
+std::string list_of(const std::vector<StatedKey>& keys) {
   std::string all;
-  for (const SaidKey& each : keys) {
+  for (const StatedKey& each : keys) {
     const std::string unit = find_key(*find_extension(each.extension), each.key)->unit;
     const std::string value = each.value.is_number()   ? fmt::format("{:.4g}", each.value.get<double>())
                               : each.value.is_string() ? each.value.get<std::string>()
@@ -33,8 +33,8 @@ std::string list_of(const std::vector<SaidKey>& keys) {
   return all;
 }
 
-bool of_all_bodies(const std::vector<SaidKey>& keys) {
-  return std::any_of(keys.begin(), keys.end(), [](const SaidKey& each) { return each.extension == "simulation"; });
+bool of_all_bodies(const std::vector<StatedKey>& keys) {
+  return std::any_of(keys.begin(), keys.end(), [](const StatedKey& each) { return each.extension == "simulation"; });
 }
 
 class ErrorBudgetPanel : public Panel {
@@ -82,7 +82,7 @@ class ErrorBudgetPanel : public Panel {
     const auto now = std::tuple(editor.documents, editor.document.revision(), id);
     if (now == looked_) return;
     looked_ = now;
-    said_ = said_of(editor.state(), id);
+    said_ = stated_keys(editor.state(), id);
   }
 
   void draw_controls(Editor& editor, const DocumentNode& node) {
@@ -104,7 +104,7 @@ class ErrorBudgetPanel : public Panel {
     if (has_budget_) {
       if (ui::button("No budget", "Takes the key `error` out of the level: what is chosen by hand counts")) {
         trial_ = budget_;
-        editor.apply("No error budget", without_said(editor.state(), node.id, {{extension, key.name, {}}}));
+        editor.apply("No error budget", without_stated(editor.state(), node.id, {{extension, key.name, {}}}));
       }
     } else if (ui::button("Give it this budget",
                           "Writes the key `error`: what the level does not say is chosen whenever it is opened")) {
@@ -223,7 +223,7 @@ class ErrorBudgetPanel : public Panel {
             of_all_bodies(said_)
                 ? "Takes them out of the level, as one step that can be undone; the soft step for all soft bodies"
                 : "Takes them out of the level, as one step that can be undone"))
-      editor.apply("Let the budget choose", without_said(editor.state(), id, said_));
+      editor.apply("Let the budget choose", without_stated(editor.state(), id, said_));
   }
 
   BudgetFits fits_;
@@ -234,7 +234,7 @@ class ErrorBudgetPanel : public Panel {
   bool has_budget_ = false, stale_ = false, in_use_ = false;
   double budget_ = kTrial;  // [1] its own, else the trial
   std::tuple<std::uint64_t, std::uint64_t, NodeId> looked_{~std::uint64_t{0}, 0, kNoNode};
-  std::vector<SaidKey> said_;
+  std::vector<StatedKey> said_;
 };
 
 }  // namespace

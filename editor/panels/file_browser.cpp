@@ -25,37 +25,37 @@ class FileBrowser : public Panel {
   Place place() const override { return Place::kOver; }
 
   void draw(Editor& editor) override {
-    const FileWish& wish = app_.files().wish();
+    const FileRequest& request = app_.files().request();
     if (app_.files().wishes() != of_) {  // another request
       of_ = app_.files().wishes();
-      name_ = wish.name;
+      name_ = request.name;
       begins_ = true;
-      go(editor, wish.folder);
+      go(editor, request.folder);
     }
     if (!(filter_ == read_)) read(editor);
-    const Dialog dialog(app_, name(), wish.title.c_str(), {820, 560});
+    const Dialog dialog(app_, name(), request.title.c_str(), {820, 560});
     if (dialog.closed()) return app_.files().given_up();
     path_row(editor);
     ui::gap(2);
-    const float below = ui::px(wish.save ? 76 : 40);
+    const float below = ui::px(request.save ? 76 : 40);
     ImGui::BeginChild("places", {ui::px(200), -below});
     places(editor);
     ImGui::EndChild();
     ImGui::SameLine();
     // Arrow keys move the selection, letters search by name.
     ImGui::BeginChild("entries", {0, -below}, false, ImGuiWindowFlags_NoNavInputs);
-    if (begins_ && !wish.save) ImGui::SetWindowFocus();
+    if (begins_ && !request.save) ImGui::SetWindowFocus();
     if (ImGui::IsWindowFocused() && !ImGui::GetIO().WantTextInput) keys(editor);
-    entries(editor, wish);
+    entries(editor, request);
     ImGui::EndChild();
     ui::gap(2);
-    last_row(editor, wish);
+    last_row(editor, request);
     begins_ = false;
     // Enter confirms the dialog, whatever has the focus.
     const bool enter = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) ||
                        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter), false);
-    const std::string& chosen = wish.save && !list_.on_folder() ? name_ : list_.selected();
-    if (enter && !ImGui::IsAnyItemActive() && !ui::keyboard_leads() && !chosen.empty() &&
+    const std::string& chosen = request.save && !list_.on_folder() ? name_ : list_.selected();
+    if (enter && !ImGui::IsAnyItemActive() && !ui::keyboard_has_focus() && !chosen.empty() &&
         ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows))
       accept(editor, folder_ / chosen);
   }
@@ -85,16 +85,16 @@ class FileBrowser : public Panel {
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Backspace)) && folder_.has_relative_path())
       return go(editor, folder_.parent_path());
     const FolderEntry* const entry = list_.take_keys();
-    if (entry && app_.files().wish().save && !entry->folder) name_ = entry->name;
+    if (entry && app_.files().request().save && !entry->folder) name_ = entry->name;
   }
 
-  void entries(Editor& editor, const FileWish& wish) {
+  void entries(Editor& editor, const FileRequest& request) {
     bool twice = false;
     const FolderEntry* const entry = list_.draw(twice);
     if (!entry) return;
     const fs::path path = folder_ / entry->name;
     if (entry->folder) return go(editor, path);
-    if (wish.save) name_ = entry->name;
+    if (request.save) name_ = entry->name;
     if (twice) choose(path);
   }
 
@@ -115,7 +115,7 @@ class FileBrowser : public Panel {
     if (path.is_relative()) path = folder_ / path;
     std::error_code failed;
     if (fs::is_directory(path, failed)) return go(editor, path);
-    if (app_.files().wish().save || fs::is_regular_file(path, failed)) return choose(path);
+    if (app_.files().request().save || fs::is_regular_file(path, failed)) return choose(path);
     editor.say(printable(path.string()) + " is not there", Severity::kWarning);
   }
 
@@ -130,7 +130,7 @@ class FileBrowser : public Panel {
     if (!app_.shipped().empty()) place("Shipped levels", app_.shipped().front().parent_path());
     ui::gap(ui::kGap);
     ui::dim("Recent");
-    if (!app_.files().wish().save) {
+    if (!app_.files().request().save) {
       for (const std::string& file : app_.settings.recent) {
         const std::string shown = printable(fs::path(file).filename().string()) + "##recent" + file;
         if (ui::selectable(shown.c_str(), false)) return choose(file);
@@ -147,8 +147,8 @@ class FileBrowser : public Panel {
     }
   }
 
-  void last_row(Editor& editor, const FileWish& wish) {
-    if (wish.save) {
+  void last_row(Editor& editor, const FileRequest& request) {
+    if (request.save) {
       ui::label("Name");
       ImGui::SameLine(ui::px(70));
       if (begins_) ImGui::SetKeyboardFocusHere();
@@ -163,8 +163,9 @@ class FileBrowser : public Panel {
     ImGui::SameLine();
     ui::checkbox("Hidden", filter_.hidden, "Names that begin with a dot, too");
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ui::px(110));
-    const std::string chosen = wish.save ? name_ : list_.selected();
-    if (ui::strong_button(wish.save ? "Save" : "Open", nullptr, !chosen.empty(), 110)) accept(editor, folder_ / chosen);
+    const std::string chosen = request.save ? name_ : list_.selected();
+    if (ui::strong_button(request.save ? "Save" : "Open", nullptr, !chosen.empty(), 110))
+      accept(editor, folder_ / chosen);
   }
 
   void choose(const fs::path& file) {

@@ -14,8 +14,8 @@ PlayRun::~PlayRun() {
 }
 
 const PlayStatus& PlayRun::status() {
-  told_.acquire();
-  return told_.read();
+  reported_.acquire();
+  return reported_.read();
 }
 
 void PlayRun::take_samples(std::vector<std::vector<PlaySample>>& out) {

@@ -134,9 +134,9 @@ class PlayRun {
   void post(Command command);
 
   PlayOptions options_;
-  TripleBuffer<PlayStatus> told_;  // the run's thread -> the interface
-  std::mutex stands_still_;        // held by the run's thread while it works, by the stage while it makes a picture
-  mutable std::mutex mutex_;       // guards the four members below
+  TripleBuffer<PlayStatus> reported_;  // the run's thread -> the interface
+  std::mutex stands_still_;            // held by the run's thread while it works, by the stage while it makes a picture
+  mutable std::mutex mutex_;           // guards the four members below
   std::condition_variable changed_;
   std::vector<std::vector<PlaySample>> samples_;
   std::vector<Command> commands_;

@@ -98,8 +98,8 @@ void PlayRun::run() {
 }
 
 void PlayRun::Inside::tell() {
-  run.told_.write() = status;
-  run.told_.publish();
+  run.reported_.write() = status;
+  run.reported_.publish();
 }
 
 PlayPast PlayRun::Inside::past() const {
@@ -327,9 +327,9 @@ void PlayRun::show(Inside& in) {
     in.paced_ns = now_ns();
     in.paced_tick = tick;
   }
-  PlayStatus& told = in.status;
-  if (figures) told.figures = in.session->figures();
-  told.effectors.clear();
+  PlayStatus& shown = in.status;
+  if (figures) shown.figures = in.session->figures();
+  shown.effectors.clear();
   for (std::size_t i = 0; i < p.effectors.size(); ++i) {
     PlayEffector each;
     each.name = p.effectors[i].name;
@@ -338,35 +338,35 @@ void PlayRun::show(Inside& in) {
     each.source = p.effectors[i].name == in.moved ? "mouse" : words_of(p.world, p.effectors[i], in.sources[i]);
     if (auto reading = in.session->reading(each.name)) each.reading = *reading;
     each.limited = in.limited[i];
-    told.effectors.push_back(std::move(each));
+    shown.effectors.push_back(std::move(each));
   }
-  told.devices = {};
-  in.view(told.devices);
-  told.devices.late_ticks = told.figures.overruns;
+  shown.devices = {};
+  in.view(shown.devices);
+  shown.devices.late_ticks = shown.figures.overruns;
   const SoftFigures* const soft = !p.runner->soft().any() ? nullptr
                                   : p.clock()             ? &in.parts->runner->soft().latest()
                                                           : &p.runner->soft().figures();
-  told.surfaces.clear();
-  for (const auto& [name, surface] : p.surfaces) told.surfaces.emplace(name, surface);
-  told.phase = in.opening                       ? PlayPhase::kOpening
-               : in.again && p.ticks < in.until ? PlayPhase::kReplaying
-               : in.paused || in.again          ? PlayPhase::kPaused
-                                                : PlayPhase::kPlaying;
-  for (std::string& note : in.notes) told.notes.push_back(std::move(note));
+  shown.surfaces.clear();
+  for (const auto& [name, surface] : p.surfaces) shown.surfaces.emplace(name, surface);
+  shown.phase = in.opening                       ? PlayPhase::kOpening
+                : in.again && p.ticks < in.until ? PlayPhase::kReplaying
+                : in.paused || in.again          ? PlayPhase::kPaused
+                                                 : PlayPhase::kPlaying;
+  for (std::string& note : in.notes) shown.notes.push_back(std::move(note));
   in.notes.clear();
-  told.realtime = in.realtime;
-  told.rate = p.world.simulation.touch_rate;
-  told.tick = tick;
-  told.time = static_cast<double>(tick) / told.rate;
-  told.pace = in.pace;
-  told.speed = in.speed;
-  told.again = in.again;
-  told.until = in.until;
-  told.soft = soft != nullptr;
-  if (soft) told.soft_ms = soft->step_ms;
-  told.soft_step_ms = 1e3 * p.world.simulation.soft_step;
-  told.hash = still ? in.hash : std::string();
-  told.findings = in.findings;
+  shown.realtime = in.realtime;
+  shown.rate = p.world.simulation.touch_rate;
+  shown.tick = tick;
+  shown.time = static_cast<double>(tick) / shown.rate;
+  shown.pace = in.pace;
+  shown.speed = in.speed;
+  shown.again = in.again;
+  shown.until = in.until;
+  shown.soft = soft != nullptr;
+  if (soft) shown.soft_ms = soft->step_ms;
+  shown.soft_step_ms = 1e3 * p.world.simulation.soft_step;
+  shown.hash = still ? in.hash : std::string();
+  shown.findings = in.findings;
   in.tell();
 }
 

@@ -110,7 +110,7 @@ void Host::feed(const ArrivedInput& arrived) {
       if (event.key >= 0 && event.key < static_cast<int>(std::size(io.KeysDown))) io.KeysDown[event.key] = down;
       // Dear ImGui activates buttons only with Space.
       if ((event.key == GLFW_KEY_ENTER || event.key == GLFW_KEY_KP_ENTER) &&
-          (!down || (keyboard_leads() && !keyboard_is_on_field())))
+          (!down || (keyboard_has_focus() && !keyboard_is_on_field())))
         io.KeysDown[GLFW_KEY_SPACE] = down;
       // GLFW reports the state before a modifier's own key.
       if (event.key == GLFW_KEY_LEFT_SHIFT || event.key == GLFW_KEY_RIGHT_SHIFT) io.KeyShift = down;

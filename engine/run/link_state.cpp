@@ -74,7 +74,7 @@ double LinkState::may_leave(const DeviceWrench& wrench, double now) {
   report_.wanted = wrench;
   report_.sent = {share * wrench.force, share * wrench.torque, share * wrench.grip};
   report_.force = length(report_.sent.force);
-  if (now - told_at_ >= kTellEvery || !told_ || renewed_ || !may) tell(now);
+  if (now - reported_at_ >= kReportEvery || !reported_ || renewed_ || !may) tell(now);
   return share;
 }
 
@@ -87,14 +87,14 @@ void LinkState::rest(const DeviceSample* sample) {
 }
 
 void LinkState::tell(double now) {
-  if (now - told_at_ >= kTellEvery) {
-    report_.figures.rate = static_cast<double>(report_.figures.samples - told_samples_) / (now - told_at_);
-    told_at_ = now;
-    told_samples_ = report_.figures.samples;
+  if (now - reported_at_ >= kReportEvery) {
+    report_.figures.rate = static_cast<double>(report_.figures.samples - reported_samples_) / (now - reported_at_);
+    reported_at_ = now;
+    reported_samples_ = report_.figures.samples;
   }
   report_.max_force = can_.max_force;
   report_.sample_age = report_.figures.samples > 0 ? now - came_at_ : -1.0;
-  told_ = true;
+  reported_ = true;
   reports_.write() = report_;
   reports_.publish();
 }

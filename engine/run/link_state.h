@@ -13,10 +13,10 @@ namespace pliant {
 
 class LinkState {
  public:
-  static constexpr double kLostAfter = 0.1;   // [s] without a sample
-  static constexpr double kTellEvery = 0.05;  // [s] between reports
-  static constexpr double kFadeTime = 0.5;    // [s] in which a low battery fades the force out
-  static constexpr double kRise = 0.2;        // [s] in which a share taken by a warning is restored
+  static constexpr double kLostAfter = 0.1;     // [s] without a sample
+  static constexpr double kReportEvery = 0.05;  // [s] between reports
+  static constexpr double kFadeTime = 0.5;      // [s] in which a low battery fades the force out
+  static constexpr double kRise = 0.2;          // [s] in which a share taken by a warning is restored
 
   explicit LinkState(const DeviceCapabilities& can) : can_(can) {}
 
@@ -46,10 +46,10 @@ class LinkState {
   std::atomic<std::uint32_t> orders_{0};
   TripleBuffer<DeviceReport> reports_;
   DeviceReport report_;
-  double came_at_ = 0.0, told_at_ = 0.0, now_ = 0.0;  // [s]
-  double share_ = 1.0;                                // [1] share left by the device's warnings
-  std::uint64_t told_samples_ = 0;
-  bool came_ = false, latched_ = false, renewed_ = false, told_ = false;
+  double came_at_ = 0.0, reported_at_ = 0.0, now_ = 0.0;  // [s]
+  double share_ = 1.0;                                    // [1] share left by the device's warnings
+  std::uint64_t reported_samples_ = 0;
+  bool came_ = false, latched_ = false, renewed_ = false, reported_ = false;
 };
 
 }  // namespace pliant

@@ -60,8 +60,8 @@ void SoftClock::stop() {
 }
 
 const SoftFigures& SoftClock::latest() {
-  told_.acquire();
-  return told_.read();
+  reported_.acquire();
+  return reported_.read();
 }
 
 void SoftClock::run() {
@@ -96,8 +96,8 @@ void SoftClock::loop() {
     const LateStep next = late_step(late, T);
     figures_.time_lost += next.lost;
     step(next.length);
-    told_.write() = figures_;
-    told_.publish();
+    reported_.write() = figures_;
+    reported_.publish();
     due = began + period;
   }
   // The last step may be the one that took too long.

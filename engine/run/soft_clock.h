@@ -54,7 +54,7 @@ class SoftClock {
   void start();
   void pause(bool paused) { paused_ = paused; }
   void stop();                           // waits for the current step
-  void tell_to_stop() { stop_ = true; }  // does not wait
+  void request_stop() { stop_ = true; }  // does not wait
   const SoftFigures& latest();           // from one thread only
   // True if a step threw; no more steps follow. Thread-safe.
   bool failed() const { return failed_; }
@@ -77,7 +77,7 @@ class SoftClock {
   BodyJournal* journal_ = nullptr;
   std::uint64_t tetrahedra_ = 0;
   double time_ = 0.0;  // [s] start of the next step
-  TripleBuffer<SoftFigures> told_;
+  TripleBuffer<SoftFigures> reported_;
   std::atomic<bool> stop_{false}, paused_{false}, failed_{false};
   std::optional<Error> error_;
   std::thread thread_;

@@ -9,7 +9,7 @@ namespace pliant {
 namespace {
 
 constexpr const char* kReport = "; please report it with the level";
-constexpr double kTellEvery = 0.1;  // [s] between published figures
+constexpr double kReportEvery = 0.1;  // [s] between published figures
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void TouchClock::pause(bool paused) {
 
 // The touch thread is joined first, so that forces are zero however long a solver takes, or hangs.
 void TouchClock::stop() {
-  if (soft_) soft_->tell_to_stop();
+  if (soft_) soft_->request_stop();
   stop_ = true;
   if (thread_.joinable()) thread_.join();
   if (soft_) soft_->stop();
@@ -92,18 +92,18 @@ void TouchClock::resume_devices() {
 }
 
 void TouchClock::tell(double time) {
-  if (++count_ % (static_cast<std::uint64_t>(rate_ * kTellEvery) + 1) != 0) return;
+  if (++count_ % (static_cast<std::uint64_t>(rate_ * kReportEvery) + 1) != 0) return;
   const std::uint64_t ns = now_ns();
   const Histogram& cost = schedule_.total();
   figures_.write() = {time,
-                      static_cast<double>(count_ - told_count_) * 1e9 / static_cast<double>(ns - told_at_),
+                      static_cast<double>(count_ - reported_count_) * 1e9 / static_cast<double>(ns - reported_at_),
                       cost.percentile_us(0.5),
                       cost.percentile_us(0.99),
                       cost.max_us(),
                       overruns_};
   figures_.publish();
-  told_at_ = ns;
-  told_count_ = count_;
+  reported_at_ = ns;
+  reported_count_ = count_;
 }
 
 void TouchClock::loop() {
@@ -111,7 +111,7 @@ void TouchClock::loop() {
   std::uint64_t stood = 0, stood_overruns = 0;        // periods passed, and missed, in pauses
   std::uint64_t pause_index = 0, pause_overruns = 0;  // start of the last pause
   bool standing = false;
-  told_at_ = now_ns();
+  reported_at_ = now_ns();
   while (!stop_ && !(soft_ && soft_->failed())) {
     const Tick wall = clock.next();
     if (paused_) {

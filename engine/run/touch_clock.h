@@ -81,7 +81,7 @@ class TouchClock {
   std::atomic<std::uint64_t> now_{0};
   std::vector<DeviceStatus> before_pause_;
   Tick last_{};
-  std::uint64_t told_at_ = 0, told_count_ = 0, count_ = 0;
+  std::uint64_t reported_at_ = 0, reported_count_ = 0, count_ = 0;
   std::uint64_t overruns_ = 0;
   bool noted_ = false;  // a tick has been completed
   bool granted_ = false;

@@ -137,7 +137,7 @@ struct Session::Parts {
   // Readings of every tick, per effector (session_readings.cpp).
   std::size_t keeps = 0;  // [ticks]
   std::vector<std::unique_ptr<Recorder<EffectorRow>>> kept;
-  std::vector<std::uint64_t> lost_told;  // per effector: number of lost rows reported to the owner
+  std::vector<std::uint64_t> lost_reported;  // per effector: number of lost rows reported to the owner
 
   // Actions of the program other than moving its probes (session_events.cpp). Owner's.
   std::vector<RecordedEvent> standing;  // forces that stay until changed, and removed objects

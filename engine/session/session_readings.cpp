@@ -9,7 +9,7 @@ namespace pliant {
 
 void Session::Parts::size_kept() {
   kept.clear();
-  lost_told.assign(effectors.size(), 0);
+  lost_reported.assign(effectors.size(), 0);
   for (std::size_t i = 0; keeps > 0 && i < effectors.size(); ++i)
     kept.push_back(std::make_unique<Recorder<EffectorRow>>(keeps));
 }
@@ -41,7 +41,7 @@ Result<std::uint64_t> Session::take_readings(const std::string& name, std::vecto
     out.push_back(row.reading);
   }
   const std::uint64_t lost = p.kept[i]->lost();
-  return lost - std::exchange(p.lost_told[i], lost);
+  return lost - std::exchange(p.lost_reported[i], lost);
 }
 
 }  // namespace pliant

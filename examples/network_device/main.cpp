@@ -180,7 +180,7 @@ class Device {
                       from.sin_addr.s_addr == engine_address_.sin_addr.s_addr;
     const bool wants_it = kind == kOpen || (kind == kAsk && !key_.empty());  // with a key, only an engine allowed to
                                                                              // open it may ask
-    if (wants_it && engine_ != 0 && !same) return tell_busy(session, from);
+    if (wants_it && engine_ != 0 && !same) return reply_busy(session, from);
     if (kind == kOpen && !key_.empty() && peer != own_) return;
     if (kind == kOpen && engine_ == 0) {
       engine_ = session;
@@ -224,7 +224,7 @@ class Device {
   }
 
   // Replies that another engine has the device, and which.
-  void tell_busy(std::uint32_t to, const sockaddr_in& address) {
+  void reply_busy(std::uint32_t to, const sockaddr_in& address) {
     Frame frame = begin(kBusy, to);
     char host[INET_ADDRSTRLEN] = {}, by[64] = {};
     inet_ntop(AF_INET, &engine_address_.sin_addr, host, sizeof host);

@@ -225,7 +225,7 @@ int fit_press(const FitOptions& options) {
   const Result<PressRecord> record = read_press(options.in, options.probe);
   if (!record) return fail(kFailed, record.error());
   for (const std::string& sentence : record->notes) note(sentence);
-  RecordWish wish;
+  RecordFitOptions wish;
   wish.law = options.law;
   wish.model = {options.radius, options.poisson < 0 ? 0.45 : options.poisson, options.damping, options.contact};
   wish.hold_out = options.hold_out;

@@ -95,7 +95,7 @@ std::vector<bool> held_rows(std::size_t rows, double share) {
   return held;
 }
 
-Result<RecordFit> fit_record(const PressRecord& record, const RecordWish& wish) {
+Result<RecordFit> fit_record(const PressRecord& record, const RecordFitOptions& wish) {
   RecordFit out;
   out.held = held_rows(record.size(), wish.hold_out);
   out.fitted = static_cast<std::size_t>(std::count(out.held.begin(), out.held.end(), false));

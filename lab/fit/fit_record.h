@@ -8,9 +8,9 @@
 
 namespace pliant {
 
-struct RecordWish {
+struct RecordFitOptions {
   std::string law = "auto";  // auto: the law with the smallest error on the held-out rows
-  ModelWish model;
+  PressModelOptions model;
   double hold_out = 0.25;    // [1] share of the rows held out, in stretches; 0: none
   double confidence = 0.95;  // [1] of the intervals
 };
@@ -44,6 +44,6 @@ struct RecordFit {
 // Marks the held-out rows: the given share, at least one, in evenly spaced stretches.
 std::vector<bool> held_rows(std::size_t rows, double share);
 
-Result<RecordFit> fit_record(const PressRecord& record, const RecordWish& wish);
+Result<RecordFit> fit_record(const PressRecord& record, const RecordFitOptions& wish);
 
 }  // namespace pliant

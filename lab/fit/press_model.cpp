@@ -60,7 +60,7 @@ ContactRange contact_range(const PressRecord& record, bool open) {
 }
 
 // [Pa] Young's modulus of a half-space on which a sphere reaches the record's largest force at its deepest place.
-double sphere_modulus(const Sizes& size, const ModelWish& wish) {
+double sphere_modulus(const Sizes& size, const PressModelOptions& wish) {
   const double plane = size.force / (4.0 / 3.0 * std::sqrt(wish.radius) * std::pow(size.depth, 1.5));
   return plane * (1 - wish.poisson * wish.poisson);
 }
@@ -71,7 +71,7 @@ SpringLaw spring_of(const std::string& law) {
 }
 
 // Initial guesses for a law's own parameters.
-std::vector<std::vector<double>> law_starts(const std::string& law, const Sizes& size, const ModelWish& wish) {
+std::vector<std::vector<double>> law_starts(const std::string& law, const Sizes& size, const PressModelOptions& wish) {
   const double k = std::clamp(size.slope, R::kStiffness.min, R::kStiffness.max), d = size.depth;
   if (law == "hertz") return {{sphere_modulus(size, wish)}};
   const SpringLaw spring = spring_of(law);
@@ -100,7 +100,7 @@ const std::vector<std::string>& press_laws() {
   return laws;
 }
 
-std::optional<PressModel> press_model(const std::string& law, const PressRecord& record, const ModelWish& wish,
+std::optional<PressModel> press_model(const std::string& law, const PressRecord& record, const PressModelOptions& wish,
                                       std::string& why) {
   const ContactRange contact = contact_range(record, wish.contact);
   // Bounds must hold for every contact depth; initial guesses depend on it.

@@ -17,7 +17,7 @@ struct ModelParameter {
   FitParameter box;       // bounds and scale, with the first initial guess
 };
 
-struct ModelWish {
+struct PressModelOptions {
   double radius = 0.0;    // [m] of a spherical indenter; 0: a point or a flat punch
   double poisson = 0.45;  // [1] for the law `hertz`
   bool damping = false;   // contact_damping is one of the parameters
@@ -26,7 +26,7 @@ struct ModelWish {
 
 struct PressModel {
   std::string law;  // linear, cubic, exponential, sls, hertz
-  ModelWish wish;
+  PressModelOptions wish;
   std::vector<ModelParameter> parameters;
   std::vector<Eigen::VectorXd> starts;  // initial guesses: some laws have several local minima
 
@@ -39,7 +39,7 @@ struct PressModel {
 // Names of the laws; `hertz` needs a radius, `sls` and damping need time.
 const std::vector<std::string>& press_laws();
 // Empty if the record or the request lacks something that the law needs; `why` gives the reason.
-std::optional<PressModel> press_model(const std::string& law, const PressRecord& record, const ModelWish& wish,
+std::optional<PressModel> press_model(const std::string& law, const PressRecord& record, const PressModelOptions& wish,
                                       std::string& why);
 
 }  // namespace pliant

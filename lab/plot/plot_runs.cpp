@@ -320,7 +320,8 @@ int plot_runs(const PlotOptions& options) {
     print("{}: {:.3g} mm {}, {:.4g} N", each.name, s.depth * 1e3, each.series.tool ? "device-handle offset" : "deep",
           s.force);
     if (!each.series.tool)
-      print(", {:.4g} N/m, {} of {:.3g} mJ lost along the normal", s.stiffness, shown_number(s.lost * 1e3), s.put_in * 1e3);
+      print(", {:.4g} N/m, {} of {:.3g} mJ lost along the normal", s.stiffness, shown_number(s.lost * 1e3),
+            s.put_in * 1e3);
     print("\n");
   }
   print("{}: {} files{}\n", out->shown().string(), out->written().size(),

@@ -26,7 +26,7 @@ namespace pliant {
 namespace {
 
 constexpr double kRate = 1000.0;      // [Hz] of the loop in place of the touch clock
-constexpr double kTellEvery = 0.1;    // [s] between two printed lines
+constexpr double kReportEvery = 0.1;  // [s] between two printed lines
 constexpr double kPushForce = 0.5;    // [N] at most
 constexpr double kPushShare = 0.15;   // [1] of the device's largest force, at most
 constexpr double kPushSeconds = 1.0;  // [s] per direction along an axis: a half wave
@@ -138,8 +138,8 @@ void look(HeldDevice& held, double seconds, const Interrupt& interrupt, Force&& 
     if (!(half[i] > 0.0)) half[i] = 0.1;
   RealtimeClock clock(kRate);
   DeviceSample sample;
-  std::uint64_t samples = 0, told_samples = 0, not_ready = 0;
-  double told_at = 0.0;
+  std::uint64_t samples = 0, reported_samples = 0, not_ready = 0;
+  double reported_at = 0.0;
   bool drew = false;
   while (!interrupt.requested()) {
     const Tick tick = clock.next();
@@ -149,16 +149,16 @@ void look(HeldDevice& held, double seconds, const Interrupt& interrupt, Force&& 
       if (!sample.ready) ++not_ready;
     }
     held.driver().write({.force = force(tick.time)});
-    if (tick.time - told_at < (drawn ? kTellEvery : 1.0)) continue;
-    const double rate = static_cast<double>(samples - told_samples) / (tick.time - told_at);
+    if (tick.time - reported_at < (drawn ? kReportEvery : 1.0)) continue;
+    const double rate = static_cast<double>(samples - reported_samples) / (tick.time - reported_at);
     if (drawn && drew)
       std::fputs(fmt::format("\033[{}A", kPlaneHigh + 1).c_str(), stdout);  // back over the last drawing
     if (drawn) std::fputs(plane(sample.position, half).c_str(), stdout);
     print("{}{}\n", told(sample, can, rate, held.servo()), drawn ? "    " : "");
     std::fflush(stdout);
     drew = true;
-    told_at = tick.time;
-    told_samples = samples;
+    reported_at = tick.time;
+    reported_samples = samples;
   }
   held.driver().write({});
   const DroppedFrames dropped = held.dropped();

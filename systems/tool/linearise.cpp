@@ -131,7 +131,7 @@ void bring(ToolTouchState& tool, const ToolInput& input, double share, ToolBody&
   if (input.status == DeviceStatus::kReady)
     body.bring_handle(end, tool.expected);
   else
-    body.lead_handle(end);  // no device: the handle stays at its pose
+    body.prescribe_handle(end);  // no device: the handle stays at its pose
 }
 
 // The touch clock's pose is void if the handle has been set back since.

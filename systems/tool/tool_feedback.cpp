@@ -229,7 +229,7 @@ void feel_pull(const World& world, ToolTouchState& tool, const HandleModel& mode
   tool.device_wrench = join(trust(model, tick.time) * force, dvec3(0));
 }
 
-void tell_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
+void send_to_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
   ToolInput& input = tool.input.write();
   input.status = tool.sensing ? DeviceStatus::kReady : DeviceStatus::kLost;
   input.time = tool.placed() ? tick.time + tick.dt : tick.time;
@@ -314,7 +314,7 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
     tool.gained.setZero();
     tool.sensed.velocity.setZero();
   }
-  tell_soft_clock(world, tool, tick);
+  send_to_soft_clock(world, tool, tick);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-CardSource card_source(const FieldSource& s) {
+GpuSource gpu_source(const FieldSource& s) {
   return {vec4(s.center, s.inv_reach2), vec4(s.normal, s.amplitude),
           vec4(s.parameter, static_cast<float>(s.shape), 0, 0)};
 }
@@ -21,7 +21,7 @@ Result<FieldProgram> FieldProgram::make() {
   return made;
 }
 
-std::pair<gpu::Buffer, gpu::Buffer> rest_on_card(const Mesh& mesh) {
+std::pair<gpu::Buffer, gpu::Buffer> rest_on_gpu(const Mesh& mesh) {
   std::vector<vec4> rest(mesh.vertex_count);
   std::vector<vec2> rest_yz(mesh.vertex_count);
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
@@ -32,16 +32,16 @@ std::pair<gpu::Buffer, gpu::Buffer> rest_on_card(const Mesh& mesh) {
 }
 
 FieldOnGpu::FieldOnGpu(const Mesh& mesh) : vertices_(mesh.vertex_count) {
-  std::tie(rest_, rest_yz_) = rest_on_card(mesh);
+  std::tie(rest_, rest_yz_) = rest_on_gpu(mesh);
 }
 
 std::size_t FieldOnGpu::evaluate(const FieldProgram& program, std::span<const FieldSource> sources,
                                  const gpu::Buffer& stream) {
   if (sources.empty() && at_rest_) return 0;
   at_rest_ = sources.empty();
-  std::vector<CardSource> packed(sources.size());
-  std::transform(sources.begin(), sources.end(), packed.begin(), card_source);
-  const std::size_t travelled = sources_.write(std::span<const CardSource>(packed));
+  std::vector<GpuSource> packed(sources.size());
+  std::transform(sources.begin(), sources.end(), packed.begin(), gpu_source);
+  const std::size_t travelled = sources_.write(std::span<const GpuSource>(packed));
   program.program_.use();
   glUniform1i(program.source_count_, static_cast<GLint>(sources.size()));
   glUniform1ui(program.vertex_count_, vertices_);

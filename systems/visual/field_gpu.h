@@ -16,13 +16,13 @@
 namespace pliant {
 
 // One source in the shader's layout.
-struct CardSource {
+struct GpuSource {
   vec4 place, push, kind;
 };
-CardSource card_source(const FieldSource& source);
+GpuSource gpu_source(const FieldSource& source);
 
 // Rest positions and normals in field.comp's layout: (P0, N0.x), and (N0.y, N0.z).
-std::pair<gpu::Buffer, gpu::Buffer> rest_on_card(const Mesh& mesh);
+std::pair<gpu::Buffer, gpu::Buffer> rest_on_gpu(const Mesh& mesh);
 
 // Compiles the shader; shared by all objects.
 class FieldProgram {

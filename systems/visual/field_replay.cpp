@@ -62,7 +62,7 @@ FieldReplay::FieldReplay(const Mesh& mesh, const Deformable& deformable, double 
       vertices_(mesh.vertex_count),
       source_(64),
       zone_(mesh.zone_count()) {
-  std::tie(rest_, rest_yz_) = rest_on_card(mesh);
+  std::tie(rest_, rest_yz_) = rest_on_gpu(mesh);
   const PaintedMotion painted = paint_motion(motion_, mesh);
   const std::vector<float> coefficients = coefficients_of(motion_, painted, mesh);
   coefficients_ = gpu::Buffer::fixed(std::span<const float>(coefficients));
@@ -85,8 +85,8 @@ void FieldReplay::reset() {
   began_ = clear_ = true;
 }
 
-bool FieldReplay::take(FieldFeed& feed, bool told, std::uint64_t tick) {
-  if (!told) {
+bool FieldReplay::take(FieldFeed& feed, bool fed, std::uint64_t tick) {
+  if (!fed) {
     if (began_) reset();  // undrawn ticks are in the zones too
     began_ = false;
     // A new feed begins with a reset, for which there must be room.
@@ -120,7 +120,7 @@ void FieldReplay::add(const FieldEvent& event, FieldFeed& feed) {
     case FieldEvent::kFoldNow: {
       // In the order of sources, as the shader expects.
       const auto after = 2 * std::popcount(folded_ & ~(bit_of(event.index) | (bit_of(event.index) - 1)));
-      folds_.insert(folds_.end() - after, {card_source(event.source), card_source(fold_before_)});
+      folds_.insert(folds_.end() - after, {gpu_source(event.source), gpu_source(fold_before_)});
       folded_ |= bit_of(event.index);
       return;
     }
@@ -185,7 +185,7 @@ void FieldReplay::end_tick() {
   Row row{used_, folded_, static_cast<std::uint32_t>(sources_.size()), 0, {}};
   row.first_fold = static_cast<std::uint32_t>(folds_.size()) - 2 * static_cast<std::uint32_t>(std::popcount(folded_));
   for (std::uint64_t bits = used_; bits; bits &= bits - 1)
-    sources_.push_back(card_source(source_[static_cast<std::size_t>(std::countr_zero(bits))]));
+    sources_.push_back(gpu_source(source_[static_cast<std::size_t>(std::countr_zero(bits))]));
   rows_.push_back(row);
   for (std::size_t i = 0; i < awake_.size();) {
     const std::uint32_t number = awake_[i];
@@ -236,7 +236,7 @@ std::size_t FieldReplay::evaluate(const ReplayProgram& program, const gpu::Buffe
   append(steps, runs_);
   const std::uint32_t first_zone = static_cast<std::uint32_t>(steps.size());
   append(steps, zones);
-  const std::size_t travelled = sources_there_.write(std::span<const CardSource>(sources_)) +
+  const std::size_t travelled = sources_there_.write(std::span<const GpuSource>(sources_)) +
                                 steps_there_.write(std::span<const glm::uvec4>(steps)) +
                                 offsets_there_.write(std::span<const vec4>(offsets_));
 

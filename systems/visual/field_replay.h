@@ -31,7 +31,7 @@ class FieldReplay {
   FieldReplay(const Mesh& mesh, const Deformable& deformable, double dt);
 
   // Takes the inputs up to tick number `tick`. False while the newest field is in the snapshot's zones.
-  bool take(FieldFeed& feed, bool told, std::uint64_t tick);
+  bool take(FieldFeed& feed, bool fed, std::uint64_t tick);
   // Performs these steps and writes the last stream of each zone. Returns the bytes uploaded.
   std::size_t evaluate(const ReplayProgram& program, const gpu::Buffer& stream);
   bool at_rest() const { return awake_.empty() && runs_.empty(); }
@@ -85,7 +85,7 @@ class FieldReplay {
   std::vector<Block> blocks_;
   // Of all ticks since the last dispatch.
   std::vector<Row> rows_;
-  std::vector<CardSource> sources_, folds_;  // folds: now and before
+  std::vector<GpuSource> sources_, folds_;  // folds: now and before
   std::vector<Run> runs_;
   std::vector<vec4> offsets_;  // kZoneSize a block
 };

@@ -16,7 +16,7 @@ std::uint32_t folded(vec3 n) {
 
 Skin::Skin(std::size_t vertices)
     : here_(vertices),
-      on_card_(gpu::Buffer::writable(nullptr, vertices * sizeof(glm::uvec4))),
+      gpu_buffer_(gpu::Buffer::writable(nullptr, vertices * sizeof(glm::uvec4))),
       staging_(std::max<std::size_t>(1, vertices) * sizeof(glm::uvec4)) {}
 
 bool Skin::take(std::span<const vec3> position, std::span<const vec3> normal) {
@@ -35,7 +35,7 @@ bool Skin::take(std::span<const vec3> position, std::span<const vec3> normal) {
 std::size_t Skin::upload() {
   if (!newer_here_) return 0;
   newer_here_ = false;
-  const std::size_t travelled = staging_.send(on_card_, 0, here_.data(), here_.size() * sizeof(glm::uvec4));
+  const std::size_t travelled = staging_.send(gpu_buffer_, 0, here_.data(), here_.size() * sizeof(glm::uvec4));
   staging_.finish();
   return travelled;
 }

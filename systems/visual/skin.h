@@ -29,7 +29,7 @@ class Skin {
 
   std::size_t vertices() const { return here_.size(); }
   const Box& box() const { return box_; }  // [m] world
-  const gpu::Buffer& buffer() const { return on_card_; }
+  const gpu::Buffer& buffer() const { return gpu_buffer_; }
   // A copy of the last state taken.
   gpu::Buffer copy() const { return gpu::Buffer::writable(here_.data(), here_.size() * sizeof(glm::uvec4)); }
 
@@ -37,7 +37,7 @@ class Skin {
   std::vector<glm::uvec4> here_;
   Box box_;
   bool newer_here_ = false;
-  gpu::Buffer on_card_;
+  gpu::Buffer gpu_buffer_;
   gpu::Staging staging_;
 };
 

@@ -203,7 +203,7 @@ void Surfaces::take(const ObjectSnapshot& object, std::uint64_t tick) {
   if (!item || !item->gives_way) return;
   if (item->on_gpu) {
     item->sources.assign(object.terms.begin(), object.terms.begin() + object.term_count);
-  } else if (!item->replayed || !object.feed || !item->replay.take(*object.feed, object.told, tick)) {
+  } else if (!item->replayed || !object.feed || !item->replay.take(*object.feed, object.fed, tick)) {
     item->stream.take({object.zones.data(), object.zone_count}, object.stream);
   }
 }

@@ -19,7 +19,7 @@ StreamCopies::StreamCopies(std::span<const vec4> initial) : here_(initial.begin(
   here_.resize(zones * kZoneSize, vec4(0));
   newer_here_.assign(zones, false);
   waiting_.reserve(zones);
-  on_card_ = gpu::Buffer::writable(here_.data(), here_.size() * sizeof(vec4));
+  gpu_buffer_ = gpu::Buffer::writable(here_.data(), here_.size() * sizeof(vec4));
   staging_ = gpu::Staging(std::min(zones, kStagedZones) * kZoneBytes);
 }
 
@@ -42,7 +42,7 @@ std::size_t StreamCopies::upload() {
     const std::size_t first = waiting_[i];
     std::size_t count = 0;
     for (; i < waiting_.size() && waiting_[i] == first + count; ++i, ++count) newer_here_[waiting_[i]] = false;
-    travelled += staging_.send(on_card_, first * kZoneBytes, &here_[first * kZoneSize], count * kZoneBytes);
+    travelled += staging_.send(gpu_buffer_, first * kZoneBytes, &here_[first * kZoneSize], count * kZoneBytes);
   }
   staging_.finish();
   waiting_.clear();

@@ -24,14 +24,14 @@ class StreamCopies {
   // Updates the GPU's copy, neighbouring zones in one transfer. Returns the bytes uploaded.
   std::size_t upload();
 
-  const gpu::Buffer& buffer() const { return on_card_; }
+  const gpu::Buffer& buffer() const { return gpu_buffer_; }
   std::span<const vec4> values() const { return here_; }
 
  private:
   std::vector<vec4> here_;              // [1,1,1,m] never older than the GPU's
   std::vector<bool> newer_here_;        // per zone
   std::vector<std::uint32_t> waiting_;  // zones with newer_here_, in order of arrival
-  gpu::Buffer on_card_;
+  gpu::Buffer gpu_buffer_;
   gpu::Staging staging_;
 };
 

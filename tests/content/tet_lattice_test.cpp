@@ -291,7 +291,7 @@ TEST(TetFocus, FillsTheSameVolumeWithFineCellsWhereItIsAskedTo) {
   const dmat3 turned(dvec3(c, s, 0), dvec3(-s, c, 0), dvec3(0, 0, 1));
   for (const dvec3 center : {dvec3(0.14, 0, 0), dvec3(0, 0.1, 0.04), dvec3(0.3, 0.3, 0.3)}) {
     const LatticeFocus focus{center, 0.02, turned};
-    LatticeWish wish;
+    LatticeOptions wish;
     wish.cell = 0.005;
     wish.focus = focus;
     const Result<TetMesh> mesh = fill_surface(surface, wish);

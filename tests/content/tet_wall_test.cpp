@@ -66,7 +66,7 @@ Primitive jar(double thickness, double half) {
   return p;
 }
 
-TetMesh filled(const BuiltMesh& surface, const LatticeWish& wish = {}) {
+TetMesh filled(const BuiltMesh& surface, const LatticeOptions& wish = {}) {
   Result<TetMesh> mesh = fill_surface(surface.mesh, wish);
   EXPECT_TRUE(mesh.ok()) << mesh.error().message();
   return mesh ? std::move(*mesh) : TetMesh{};
@@ -116,7 +116,7 @@ TEST(Wall, ThickWallsStayHollowAndSolidsAreNoWalls) {
 }
 
 TEST(Wall, WithAThicknessItIsALayerBehindTheSurface) {
-  LatticeWish wish{0.16, Fill::kWall, 0.3, {}};
+  LatticeOptions wish{0.16, Fill::kWall, 0.3, {}};
   const double layer = kBall * (1.0 - 0.7 * 0.7 * 0.7);
   for (const BuiltMesh& surface : {built({icosphere(4)}), built(capsule(0.01f))}) {
     const TetMesh mesh = filled(surface, wish);

@@ -88,8 +88,8 @@ TEST(BudgetFit, MeasuresTheCandidatesThatOpeningTheSavedFileChoosesFrom) {
     expect_same_candidates(fit.choices->front(), choices->front());
     // The keys equal those set by opening it.
     ASSERT_GE(fit.keys.size(), 2u);
-    ASSERT_TRUE(editor.apply("Use", with_said(editor.state(), id, fit.keys)));
-    for (const SaidKey& each : fit.keys) {
+    ASSERT_TRUE(editor.apply("Use", with_stated(editor.state(), id, fit.keys)));
+    for (const StatedKey& each : fit.keys) {
       const Extension& extension = *find_extension(each.extension);
       const void* const owner = extension.on_scene ? static_cast<const void*>(&*saved) : &saved->nodes[0];
       EXPECT_EQ(each.value, find_key(extension, each.key)->get(owner)) << each.key;
@@ -131,14 +131,14 @@ TEST(BudgetFit, WhatIsUsedIsSavedAndASecondMeasurementKeepsItAndUndoTakesItBack)
     const ModelChoice first = fits.of(id)->choices->front();
     const State before = editor.state();
     const std::size_t steps = editor.document.step();
-    const std::size_t said = said_of(before, id).size();  // a reach, of the sheet
+    const std::size_t said = stated_keys(before, id).size();  // a reach, of the sheet
     EXPECT_EQ(said, level.nodes[0].soft_body ? 0u : 1u);
 
     ASSERT_TRUE(fits.use(editor, id));
     EXPECT_EQ(editor.document.step(), steps + 1) << "one step";
     EXPECT_TRUE(fits.in_use(editor.state(), id));
     EXPECT_FALSE(fits.stale(editor.state(), id)) << "the figures are still those of this object";
-    EXPECT_EQ(said_of(editor.state(), id).size(), said + fits.of(id)->keys.size());
+    EXPECT_EQ(stated_keys(editor.state(), id).size(), said + fits.of(id)->keys.size());
 
     // In the file, too, where a key that is chosen is at its default.
     ASSERT_TRUE(editor.document.save());
@@ -155,14 +155,14 @@ TEST(BudgetFit, WhatIsUsedIsSavedAndASecondMeasurementKeepsItAndUndoTakesItBack)
 
     editor.undo();
     EXPECT_TRUE(same(editor.state(), before));
-    EXPECT_EQ(said_of(editor.state(), id).size(), said);
+    EXPECT_EQ(stated_keys(editor.state(), id).size(), said);
     EXPECT_FALSE(fits.in_use(editor.state(), id));
     EXPECT_FALSE(fits.stale(editor.state(), id)) << "it is the object that was measured again";
     editor.redo();
     EXPECT_TRUE(fits.in_use(editor.state(), id));
 
     // Taken out of the level, the budget chooses as before.
-    ASSERT_TRUE(editor.apply("Let the budget choose", without_said(editor.state(), id, fits.of(id)->keys)));
+    ASSERT_TRUE(editor.apply("Let the budget choose", without_stated(editor.state(), id, fits.of(id)->keys)));
     EXPECT_TRUE(same(editor.state(), before));
     ASSERT_TRUE(editor.document.save());
     Result<Level> saved = load_level(folder.path / "level.glb");
@@ -197,7 +197,7 @@ TEST(BudgetFit, IsOutOfDateOnceTheObjectOrItsKeysChangeAndNotByItsBudgetOrAnothe
   const auto s = [&]() -> const State& { return editor.state(); };  // steps move
   EXPECT_TRUE(stale_after("reach", with_value(s(), ids, "deformable", "reach", 0.02)));
   EXPECT_TRUE(stale_after("shape", with_value(s(), ids, "deformable", "shape", "punch")));
-  EXPECT_TRUE(stale_after("shape said at its default", with_said(s(), id, {{"deformable", "shape", "volume"}})));
+  EXPECT_TRUE(stale_after("shape said at its default", with_stated(s(), id, {{"deformable", "shape", "volume"}})));
   EXPECT_TRUE(stale_after("touch rate", with_value(s(), {}, "simulation", "touch_rate", 500.0)));
   LocalTransform local = s().find(id)->node.local;
   local.scale = vec3(2.0f);

@@ -36,9 +36,9 @@ class NativeDialog : public ::testing::Test {
     for (std::string line; std::getline(in, line);) all.push_back(line);
     return all;
   }
-  bool asked(const FileWish& wish) {
+  bool asked(const FileRequest& request) {
     const std::atomic<bool> stop{false};
-    return native_dialog(wish, stop, chosen);
+    return native_dialog(request, stop, chosen);
   }
   static bool has(const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();

@@ -7,7 +7,7 @@
 #include "content/keys/extension_table.h"
 #include "content/validate.h"
 #include "editor/document/edits.h"
-#include "editor/document/said_keys.h"
+#include "editor/document/stated_keys.h"
 #include "tests/editor/small_level.h"
 
 namespace pliant {
@@ -36,8 +36,8 @@ TEST(Saving, AModulusOfZeroBesideAStiffnessIsNotGiven) {
   const fs::path file = folder.path / "small.glb";
   Document document = small(file);
   const NodeId sheet = id_of(document, "sheet");
-  ASSERT_TRUE(document.change("a", with_said(document.state(), sheet, {{"deformable", "stiffness", 200.0}})).ok());
-  ASSERT_TRUE(document.change("b", with_said(document.state(), sheet, {{"deformable", "young", 5e3}})).ok());
+  ASSERT_TRUE(document.change("a", with_stated(document.state(), sheet, {{"deformable", "stiffness", 200.0}})).ok());
+  ASSERT_TRUE(document.change("b", with_stated(document.state(), sheet, {{"deformable", "young", 5e3}})).ok());
   // A material is pressed.
   ASSERT_TRUE(document
                   .change("c", by_level(document.state(), document.next_id(),
@@ -119,7 +119,7 @@ TEST(Saving, WhateverAKeyIsSetToIsOpenedAgainOrRefusedInASentence) {
         ASSERT_TRUE(next.ok());
         // As set by a user, and as stated at its default.
         for (const bool said : {false, true}) {
-          const Result<State> set = said ? with_said(*next, node, {{extension.name, key.name, value}})
+          const Result<State> set = said ? with_stated(*next, node, {{extension.name, key.name, value}})
                                          : with_value(*next, extension.on_scene ? NodeIds() : NodeIds(&node, 1),
                                                       extension.name, key.name, value);
           if (!set || !document.change("set", set)) {

@@ -19,20 +19,20 @@ struct Bench {
   Guard guard;
   double now = 1.0;
   DeviceSample sample;
-  GuardWish wish;
+  GuardInput wanted;
   bool sampled = true;
-  explicit Bench(const GuardParameters& parameters = {}) : guard(can, parameters) { wish.known = true; }
+  explicit Bench(const GuardParameters& parameters = {}) : guard(can, parameters) { wanted.known = true; }
   DeviceWrench step(const GuardOrders& orders = {}) {
     now += 1e-3;
     sample.position.z = 1e-5 * static_cast<double>(++count % 3);
     guard.sense(sampled ? &sample : nullptr, now, orders);
-    return guard.release(wish, now, orders);
+    return guard.release(wanted, now, orders);
   }
   void run(int steps) {
     for (int i = 0; i < steps; ++i) step();
   }
   void activate() {
-    wish.wrench = {};
+    wanted.wrench = {};
     run(100);
     ASSERT_EQ(guard.state(), DeviceState::kActive);
     run(300);
@@ -42,17 +42,17 @@ struct Bench {
 
 TEST(Guard, ADeviceArmsItselfOnceSamplesAreFreshAndForceLeavesOnlyBehindTheGateAndTheRamp) {
   Bench bench;
-  bench.wish.wrench.force = {0, 1.0, 0};
+  bench.wanted.wrench.force = {0, 1.0, 0};
   EXPECT_EQ(bench.guard.state(), DeviceState::kDisconnected);
   bench.step();
   EXPECT_EQ(bench.guard.state(), DeviceState::kIdle);
   bench.run(100);
   EXPECT_EQ(bench.guard.state(), DeviceState::kArmed) << "1 N is wanted: the gate is closed";
   EXPECT_EQ(length(bench.step().force), 0.0);
-  bench.wish.wrench.force.y = 0.1;
+  bench.wanted.wrench.force.y = 0.1;
   bench.step();
   EXPECT_EQ(bench.guard.state(), DeviceState::kActive);
-  bench.wish.wrench.force.y = 1.0;
+  bench.wanted.wrench.force.y = 1.0;
   double last = 0.0;
   for (int i = 0; i < 250; ++i) {
     const double force = length(bench.step().force);
@@ -66,11 +66,11 @@ TEST(Guard, ADeviceArmsItselfOnceSamplesAreFreshAndForceLeavesOnlyBehindTheGateA
 // After a stall the touch tick's force fades in from zero: small, although a hand presses.
 TEST(Guard, ASmallForceThatFadesInOpensNoGate) {
   Bench bench;
-  bench.wish.wrench.force = {0, 0.1, 0};
-  bench.wish.easing = true;
+  bench.wanted.wrench.force = {0, 0.1, 0};
+  bench.wanted.easing = true;
   bench.run(300);
   EXPECT_EQ(bench.guard.state(), DeviceState::kArmed);
-  bench.wish.easing = false;
+  bench.wanted.easing = false;
   bench.step();
   EXPECT_EQ(bench.guard.state(), DeviceState::kActive);
 }
@@ -100,7 +100,7 @@ TEST(Guard, ADisarmedDeviceStaysSoUntilAPersonArmsIt) {
 
 TEST(Guard, TheDeadManButtonOpensTheGateUnderAnyForceAndClosesItAtOnce) {
   Bench bench({.dead_man = 2});
-  bench.wish.wrench.force.y = 1.0;
+  bench.wanted.wrench.force.y = 1.0;
   bench.run(200);
   EXPECT_EQ(bench.guard.state(), DeviceState::kArmed);
   bench.sample.buttons = 1;
@@ -131,7 +131,7 @@ TEST(Guard, AnEmergencyStopLatchesFromEveryStateAndWinsOverArming) {
 TEST(Guard, ASampleIsMissedFromTenMillisecondsOnAndLatchedFromAHundred) {
   Bench bench;
   bench.activate();
-  bench.wish.wrench.force.y = 0.5;
+  bench.wanted.wrench.force.y = 0.5;
   bench.run(50);
   bench.sampled = false;
   for (int i = 1; i <= 120; ++i) {
@@ -167,15 +167,15 @@ TEST(Guard, FiveLossesInASecondTripIt) {
 TEST(Guard, NoParameterLiftsADevicesLimit) {
   Bench bench({.max_force = 50.0, .max_velocity = 50.0});
   bench.activate();
-  bench.wish.max_force = 40.0;
-  bench.wish.wrench.force = {30.0, 40.0, 0};
+  bench.wanted.max_force = 40.0;
+  bench.wanted.wrench.force = {30.0, 40.0, 0};
   DeviceWrench wrench;
   for (int i = 0; i < 400; ++i) wrench = bench.step();
   EXPECT_LE(length(wrench.force), 3.0 * (1 + 1e-12));
   EXPECT_NEAR(wrench.force.y / wrench.force.x, 4.0 / 3.0, 0.01) << "by the norm, so that the direction stays";
   Bench lower({.max_force = 1.0});
   lower.activate();
-  lower.wish.wrench.force = {30.0, 40.0, 0};
+  lower.wanted.wrench.force = {30.0, 40.0, 0};
   for (int i = 0; i < 400; ++i) wrench = lower.step();
   EXPECT_LE(length(wrench.force), 1.0 * (1 + 1e-12));
 }
@@ -185,7 +185,7 @@ TEST(Guard, AForceThatLastsIsLoweredToWhatTheMotorsBear) {
   bench.can.continuous_force = 1.0;
   bench.guard = Guard(bench.can);
   bench.activate();
-  bench.wish.wrench.force.y = 3.0;
+  bench.wanted.wrench.force.y = 3.0;
   double square = 0.0;
   for (int i = 0; i < 120'000; ++i) {
     const double force = length(bench.step().force);
@@ -217,9 +217,9 @@ TEST(Guard, ABrakeIsNeverWrittenAForceAlongTheMotion) {
     bench.now += 1e-3;
     const double phase = 5e-3 * i;
     bench.sample.position = {0.01 * std::sin(phase), 0, 0};
-    bench.wish.wrench.force = {1.0, 0, 0};
+    bench.wanted.wrench.force = {1.0, 0, 0};
     bench.guard.sense(&bench.sample, bench.now, {});
-    const DeviceWrench wrench = bench.guard.release(bench.wish, bench.now, {});
+    const DeviceWrench wrench = bench.guard.release(bench.wanted, bench.now, {});
     const double power = dot(wrench.force, bench.guard.velocity());
     along = std::max(along, power);
     against = std::min(against, power);
@@ -231,7 +231,7 @@ TEST(Guard, ABrakeIsNeverWrittenAForceAlongTheMotion) {
 TEST(Guard, EveryTransitionIsKeptWithItsCauseItsTimeAndTheForceBefore) {
   Bench bench;
   bench.activate();
-  bench.wish.wrench.force.y = 0.5;
+  bench.wanted.wrench.force.y = 0.5;
   bench.run(100);
   bench.step({.stop = true});
   const DeviceReport& report = bench.guard.report();

@@ -56,7 +56,7 @@ const std::vector<std::pair<std::string, std::vector<double>>> kTruths{
 
 TEST(FitPress, WithoutNoiseEveryLawGivesItsParametersBack) {
   for (const auto& [law, values] : kTruths) {
-    RecordWish wish;
+    RecordFitOptions wish;
     wish.law = law;
     wish.model.radius = law == "hertz" ? 0.004 : 0.0;
     const auto fit = fit_record(record_of(law, 0.0, 1), wish);
@@ -73,7 +73,7 @@ TEST(FitPress, TheTruthIsWithinTheNinetyPercentIntervalForAboutNinetySeedsInAHun
     std::vector<int> inside(values.size(), 0);
     constexpr int kSeeds = 400;
     for (unsigned seed = 0; seed < kSeeds; ++seed) {
-      RecordWish wish;
+      RecordFitOptions wish;
       wish.law = law;
       wish.model.radius = law == "hertz" ? 0.004 : 0.0;
       wish.confidence = 0.9;
@@ -92,7 +92,7 @@ TEST(FitPress, TheTruthIsWithinTheNinetyPercentIntervalForAboutNinetySeedsInAHun
 
 TEST(FitPress, TheLawThatTheDataHaveIsTheOneThatIsTaken) {
   for (const auto& [law, values] : kTruths) {
-    RecordWish wish;
+    RecordFitOptions wish;
     wish.model.radius = law == "hertz" ? 0.004 : 0.0;
     const auto fit = fit_record(record_of(law, 0.003, 7), wish);
     ASSERT_TRUE(fit.ok());
@@ -105,7 +105,7 @@ TEST(FitPress, ABoxHoldsAndWhatStandsOnItHasNoInterval) {
   // A force that grows less than linearly does not stiffen: the exponent goes to its lower bound.
   PressRecord record = record_of("linear", 0.0, 1);
   for (double& f : record.force) f = 20 * (1 - std::exp(-f / 20));
-  RecordWish wish;
+  RecordFitOptions wish;
   wish.law = "cubic";
   const auto fit = fit_record(record, wish);
   ASSERT_TRUE(fit.ok());
@@ -135,7 +135,7 @@ TEST(FitPress, AnyShareOfTheRowsIsHeldOutInStretchesAllOverTheRecord) {
 TEST(FitPress, TheLawThatTheDataHaveIsTakenWhateverShareIsHeldOut) {
   for (const auto& [law, values] : kTruths)
     for (const double share : {0.0, 0.02, 0.1, 0.4, 0.5}) {
-      RecordWish wish;
+      RecordFitOptions wish;
       wish.model.radius = law == "hertz" ? 0.004 : 0.0;
       wish.hold_out = share;
       const auto fit = fit_record(record_of(law, 0.001, 11), wish);
@@ -145,7 +145,7 @@ TEST(FitPress, TheLawThatTheDataHaveIsTakenWhateverShareIsHeldOut) {
       else
         EXPECT_EQ(fit->laws[fit->best].model.law, law) << share;
     }
-  RecordWish wish;
+  RecordFitOptions wish;
   wish.hold_out = 0.02;  // three rows
   const auto few = fit_record(record_of("cubic", 0.0, 1), wish);
   ASSERT_TRUE(few.ok());
@@ -161,7 +161,7 @@ PressRecord moved(PressRecord record, double by) {
 TEST(FitPress, WhereTheIndenterMetTheSurfaceIsFoundWhereverTheRecordBegins) {
   for (const auto& [law, values] : kTruths)
     for (const double zero : {0.0, 0.001, 0.0095, -0.002}) {
-      RecordWish wish;
+      RecordFitOptions wish;
       wish.law = law;
       wish.model.radius = law == "hertz" ? 0.004 : 0.0;
       wish.model.contact = true;
@@ -186,7 +186,7 @@ TEST(FitPress, ARecordThatBeginsPressedHasABoxForItsContact) {
       record.contact.push_back(true);
     }
     for (const std::string law : {"linear", "cubic", "exponential"}) {
-      RecordWish wish;
+      RecordFitOptions wish;
       wish.law = law;
       wish.model.contact = true;
       const auto fit = fit_record(record, wish);
@@ -214,7 +214,7 @@ TEST(FitPress, TheDamperOfTheContactIsFound) {
     record.force.push_back(std::max(0.0, 300 * d + (d > 0 ? 20 * rate : 0.0)));
     record.contact.push_back(d > 0);
   }
-  RecordWish wish;
+  RecordFitOptions wish;
   wish.law = "linear";
   wish.model.damping = true;
   const auto fit = fit_record(record, wish);
@@ -231,7 +231,7 @@ TEST(FitPress, TheDamperOfTheContactIsFound) {
 TEST(FitPress, AnIntervalEndsWhereItsKeysRangeDoes) {
   bool cut = false;
   for (unsigned seed = 0; seed < 20; ++seed) {
-    RecordWish wish;
+    RecordFitOptions wish;
     wish.law = "cubic";
     const auto fit = fit_record(record_of("linear", 0.05, seed), wish);
     ASSERT_TRUE(fit.ok());

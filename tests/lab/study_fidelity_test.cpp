@@ -61,7 +61,7 @@ TEST(StudyFidelity, NoLawIsJudgedWhereItWasFitted) {
 TEST(StudyFidelity, ErrorsAreTheSameBitsInEveryRun) {
   Indented what;
   what.depths = {0.001};
-  PressWish coarse{0.012, 0.05};
+  PressRun coarse{0.012, 0.05};
   const auto first = press_tissue(what, coarse), second = press_tissue(what, coarse);
   ASSERT_TRUE(first && second);
   EXPECT_GT(first->force[0], 0.0);

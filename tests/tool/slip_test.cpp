@@ -48,7 +48,7 @@ class BarOnRidge {
   // [N], [N m] on the handle, which has moved by `by` [m] at the step's end.
   Vector6 step(double T, dvec3 by) {
     const Pose end{rest_.position + by, rest_.rotation};
-    tool().lead_handle({end, join((by - went_) / T, dvec3(0))});
+    tool().prescribe_handle({end, join((by - went_) / T, dvec3(0))});
     went_ = by;
     for (auto& body : bodies_) body->free_step(T, dvec3(0));
     contacts_.clear();

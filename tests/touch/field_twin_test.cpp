@@ -99,8 +99,8 @@ TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
   World& world = gpu.stage.world;
   const ObjectState& object = world.touch->objects[0];
   EXPECT_FALSE(object.on_gpu);
-  ASSERT_TRUE(object.teller.feed());
-  FieldFeed& feed = *object.teller.feed();
+  ASSERT_TRUE(object.feed_writer.feed());
+  FieldFeed& feed = *object.feed_writer.feed();
   const auto newest = [&]() -> const ObjectSnapshot& {
     publish(world, {0, gpu.stage.time(), gpu.stage.dt()});
     world.snapshots->acquire();
@@ -108,7 +108,7 @@ TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
   };
   play(gpu.stage, gpu.a, gpu.b, 100);
   EXPECT_GT(gpu.stage.field(gpu.surface).awake_vertices, 0u);
-  EXPECT_TRUE(newest().told);
+  EXPECT_TRUE(newest().fed);
   EXPECT_EQ(newest().zone_count, 0u);
   std::size_t ticks = 0, events = 0;
   for (FieldEvent event; feed.events.pop(event); ++events) {
@@ -120,13 +120,13 @@ TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
 
   // Without a reader the ring fills up.
   int waited = 0;
-  while (object.teller.tells() && ++waited < 100000) {
+  while (object.feed_writer.feeds() && ++waited < 100000) {
     gpu.stage.place(gpu.a, 0.095 * normalize(dvec3(std::sin(1e-3 * waited), 1, 0)));
     gpu.stage.tick();
   }
-  EXPECT_FALSE(object.teller.tells());
+  EXPECT_FALSE(object.feed_writer.feeds());
   const ObjectSnapshot& streams = newest();
-  EXPECT_FALSE(streams.told);
+  EXPECT_FALSE(streams.fed);
   EXPECT_GT(streams.zone_count, 0u);
   // At rest, as confirmed by the reader: it restarts.
   gpu.stage.place(gpu.a, {0, 0.2, 0});
@@ -134,7 +134,7 @@ TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
   gpu.stage.wait(2.0);
   for (FieldEvent event; feed.events.pop(event);) continue;
   for (int i = 0; i < 100; ++i) newest();
-  EXPECT_TRUE(newest().told);
+  EXPECT_TRUE(newest().fed);
   FieldEvent event;
   ASSERT_TRUE(feed.events.pop(event));
   EXPECT_EQ(event.kind, FieldEvent::kReset);

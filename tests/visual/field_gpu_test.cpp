@@ -49,7 +49,7 @@ TEST(FieldOnGpu, ComputesWhatTheProcessorStepsForEveryShapeAndLawItSupports) {
       FieldOnGpu field(mesh);
       const std::vector<FieldSource>& terms = gpu.world.touch->objects[0].terms;
       ASSERT_GE(terms.size(), 2u);
-      EXPECT_EQ(field.evaluate(*program, terms, stream), terms.size() * sizeof(CardSource))
+      EXPECT_EQ(field.evaluate(*program, terms, stream), terms.size() * sizeof(GpuSource))
           << "what travels is the list";
       const std::vector<vec4> got = read_back<vec4>(stream, mesh.vertex_count);
       double largest = 0, height = 0, angle = 0;

@@ -41,12 +41,12 @@ struct Twin {
     stage.world.snapshots->acquire();
     const Snapshot& snapshot = stage.world.snapshots->read();
     const ObjectSnapshot& object = snapshot.objects[0];
-    const bool told = replay.take(*object.feed, object.told, snapshot.tick);
-    if (!told) copies.take({object.zones.data(), object.zone_count}, object.stream);
+    const bool fed = replay.take(*object.feed, object.fed, snapshot.tick);
+    if (!fed) copies.take({object.zones.data(), object.zone_count}, object.stream);
     streamed = object.zone_count;
     copies.upload();
     replay.evaluate(program, copies.buffer());
-    if (!told && !snapshot.complete) return false;
+    if (!fed && !snapshot.complete) return false;
     const std::vector<vec4> got = read_back<vec4>(copies.buffer(), mesh().vertex_count);
     for (std::uint32_t v = 0; v < mesh().vertex_count; ++v) {
       const vec4 want = stage.field(surface).stream[v];
@@ -56,7 +56,7 @@ struct Twin {
                   q = normalize(dvec3(mesh().normal(v) + vec3(want)));
       angle = std::max(angle, length(cross(p, q)) * 180 / M_PI);
     }
-    return told;
+    return fed;
   }
 };
 

@@ -26,14 +26,14 @@ std::optional<Carrier> Carrier::of(World& world) {
     Carrier carrier;
     carrier.tool_ = entity;
     carrier.device_ = named;
-    carrier.led_ = device->driver != DriverKind::kMouse;
-    if (carrier.led_ && led) continue;
+    carrier.follows_path_ = device->driver != DriverKind::kMouse;
+    if (carrier.follows_path_ && led) continue;
     carrier.step_ = step_in(world);
     if (const Pose* pose = world.registry.find<Pose>(entity)) {
       carrier.position_ = carrier.wanted_ = pose->position;
-      if (!carrier.led_) device->rotation = pose->rotation;
+      if (!carrier.follows_path_) device->rotation = pose->rotation;
     }
-    if (!carrier.led_) return carrier;
+    if (!carrier.follows_path_) return carrier;
     led = carrier;
   }
   return led;
@@ -49,8 +49,8 @@ Carrier Carrier::holding(const World& world, Entity tool, dvec3 at) {
 
 void Carrier::grab(const dvec3& point, const dvec3& device) {
   held_ = point;
-  if (led_) position_ = wanted_ = device;
-  led_ = false;
+  if (follows_path_) position_ = wanted_ = device;
+  follows_path_ = false;
 }
 
 void Carrier::follow(const ViewRay& ray, const Viewpoint& view) {

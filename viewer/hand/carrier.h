@@ -25,7 +25,7 @@ class Carrier {
   Entity tool() const { return tool_; }
   // `point` [m] world, on the tool; `device` [m] world, where its device is.
   void grab(const dvec3& point, const dvec3& device);
-  Entity taken() const { return led_ ? kNoEntity : device_; }  // the device, once the mouse controls it
+  Entity taken() const { return follows_path_ ? kNoEntity : device_; }  // the device, once the mouse controls it
   void release();
   bool holds() const { return held_.has_value(); }
   void follow(const ViewRay& ray, const Viewpoint& view);
@@ -35,7 +35,7 @@ class Carrier {
 
  private:
   Entity tool_, device_;
-  bool led_ = false;               // by its path, not yet by the mouse
+  bool follows_path_ = false;      // by its path, not yet by the mouse
   double step_ = 0.01;             // [m] per click
   dvec3 position_{0}, wanted_{0};  // [m] world, of the device: current and wanted
   std::optional<dvec3> held_;      // [m] world, the point under the cursor

@@ -178,7 +178,7 @@ void focus_next(bool back) {
   g.NavNextActivateFlags = ImGuiActivateFlags_PreferInput;
 }
 
-bool keyboard_leads() {
+bool keyboard_has_focus() {
   const ImGuiContext& g = *ImGui::GetCurrentContext();
   return g.NavId != 0 && !g.NavDisableHighlight && g.NavWindow &&
          (g.NavWindow->Flags & ImGuiWindowFlags_NoNavInputs) == 0;

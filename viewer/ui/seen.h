@@ -22,7 +22,7 @@ std::string not_apart();
 // --- Keyboard navigation
 // Focuses the next widget in drawing order, or with `back` the previous one. Text fields start editing.
 void focus_next(bool back);
-bool keyboard_leads();        // a widget is marked as the target of Space and Enter
+bool keyboard_has_focus();    // a widget is marked as the target of Space and Enter
 bool keyboard_is_on_field();  // the marked widget is a text field
 void lead_by_keyboard();      // marks the focused widget, as after keyboard navigation
 bool popup_is_open();         // a menu, a list or a question

@@ -80,7 +80,7 @@ DeviceParameters any_force() {
 
 // Prescribes the probe from above the surface to each depth in turn and keeps it there; measures the cost in contact.
 template <class Note>
-Status press(Session& session, const std::string& effector, const Indented& what, const PressWish& wish,
+Status press(Session& session, const std::string& effector, const Indented& what, const PressRun& wish,
              Indentation& out, const Note& note) {
   const int half = std::max(1, static_cast<int>(std::lround(wish.seconds * 1000 / 2)));
   double from = -kBeginsAbove;
@@ -135,7 +135,7 @@ Result<Indentation> press_surface(const Indented& what, const DeformableParamete
   return out;
 }
 
-Result<Indentation> press_tissue(const Indented& what, PressWish& wish) {
+Result<Indentation> press_tissue(const Indented& what, PressRun& wish) {
   Scene scene("press");
   scene.simulation().gravity = dvec3(0);
   scene.simulation().soft_step = kSoftStep;

@@ -192,7 +192,7 @@ class Fidelity {
     double done = 0.0;
     for (const bool focus : {false, true})
       for (const double cell : focus ? plan_.focus : plan_.level_cells) {
-        PressWish press{cell, plan_.seconds, 0, [&] { return !interrupt_.requested(); }, focus};
+        PressRun press{cell, plan_.seconds, 0, [&] { return !interrupt_.requested(); }, focus};
         auto model = press_tissue(what_, press);
         if (!model) return model.error();
         rows_.push_back({focus ? "FEM, in a level, focus" : "FEM, in a level",
@@ -216,8 +216,8 @@ class Fidelity {
     for (const double radii : plan_.lattice) whole += std::pow(radii, -4);
     for (const bool focus : {false, true})
       for (const double radii : focus ? plan_.lens : plan_.lattice) {
-        PressWish press{radii * what.radius, std::min(plan_.seconds, kLatticeSeconds), 0,
-                        [&] { return !interrupt_.requested(); }, focus};
+        PressRun press{radii * what.radius, std::min(plan_.seconds, kLatticeSeconds), 0,
+                       [&] { return !interrupt_.requested(); }, focus};
         auto model = press_tissue(what, press);
         if (!model) return model.error();
         lattice_rows_.push_back({focus ? "focus" : "even", fmt::format("{:.3g}", radii), model->us,

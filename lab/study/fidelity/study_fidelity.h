@@ -35,14 +35,14 @@ struct Indentation {
 // A P1 surface under a probe, in a session.
 Result<Indentation> press_surface(const Indented& what, const DeformableParameters& parameters);
 // A soft body with lattice cells [m] under a rigid punch with a prescribed device, in a session.
-struct PressWish {
+struct PressRun {
   double cell = 0.004;                                  // [m]
   double seconds = 0.25;                                // [s] per depth, half of it at rest
   std::size_t tets = 0;                                 // output: of the lattice
   std::function<bool()> goes_on = [] { return true; };  // called in every tick; false ends the press with an error
   bool focus = false;                                   // cell size under the punch; larger away from it
 };
-Result<Indentation> press_tissue(const Indented& what, PressWish& press);
+Result<Indentation> press_tissue(const Indented& what, PressRun& press);
 // A sequence of block presses at these depths [m], solved anew in every soft step of 1/60 s: force and cost.
 Indentation as_indentation(const std::vector<PressedBlock>& blocks, const std::vector<double>& depths);
 

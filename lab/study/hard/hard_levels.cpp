@@ -31,7 +31,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 }
 
 // A file may repeat object names, a session may not.
-void tell_apart(Level& level) {
+void make_distinct(Level& level) {
   std::set<std::string> names;
   for (LevelNode& node : level.nodes)
     for (int i = 2; !names.insert(node.name).second; ++i) node.name = fmt::format("{} ({})", node.name, i);
@@ -114,7 +114,7 @@ void judge(Judged& judged, const fs::path& file, bool sound, bool bodies) {
   }
   if (!level.has_pliant()) {
     make_touchable(level);
-    tell_apart(level);
+    make_distinct(level);
     const Status added = add_probes(level, {{"orbiting probe", DriverKind::kOrbit, {}, {}, false, {}}});
     judged.worst.need(added.ok(), added ? "" : added.error().message());
     if (!added) return;

@@ -9,7 +9,7 @@
 #include "content/level_file.h"
 #include "lab/console/progress.h"
 #include "lab/files/content_folder.h"
-#include "lab/study/led_tool.h"
+#include "lab/study/driven_tool.h"
 #include "lab/study/linearisation/linearisation_report.h"
 #include "lab/study/linearisation/model_jumps.h"
 #include "lab/study/processor_time.h"
@@ -68,7 +68,7 @@ Pose device_at(const World& world, Entity device, double time) {
 void soft_step(World& world, Schedule<World>& schedule, std::uint64_t index, double T, double time,
                const RigidMotion* handle = nullptr) {
   const Entity device = tool_of(world).device;
-  lead_tool(world, device_at(world, device, time), device_at(world, device, time - T), T, time, handle);
+  drive_tool(world, device_at(world, device, time), device_at(world, device, time - T), T, time, handle);
   run_soft_step(schedule, world, Tick{index, T, time});
 }
 

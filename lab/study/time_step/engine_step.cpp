@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lab/study/led_tool.h"
+#include "lab/study/driven_tool.h"
 #include "lab/study/processor_time.h"
 #include "scenes/tool_stage.h"
 
@@ -57,7 +57,7 @@ StepTrace engine_trace(const TissueScene& scene, double step, double every, doub
     if (!goes_on(static_cast<double>(i) / samples)) return {};
     for (int k = 1; k <= steps; ++k) {
       const double end = every * i + step * k;
-      if (ball) lead_tool(stage.world, {ball->middle(end)}, {ball->middle(end - step)}, step, end);
+      if (ball) drive_tool(stage.world, {ball->middle(end)}, {ball->middle(end - step)}, step, end);
       stage.step();
     }
     trace.push_back(stage.tissue(tissue).tissue().position());

@@ -55,7 +55,7 @@ class GuardOnWall {
     DeviceSample sample;
     sample.position.x = position;
     guard_.sense(&sample, now_, {});
-    GuardWish wish;
+    GuardInput wish;
     wish.known = true;
     wish.wrench.force.x = share() * wanted;
     return guard_.release(wish, now_, {}).force.x;

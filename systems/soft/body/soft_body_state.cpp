@@ -150,7 +150,7 @@ void SoftBodyState::settle(dvec3 gravity) {
   const double small = kSettled * length(box_size(tets_));
   for (int i = 0; i < kSettleSteps; ++i) {
     check_in();
-    lead_handle(there);
+    prescribe_handle(there);
     free_step(kSettleStep, gravity);
     if (!solvable_ || !velocity_.allFinite()) break;  // the first step will report it
     const double moved = kSettleStep * velocity_.lpNorm<Eigen::Infinity>();
@@ -159,7 +159,7 @@ void SoftBodyState::settle(dvec3 gravity) {
     if (moved < small) break;
   }
   halt();
-  led_.reset();
+  prescribed_.reset();
 }
 
 void SoftBodyState::unsettle() {

@@ -33,7 +33,7 @@ void ToolBody::set_device(const Pose& pose, const Vector6& velocity) {
 // Force that supports the whole tool in its rest shape. Without it, a hand that lifts the weight and lowers it
 // elsewhere would get back work that it never put into a surface, which a passive device must not give.
 Vector6 ToolBody::support(dvec3 gravity) const {
-  if (!(device_ || led_) || !settings_.carried) return Vector6::Zero();
+  if (!(device_ || prescribed_) || !settings_.carried) return Vector6::Zero();
   const dvec3 force = -mass_ * gravity;
   return join(force, cross(handle_->motion().pose.rotation * balance_, force));
 }
@@ -51,23 +51,24 @@ void ToolBody::couple(double T, dvec3 gravity) {
   handle_mass_ = handle_->mass_matrix();
   carry_ = support(gravity);
   handle_load_ = handle_mass_ * join(gravity, dvec3(0)) + carry_;
-  coupling_ = device_ && !led_ ? coupling_force(settings_, now, device_target()) : CouplingForce{};
-  coupling_step_ = device_ && !led_ ? coupling_step(coupling_, now, device_target(), T) : CouplingStep{};
-  if (!led_) return;
-  const Vector6 there = way_between(now, led_->end) / T;
-  if (led_->told || !device_) {
+  coupling_ = device_ && !prescribed_ ? coupling_force(settings_, now, device_target()) : CouplingForce{};
+  coupling_step_ = device_ && !prescribed_ ? coupling_step(coupling_, now, device_target(), T) : CouplingStep{};
+  if (!prescribed_) return;
+  const Vector6 there = way_between(now, prescribed_->end) / T;
+  if (prescribed_->kinematic || !device_) {
     coupling_step_.matrix = join(dvec3(kLeadMass), dvec3(kLeadInertia));
     coupling_step_.right = coupling_step_.matrix.cwiseProduct(there);
     return;
   }
   coupling_step_.matrix =
-      coupling_step(coupling_force(settings_, led_->end, device_target()), led_->end, device_target(), T).matrix;
-  coupling_step_.right =
-      coupling_step_.matrix.cwiseProduct(there) + handle_mass_ * (there - start_) - T * (handle_load_ + led_->expected);
+      coupling_step(coupling_force(settings_, prescribed_->end, device_target()), prescribed_->end, device_target(), T)
+          .matrix;
+  coupling_step_.right = coupling_step_.matrix.cwiseProduct(there) + handle_mass_ * (there - start_) -
+                         T * (handle_load_ + prescribed_->expected);
 }
 
-Vector6 ToolBody::short_of_lead(const RigidMotion& handle) const {
-  return led_ ? way_between(handle, led_->end) : Vector6(Vector6::Zero());
+Vector6 ToolBody::short_of_prescribed(const RigidMotion& handle) const {
+  return prescribed_ ? way_between(handle, prescribed_->end) : Vector6(Vector6::Zero());
 }
 
 Vector6 ToolBody::coupling_wrench() const {

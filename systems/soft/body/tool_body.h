@@ -42,14 +42,14 @@ class ToolBody : public Body {
   // The device: its current pose and velocity (of the target for the object's frame); the velocity is assumed constant
   // over a step. Not finite: released.
   void set_device(const Pose& pose, const Vector6& velocity);
-  void release_device() { device_.reset(), led_.reset(); }
+  void release_device() { device_.reset(), prescribed_.reset(); }
   // From now on the handle's motion is prescribed: its centre moves to `end` over the next step, regardless of forces.
-  void lead_handle(const RigidMotion& end) { led_ = {end, Vector6::Zero(), true}; }
+  void prescribe_handle(const RigidMotion& end) { prescribed_ = {end, Vector6::Zero(), true}; }
   // The same, but compliant like a hand: it deviates if tissue and contacts pull otherwise than by `expected` [N], [N
   // m], the mean over the step.
-  void bring_handle(const RigidMotion& end, const Vector6& expected) { led_ = {end, expected, false}; }
+  void bring_handle(const RigidMotion& end, const Vector6& expected) { prescribed_ = {end, expected, false}; }
   // [m], [rad] from `handle` at the end of a step to its prescribed pose; zero without one.
-  Vector6 short_of_lead(const RigidMotion& handle) const;
+  Vector6 short_of_prescribed(const RigidMotion& handle) const;
   bool held() const { return device_.has_value(); }  // a device holds the handle
   // Target of the device for the handle's frame.
   RigidMotion device_target() const { return device_ ? device_->at(handle_->centre()) : handle_->motion(); }
@@ -94,10 +94,10 @@ class ToolBody : public Body {
 
  protected:
   // Prescribed motion of the handle over a step.
-  struct Lead {
-    RigidMotion end;    // of its centre
-    Vector6 expected;   // [N], [N m] of tissue and contacts, mean over the step
-    bool told = false;  // independent of forces
+  struct PrescribedMotion {
+    RigidMotion end;         // of its centre
+    Vector6 expected;        // [N], [N m] of tissue and contacts, mean over the step
+    bool kinematic = false;  // independent of forces
   };
 
   // Computes coupling_step_, handle_mass_ and handle_load_. The handle's equation without tissue and contacts:
@@ -111,7 +111,7 @@ class ToolBody : public Body {
   double T_ = 0.0;     // [s] of the last free_step
   Vector velocity_;
   std::optional<RigidMotion> device_;
-  std::optional<Lead> led_;
+  std::optional<PrescribedMotion> prescribed_;
   CouplingForce coupling_;
   CouplingStep coupling_step_;
   Vector6 start_ = Vector6::Zero();  // w0

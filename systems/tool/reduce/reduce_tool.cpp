@@ -14,7 +14,7 @@ void reduce_tool(const FinishedStep& step, std::uint32_t tool, double tick, Hand
   describe_handle_and_tissue(contacts, out);
   const Eigen::MatrixXd W = condense_bodies(contacts, tick, out.contacts);
   mark_stiff(W, out.contacts);
-  const Vector6 left = contacts.tool().short_of_lead(out.handle);
+  const Vector6 left = contacts.tool().short_of_prescribed(out.handle);
   catch_up(contacts, left, W, out);
   out.contacts.prepare_tick(tick);
   out.linear = linear_model(contacts.tool(), out, W);

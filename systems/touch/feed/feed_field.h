@@ -12,14 +12,14 @@ namespace pliant {
 
 struct ObjectState;
 
-class FieldTeller {
+class FeedWriter {
  public:
-  FieldTeller() = default;
-  FieldTeller(std::uint32_t zones, std::size_t sources, bool with_offsets);
+  FeedWriter() = default;
+  FeedWriter(std::uint32_t zones, std::size_t sources, bool with_offsets);
 
   const std::shared_ptr<FieldFeed>& feed() const { return feed_; }
   // The reader draws from the feed; else zones must be published.
-  bool tells() const { return telling_; }
+  bool feeds() const { return feeds_; }
 
   void fold(std::uint32_t source, const FieldSource& before, const FieldSource& now);
   void source(std::uint32_t source, const FieldSource& now);
@@ -38,12 +38,12 @@ class FieldTeller {
   void push(const FieldEvent& event);
 
   std::shared_ptr<FieldFeed> feed_;
-  bool telling_ = false, lost_ = false;
-  std::vector<FieldSource> told_source_;
-  std::vector<std::uint64_t> told_mask_;   // per zone
-  std::vector<std::uint8_t> told_awake_;   // per zone
-  std::vector<std::uint8_t> told_;         // per zone: the reader's copy may differ from rest
-  std::vector<std::uint32_t> told_zones_;  // those; capacity: all
+  bool feeds_ = false, lost_ = false;
+  std::vector<FieldSource> reported_source_;
+  std::vector<std::uint64_t> reported_mask_;   // per zone
+  std::vector<std::uint8_t> reported_awake_;   // per zone
+  std::vector<std::uint8_t> reported_;         // per zone: the reader's copy may differ from rest
+  std::vector<std::uint32_t> reported_zones_;  // those; capacity: all
 };
 
 }  // namespace pliant

@@ -21,8 +21,8 @@ bool copy_zones(ObjectState& object, HeightField& field, ObjectSnapshot& out) {
   out.awake_vertices = field.awake_vertices;
   out.zone_count = 0;
   out.on_gpu = object.on_gpu;
-  object.teller.begin_if_at_rest(object, field);
-  out.told = object.teller.tells();
+  object.feed_writer.begin_if_at_rest(object, field);
+  out.fed = object.feed_writer.feeds();
   out.term_count = static_cast<std::uint32_t>(object.terms.size());
   std::copy(object.terms.begin(), object.terms.end(), out.terms.begin());
   while (!object.dirty.empty() && out.zone_count < out.zones.size()) {

@@ -53,9 +53,9 @@ void fold(SourceState& source, ObjectState& object, World& world, Tick tick) {
   if (deformable.response == Response::kLag) return;  // then the residual is already the whole state
   if (object.on_gpu) return remember_release(object, {source.now, source.before, tick.time}, world.dropped);
   const float inv_dt = static_cast<float>(1 / tick.dt);
-  object.teller.fold(source.told, source.before, source.now);
+  object.feed_writer.fold(source.feed_number, source.before, source.now);
   for (const std::uint32_t zone : source.zones) {
-    if (!source.offset.empty()) object.teller.offsets(source.told, zone, source.offset, true);
+    if (!source.offset.empty()) object.feed_writer.offsets(source.feed_number, zone, source.offset, true);
     for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
       const vec4 now = source_at(source, source.now, mesh, v);
       const vec4 before = source_at(source, source.before, mesh, v);
@@ -70,11 +70,11 @@ void fold(SourceState& source, ObjectState& object, World& world, Tick tick) {
 
 void mark_reached(SourceState& source, ObjectState& object, HeightField& field) {
   const std::uint32_t number = static_cast<std::uint32_t>(&source - object.sources.data());
-  source.told = number;
-  object.teller.source(number, source.now);
+  source.feed_number = number;
+  object.feed_writer.source(number, source.now);
   for (const std::uint32_t zone : source.zones) {
     object.zone_sources[zone] |= std::uint64_t{1} << number;
-    if (!source.offset.empty()) object.teller.offsets(number, zone, source.offset, false);
+    if (!source.offset.empty()) object.feed_writer.offsets(number, zone, source.offset, false);
     if (!object.on_gpu) wake(field, zone, kZoneReached);
   }
 }
@@ -83,7 +83,7 @@ void swap_dents(SourceState& a, SourceState& b) {
   std::swap(a.active, b.active);
   std::swap(a.now, b.now);
   std::swap(a.before, b.before);
-  std::swap(a.told, b.told);
+  std::swap(a.feed_number, b.feed_number);
   a.zones.swap(b.zones);
   a.offset.swap(b.offset);
 }

@@ -88,7 +88,7 @@ void dynamics(World& world, Tick tick) {
     for (std::size_t i = 0; i < field.awake.size();) {
       const std::uint32_t zone = field.awake[i];
       vertices += mesh.zone_end(zone) - mesh.zone_begin(zone);
-      if (!object.teller.tells() && !(field.zone_state[zone] & kZoneDirty)) {
+      if (!object.feed_writer.feeds() && !(field.zone_state[zone] & kZoneDirty)) {
         field.zone_state[zone] |= kZoneDirty;
         object.dirty.push_back(zone);  // capacity: all zones
       }
@@ -111,7 +111,7 @@ void dynamics(World& world, Tick tick) {
         }
       }
       compose_stream(field, zone, reached && !lag ? &targets : nullptr, moving);
-      object.teller.zone(zone, object.zone_sources[zone], rests, !reached && !moving);
+      object.feed_writer.zone(zone, object.zone_sources[zone], rests, !reached && !moving);
       if (reached || moving) {
         ++i;
         continue;
@@ -121,7 +121,7 @@ void dynamics(World& world, Tick tick) {
       field.awake.pop_back();
     }
     field.awake_vertices = vertices;
-    object.teller.end_tick(tick.index);
+    object.feed_writer.end_tick(tick.index);
   }
   put_to_sleep(*world.touch, world);
 }

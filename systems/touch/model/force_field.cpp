@@ -123,7 +123,7 @@ void force_field(World& world, Tick tick) {
     const Mesh& mesh = world.meshes[deformable.mesh];
     HeightField& field = world.fields[deformable.field];
 
-    object.teller.give_up_if_lost(object, field);
+    object.feed_writer.give_up_if_lost(object, field);
 
     // Clears the last tick's marks; contacts that ended fold their dent into the residual.
     std::array<Active, kMaxContactsPerObject> active;

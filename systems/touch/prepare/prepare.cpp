@@ -201,7 +201,8 @@ ObjectState make_object(World& world, Entity entity, const Pose& pose, double dt
   object.visited.assign(mesh.zone_count(), 0);
   object.dirty.reserve(mesh.zone_count());
   if (world.field_place == FieldPlace::kGpu && !object.on_gpu && gpu_knows(deformable))
-    object.teller = FieldTeller(mesh.zone_count(), kMaxContactsPerObject, deformable.distance == Distance::kSurface);
+    object.feed_writer =
+        FeedWriter(mesh.zone_count(), kMaxContactsPerObject, deformable.distance == Distance::kSurface);
   for (std::uint32_t zone = 0; zone < field.zone_state.size(); ++zone) {  // zones not at rest must be published again
     field.zone_state[zone] &= kZoneListed | kZoneResidual;
     if (field.zone_state[zone]) {
@@ -209,7 +210,7 @@ ObjectState make_object(World& world, Entity entity, const Pose& pose, double dt
       object.dirty.push_back(zone);
     }
   }
-  object.teller.begin_if_at_rest(object, field);
+  object.feed_writer.begin_if_at_rest(object, field);
   return object;
 }
 
@@ -225,7 +226,7 @@ ObjectSnapshot snapshot_of(ObjectState& object, const Mesh& mesh) {
           object.on_gpu,
           0,
           std::vector<FieldSource>(object.terms.capacity()),
-          object.teller.feed(),
+          object.feed_writer.feed(),
           false};
 }
 

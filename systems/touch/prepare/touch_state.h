@@ -58,7 +58,7 @@ struct SourceState {
   FieldSource now, before;           // of this tick and of the last: their difference is the target's rate
   std::vector<std::uint32_t> zones;  // within reach; capacity: all zones
   std::vector<vec3> offset;          // [m] Distance::kSurface only, per vertex: see surface_distance.h
-  std::uint32_t told = 0;            // index of the dent in the feed (feed_field.h)
+  std::uint32_t feed_number = 0;     // index of the dent in the feed (feed_field.h)
   SourceLink of;                     // of an echo: its source in a neighbour (seam_dents.h)
   std::uint64_t echoed = 0;          // number of the last tick in which it was one, plus 1
   std::vector<MarchItem> heap;       // working memory of the march; sized at preparation
@@ -118,7 +118,7 @@ struct ObjectState {
   bool on_gpu = false;                      // the field is `terms`, drawn by the GPU; there is no HeightField
   std::vector<Release> releases;            // GPU only; capacity kMaxReleases
   std::vector<FieldSource> terms;           // GPU only: the whole field at `time`
-  FieldTeller teller;                       // feeds a GPU that steps a copy of the field
+  FeedWriter feed_writer;                   // feeds a GPU that steps a copy of the field
   double time = 0.0;                        // [s] end of the last tick
   std::vector<SourceState> sources;         // a pool for probes, one per press, echoes; at most kMaxContactsPerObject
   std::uint32_t first_echo = 0;             // index into `sources`

@@ -8,14 +8,14 @@
 
 namespace pliant {
 
-struct SaidKey {
+struct StatedKey {
   std::string extension, key;  // "deformable", "shape"; for the scene "simulation", "soft_step"
   Json value;
 };
 
 // Sets all keys in one edit, on this node or the scene.
-Result<State> with_said(const State& state, NodeId id, const std::vector<SaidKey>& keys);
+Result<State> with_stated(const State& state, NodeId id, const std::vector<StatedKey>& keys);
 // Resets keys to their defaults and unstates them; ignores the values.
-Result<State> without_said(const State& state, NodeId id, const std::vector<SaidKey>& keys);
+Result<State> without_stated(const State& state, NodeId id, const std::vector<StatedKey>& keys);
 
 }  // namespace pliant

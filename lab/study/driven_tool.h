@@ -8,7 +8,7 @@ namespace pliant {
 
 // Moves the device of the world's first tool from `before` to `now` in a step of T [s] that ends at `time` [s].
 // `handle`: the tool's handle at that time, if known; otherwise it follows the device.
-void lead_tool(World& world, const Pose& now, const Pose& before, double T, double time,
-               const RigidMotion* handle = nullptr);
+void drive_tool(World& world, const Pose& now, const Pose& before, double T, double time,
+                const RigidMotion* handle = nullptr);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-#include "editor/document/said_keys.h"
+#include "editor/document/stated_keys.h"
 
 #include "content/keys/extension_table.h"
 
@@ -16,9 +16,9 @@ std::set<std::string>& stated_of(State& state, NodeId id, const std::string& ext
 
 }  // namespace
 
-Result<State> with_said(const State& state, NodeId id, const std::vector<SaidKey>& keys) {
+Result<State> with_stated(const State& state, NodeId id, const std::vector<StatedKey>& keys) {
   Result<State> next(state);
-  for (const SaidKey& each : keys) {
+  for (const StatedKey& each : keys) {
     next = with_value(*next, NodeIds(&id, 1), each.extension, each.key, each.value);
     if (!next) return next;
     stated_of(*next, id, each.extension).insert(each.extension + "." + each.key);
@@ -26,9 +26,9 @@ Result<State> with_said(const State& state, NodeId id, const std::vector<SaidKey
   return next;
 }
 
-Result<State> without_said(const State& state, NodeId id, const std::vector<SaidKey>& keys) {
+Result<State> without_stated(const State& state, NodeId id, const std::vector<StatedKey>& keys) {
   Result<State> next(state);
-  for (const SaidKey& each : keys) {
+  for (const StatedKey& each : keys) {
     next = with_default(*next, NodeIds(&id, 1), each.extension, each.key);
     if (!next) return next;
     stated_of(*next, id, each.extension).erase(each.extension + "." + each.key);

@@ -1,11 +1,11 @@
-#include "lab/study/led_tool.h"
+#include "lab/study/driven_tool.h"
 
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {
 
-void lead_tool(World& world, const Pose& now, const Pose& before, double T, double time, const RigidMotion* handle) {
+void drive_tool(World& world, const Pose& now, const Pose& before, double T, double time, const RigidMotion* handle) {
   ToolTouchState& tool = *world.tools->tools[0];
   ToolInput& input = tool.input.write();
   const dvec3 turn = vector_of(now.rotation * glm::conjugate(before.rotation));
