@@ -49,7 +49,7 @@ struct Note {
 };
 
 inline Error error_at(std::string where, Note fault) {
-  return {std::move(where), std::move(fault.what), std::move(fault.cure), std::move(fault.code)};
+  return {std::move(where), std::move(fault.what), std::move(fault.cure), std::move(fault.code), -1, {}};
 }
 
 // Called when a value is taken from an Error without a check, or vice versa: aborts with a message (LogLevel::kFatal,

@@ -31,7 +31,7 @@ const char* word(Severity severity) {
 }
 
 // A list of findings; a key without a value is left out.
-std::string json_of(const Findings& findings) {
+OrderedJson json_of(const Findings& findings) {
   OrderedJson list = OrderedJson::array();
   for (const Finding& finding : findings) {
     OrderedJson& json = list.emplace_back(OrderedJson::object());
@@ -42,7 +42,7 @@ std::string json_of(const Findings& findings) {
                                      {"cure", &finding.cure}})
       if (!value->empty()) json[key] = *value;
   }
-  return list.dump(2, ' ', true, OrderedJson::error_handler_t::replace);
+  return list;
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ int validate(const ValidateOptions& options) {
       print("{}: {}: {}\n", finding.pointer.empty() ? "/" : finding.pointer, word(finding.severity), finding.message());
   }
   if (options.json)
-    print("{}\n", json_of(findings));
+    print_json(json_of(findings));
   else
     print("{}: {} error{}, {} warning{}\n", file->string(), errors, errors == 1 ? "" : "s", warnings,
           warnings == 1 ? "" : "s");

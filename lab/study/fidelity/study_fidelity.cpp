@@ -304,8 +304,8 @@ std::vector<std::string> sentences(const Fidelity& study) {
       "The nearest of each kind, at depths that no law was fitted at: " + words(least_row(rows, "P1 from")) + "; " +
           words(least_row(rows, "P1, law")) + "; " + words(least_row(rows, "FEM, in")) + "; " +
           words(least_row(rows, "FEM, fitted")) + ".",
-      study.truth_words() + "",
-      fmt::format("in an even lattice, on a block of 3 radii about the punch, the force {}.", lattice_words(study))};
+      study.truth_words() + fmt::format("; in an even lattice, on a block of 3 radii about the punch, the force {}.",
+                                        lattice_words(study))};
 }
 
 }  // namespace

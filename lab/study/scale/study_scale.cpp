@@ -180,14 +180,13 @@ std::vector<std::string> sentences_of(const std::vector<GrowthPanel>& panels, co
                          two_digits(by_size.cost[last] / sizes.size[last]));
   }
   first += drawing.words();
-  return {
-      first + ".",
-      fmt::format("A soft step grows with power {} of tetrahedra (free motion {}, linear models {}) and {} of contacts "
-                  "(finding them {}, solving them {})",
-                  words_of(tets.curves[0].law), words_of(tets.curves[1].law), words_of(tets.curves[4].law),
-                  words_of(contacts.curves[0].law), words_of(contacts.curves[2].law), words_of(contacts.curves[3].law)),
-      "powers are those of the larger half of the sizes, and where the points are curved there, the power at the "
-      "largest is said too."};
+  return {first + ".",
+          fmt::format(
+              "A soft step grows with power {} of tetrahedra (free motion {}, linear models {}) and {} of contacts "
+              "(finding them {}, solving them {}); powers are those of the larger half of the sizes, and where the "
+              "points are curved there, the power at the largest is said too.",
+              words_of(tets.curves[0].law), words_of(tets.curves[1].law), words_of(tets.curves[4].law),
+              words_of(contacts.curves[0].law), words_of(contacts.curves[2].law), words_of(contacts.curves[3].law))};
 }
 
 }  // namespace

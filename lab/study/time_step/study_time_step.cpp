@@ -141,8 +141,10 @@ std::vector<std::string> sentences(const std::vector<StepRow>& all, const std::v
                           std::log(find(mean, way, next).error / find(mean, way, shortest).error) /
                               std::log(static_cast<double>(shortest) / next),
                           way);
-  return {usual + ".", slopes + "",
-          fmt::format("the truths, in steps of {:.2g} ms, differ from themselves in steps of twice that by {:.1g} at "
+  return {
+      usual + ".",
+      slopes +
+          fmt::format("; the truths, in steps of {:.2g} ms, differ from themselves in steps of twice that by {:.1g} at "
                       "most, a level's by {:.1g}.",
                       1000.0 / plan.truth_rate, worst, engine_worst)};
 }
