@@ -231,9 +231,9 @@ Status check(const Deformable& d, const std::string& name) {
   };
   for (const Bound& bound : bounds) {
     if (bound.range.holds(bound.value)) continue;
-    return Error{name,
-                 fmt::format("deformable.{} is {}; give a number {} {} to {}{}", bound.key, bound.value,
-                             bound.range.above_min ? "above" : "from", bound.range.min, bound.range.max, bound.why)};
+    return Error{fmt::format("`{}`: {}", name, bound.key), fmt::format("is {}", bound.value),
+                 fmt::format("give a number {} {} to {}{}", bound.range.above_min ? "above" : "from", bound.range.min,
+                             bound.range.max, bound.why)};
   }
   return Done{};
 }
