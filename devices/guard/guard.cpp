@@ -307,15 +307,17 @@ void Guard::credit(const GuardInput& wanted, double share, double most) {
       forfeit(less);
     }
   }
-  energy_.work -= gained;
-  credited_ += gained;
+  if (gained > 0.0) {  // and is a number
+    energy_.work -= gained;
+    credited_ += gained;
+  }
   share_ = share;
 }
 
 // Energy that the hand can no longer get back: the force that held it was taken away, or the contact to which it was
 // credited is over. Otherwise a force that goes and comes would be credited each time. Never below an even account.
 void Guard::forfeit(double energy) {
-  energy_.work += std::min(energy, std::max(0.0, -energy_.work));
+  energy_.work += std::min(std::max(0.0, -energy_.work), energy);  // all of it if `energy` is not a number
 }
 
 DeviceWrench Guard::limited(const GuardInput& wanted, double dt) {
