@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "systems/touch/collide/seams.h"
 #include "systems/touch/prepare/prepare.h"
 #include "systems/touch/prepare/touch_state.h"
 
@@ -125,6 +126,8 @@ void move_objects(World& world, Tick tick) {
     else if (WorldTransform* transform = world.registry.find<WorldTransform>(node.entity))
       transform->matrix = mat4(node.world);
   }
+  for (const MovingNode& node : nodes)
+    if (node.object >= 0) move_seams(world, *world.touch, static_cast<std::uint32_t>(node.object));
 }
 
 std::vector<MovedSnapshot> moved_snapshots(const World& world, const TouchState& touch) {
