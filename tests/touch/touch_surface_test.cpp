@@ -162,8 +162,8 @@ TEST(TouchSurface, FourNodesLookAsOneUnderTwoProbes) {
   EXPECT_LT(corner, -0.001) << "in the node that no probe is on";
 }
 
-// Sheets and slabs that are flush, part and come back: one surface, then borders with air or edges between them, then one
-// surface again. The one on the right moves.
+// Sheets and slabs that are flush, part and come back: one surface, then borders with air or edges between them, then
+// one surface again. The one on the right moves.
 TEST(TouchSurface, SeamsOpenWhenSurfacesPartAndCloseWhenTheyMeetAgain) {
   using glm::dvec4;
   constexpr double kSize = 0.1, kGap = 0.03;
@@ -193,7 +193,7 @@ TEST(TouchSurface, SeamsOpenWhenSurfacesPartAndCloseWhenTheyMeetAgain) {
     const auto expect = [&](double x, double time, double y) {
       EXPECT_LT(length(pressed_at(x, time) - dvec3(0, y, 0)), 1e-6) << thick << ' ' << x << ' ' << time;
     };
-    for (const double x : {-1e-7, 1e-7, 0.001}) expect(x, 0.05, whole);  // flush
+    for (const double x : {-1e-7, 1e-7, 0.001}) expect(x, 0.05, whole);        // flush
     for (const double x : {0.001, 0.015, kGap - 0.001}) expect(x, 0.45, 0.0);  // in the gap
     for (const double x : {-0.01, kGap + 0.01}) expect(x, 0.45, whole);        // beside it
     for (const double x : {-1e-7, 1e-7, 0.001}) expect(x, 0.85, whole);        // flush again
@@ -228,6 +228,50 @@ TEST(TouchSurface, SeamsOpenWhenSurfacesPartAndCloseWhenTheyMeetAgain) {
       EXPECT_GT(edge.x, 0.1) << "its edge is felt";
     else
       EXPECT_NEAR(edge.y, whole, 1e-6);
+  }
+}
+
+// One that is apart at the start and comes: flush with a sheet at a key of its motion, then with another.
+TEST(TouchSurface, SeamsFormWhenSurfacesMeet) {
+  using glm::dvec4;
+  const Primitive half = scenes::sheet(10, 0.1);
+  const double whole = law(frictionless(), 0.003);
+  for (const double x : {-0.05, 0.05, 0.15, 0.25}) {  // edges at -0.05 and 0.15: between the fixed ones and the mover
+    Stage stage;
+    stage.add(half, frictionless(), Pose{{-0.1, 0, 0}});
+    const Entity mover = stage.add(half, frictionless(), Pose{{0, 0.05, 0}});
+    stage.add(half, frictionless(), Pose{{0.2, 0, 0}});
+    PrescribedMotion motion;
+    motion.translation = {
+        Interpolation::kLinear,
+        {0.0, 0.2, 0.4, 0.6, 0.8},
+        {dvec4(0, 0.05, 0, 0), dvec4(0, 0, 0, 0), dvec4(0, 0, 0, 0), dvec4(0.1, 0, 0, 0), dvec4(0.1, 0, 0, 0)},
+        0.8};
+    motion.repeats = false;
+    stage.carry(mover, motion);
+    const Entity probe = stage.add_probe({x + 0.01, 0.2, 0.0037});
+    stage.prepare();
+    const auto slide = [&](double begin) {  // over x and back, 3 mm deep
+      stage.wait(begin - stage.time());
+      stage.move(probe, {x + 0.01, 0.001, 0.0037}, 0.01);
+      stage.move(probe, {x + 0.01, -0.003, 0.0037}, 0.02);
+      double least = 1e9, most = 0;
+      stage.move(probe, {x - 0.01, -0.003, 0.0037}, 0.1, [&](const ProbeReading&) {
+        least = std::min(least, length(raw_force(stage, probe)));
+        most = std::max(most, length(raw_force(stage, probe)));
+      });
+      stage.move(probe, {x - 0.01, 0.02, 0.0037}, 0.02);
+      return std::pair(least, most);
+    };
+    const auto first = slide(0.21), second = slide(0.81);
+    if (x == -0.05) {
+      EXPECT_NEAR(first.first, whole, 1e-6);
+      EXPECT_LT(second.first, 1e-9) << "it has left";
+    } else if (x == 0.15) {
+      EXPECT_LT(first.first, 1e-9) << "it has not come yet";
+      EXPECT_NEAR(second.first, whole, 1e-6);
+    }
+    EXPECT_LT(std::max(first.second, second.second), whole * 1.000001);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/touch/collide/triangle_tree.h"
+#include "systems/touch/prepare/prepare.h"
 
 namespace pliant {
 namespace {
@@ -98,23 +99,39 @@ const Mesh& mesh_of(const World& world, const ObjectState& object) {
   return world.meshes[world.registry.get<Deformable>(object.entity).mesh];
 }
 
-// The bond of two objects at their current pose.
-std::uint32_t bond_of(const World& world, TouchState& touch, std::uint32_t here, std::uint32_t there) {
+Pose relative_pose(const World& world, const TouchState& touch, std::uint32_t first, std::uint32_t second) {
+  return relative_pose(world.registry.get<Pose>(touch.objects[first].entity),
+                       world.registry.get<Pose>(touch.objects[second].entity));
+}
+
+bool is_at(const World& world, const TouchState& touch, const Bond& bond) {
+  const Pose now = relative_pose(world, touch, bond.first, bond.second);
+  return farthest_move(mesh_of(world, touch.objects[bond.second]).box, bond.relative, now) <= bond.slack;
+}
+
+// Index of the bond of two objects at their current relative pose, among the first `among`; Seam::kCrack if none.
+std::uint32_t bond_of(const World& world, const TouchState& touch, std::uint32_t here, std::uint32_t there,
+                      std::size_t among) {
   const std::uint32_t first = std::min(here, there), second = std::max(here, there);
   for (const std::uint32_t b : touch.objects[first].found.bonds)
-    if (touch.bonds[b].second == second) return b;
-  const ObjectState &one = touch.objects[first], &other = touch.objects[second];
+    if (b < among && touch.bonds[b].second == second && is_at(world, touch, touch.bonds[b])) return b;
+  return Seam::kCrack;
+}
+
+std::uint32_t add_bond(const World& world, TouchState& touch, std::uint32_t here, std::uint32_t there) {
+  const std::uint32_t first = std::min(here, there), second = std::max(here, there);
   const auto bond = static_cast<std::uint32_t>(touch.bonds.size());
+  const float edge =
+      std::max(mesh_of(world, touch.objects[first]).mean_edge, mesh_of(world, touch.objects[second]).mean_edge);
   touch.bonds.push_back(
-      {first, second, relative_pose(world.registry.get<Pose>(one.entity), world.registry.get<Pose>(other.entity)),
-       kCrack * static_cast<double>(std::max(mesh_of(world, one).mean_edge, mesh_of(world, other).mean_edge))});
+      {first, second, relative_pose(world, touch, first, second), kCrack * static_cast<double>(edge)});
   touch.objects[first].found.bonds.push_back(bond);
   touch.objects[second].found.bonds.push_back(bond);
   return bond;
 }
 
-// The surfaces that pass an edge of an object, in the world.
-void find_seams_of(const World& world, TouchState& touch, std::uint32_t i) {
+// Where surfaces pass an edge of an object at the current poses. `known`: number of bonds found at earlier poses.
+void find_seams_of(const World& world, TouchState& touch, std::uint32_t i, std::size_t known, bool cracks) {
   const Registry& registry = world.registry;
   ObjectState& object = touch.objects[i];
   const Mesh& mesh = mesh_of(world, object);
@@ -124,9 +141,12 @@ void find_seams_of(const World& world, TouchState& touch, std::uint32_t i) {
   around.min -= vec3(static_cast<float>(2 * crack));
   around.max += vec3(static_cast<float>(2 * crack));
   std::vector<std::uint32_t> others;
-  touch.object_boxes.visit(around, [&](std::uint32_t j) { others.push_back(j); });
+  touch.object_boxes.visit(around, [&](std::uint32_t j) {
+    if (j == i ? cracks : bond_of(world, touch, i, j, known) == Seam::kCrack) others.push_back(j);
+  });
   std::sort(others.begin(), others.end());
-  const bool alone = others.size() == 1;
+  const bool alone = others.empty() || (others.size() == 1 && others[0] == i);
+  if (alone && !cracks) return;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (int edge = 0; edge < 3; ++edge) {
       const bool border = mesh.across[t][edge] == kBorder;
@@ -143,8 +163,10 @@ void find_seams_of(const World& world, TouchState& touch, std::uint32_t i) {
         const std::uint32_t on = goes_on(mesh_of(world, touch.objects[j]), registry.get<Pose>(touch.objects[j].entity),
                                          at, kOff * crack, j == i ? t : kBorder);
         if (on == kBorder) continue;
-        object.found.seams.push_back({3 * t + static_cast<std::uint32_t>(edge), j, on,
-                                      j == i ? Seam::kCrack : bond_of(world, touch, i, j)});
+        std::uint32_t bond = Seam::kCrack;
+        if (j != i) bond = bond_of(world, touch, i, j, touch.bonds.size());
+        if (j != i && bond == Seam::kCrack) bond = add_bond(world, touch, i, j);
+        object.found.seams.push_back({3 * t + static_cast<std::uint32_t>(edge), j, on, bond});
         break;
       }
     }
@@ -209,15 +231,38 @@ bool at_seam(const ObjectState& object, const Foot& foot) {
   return false;
 }
 
-void find_seams(const World& world, TouchState& touch) {
+void find_seams(World& world, TouchState& touch) {
   const auto count = static_cast<std::uint32_t>(touch.objects.size());
-  for (std::uint32_t i = 0; i < count; ++i) find_seams_of(world, touch, i);
+  for (std::uint32_t i = 0; i < count; ++i) find_seams_of(world, touch, i, 0, true);
+
+  std::vector<Pose> start;
+  for (const MovingNode& node : touch.moving)
+    start.push_back(node.object < 0 ? Pose{} : world.registry.get<Pose>(node.entity));
+  std::vector<double> times = key_times(world, touch.moving);
+  if (count < 2) times.clear();
+  times.resize(std::min(times.size(), kMostKeyTimes));
+  for (const double time : times) {
+    place_at(world, touch, touch.moving, time);
+    const std::size_t known = touch.bonds.size();
+    for (std::uint32_t i = 0; i < count; ++i) find_seams_of(world, touch, i, known, false);
+  }
+  for (std::size_t n = 0; n < start.size(); ++n)
+    if (touch.moving[n].object >= 0) {
+      ObjectState& object = touch.objects[static_cast<std::size_t>(touch.moving[n].object)];
+      world.registry.get<Pose>(object.entity) = start[n];
+      object.world_box = touch_box(mesh_of(world, object), start[n]);
+      touch.object_boxes.move(static_cast<std::uint32_t>(touch.moving[n].object), object.world_box);
+    }
+
   for (std::uint32_t i = 0; i < count; ++i) find_closed_edges_and_zones(world, touch, i);
   for (ObjectState& object : touch.objects) {
+    std::stable_sort(object.found.seams.begin(), object.found.seams.end(),
+                     [](const Seam& a, const Seam& b) { return a.edge < b.edge; });
     sort_unique(object.found.zones);
-    list_closed(touch, object);
+    list_closed(touch, object);  // all: this is the room that the lists need
   }
   for (std::uint32_t i = 0; i < count; ++i) list_joined(touch, i);
+  for (std::uint32_t i = 0; i < count; ++i) move_seams(world, touch, i);
 }
 
 void move_seams(const World& world, TouchState& touch, std::uint32_t slot) {
@@ -225,10 +270,7 @@ void move_seams(const World& world, TouchState& touch, std::uint32_t slot) {
   for (const std::uint32_t b : touch.objects[slot].found.bonds) {
     Bond& bond = touch.bonds[b];
     ObjectState &first = touch.objects[bond.first], &second = touch.objects[bond.second];
-    const Pose now =
-        relative_pose(world.registry.get<Pose>(first.entity), world.registry.get<Pose>(second.entity));
-    const bool open = first.world_box.empty() || second.world_box.empty() ||
-                      farthest_move(mesh_of(world, second).box, bond.relative, now) > bond.slack;
+    const bool open = first.world_box.empty() || second.world_box.empty() || !is_at(world, touch, bond);
     if (open == bond.open) continue;
     bond.open = open;
     changed = true;

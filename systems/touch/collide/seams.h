@@ -14,8 +14,12 @@ const Seam* seam_at(const ObjectState& object, const Foot& foot);
 // Whether a foot is on either side of a seam.
 bool at_seam(const ObjectState& object, const Foot& foot);
 
-// Finds the seams of surfaces that are flush at the start. Allocates.
-void find_seams(const World& world, TouchState& touch);
+// Largest number of key times at which moving surfaces are examined.
+inline constexpr std::size_t kMostKeyTimes = 64;
+
+// Finds the seams of surfaces that are flush at the start, or at a key of the motion of one of them
+// (TouchState::moving, the first kMostKeyTimes). Allocates.
+void find_seams(World& world, TouchState& touch);
 
 // Opens the seams of an object that has left the pose at which it was flush with another, and closes those of one that
 // has come back. Does not allocate.

@@ -107,6 +107,36 @@ std::vector<MovingNode> find_moving(World& world, const TouchState& touch) {
   return found;
 }
 
+std::vector<double> key_times(const World& world, const std::vector<MovingNode>& nodes) {
+  std::vector<double> times;
+  for (const MovingNode& node : nodes) {
+    if (!node.motion.valid()) continue;
+    const PrescribedMotion& motion = world.motions[node.motion];
+    if (!(motion.speed > 0)) continue;
+    for (const Track* track : {&motion.translation, &motion.rotation})
+      for (const double time : track->times)  // just before the last key, where a motion that repeats begins again
+        times.push_back((time - 1e-9 * track->length) / motion.speed);
+  }
+  std::sort(times.begin(), times.end());
+  const auto same = [](double a, double b) { return b - a < 1e-8 * (1 + std::abs(b)); };
+  times.erase(std::unique(times.begin(), times.end(), same), times.end());
+  return times;
+}
+
+void place_at(World& world, TouchState& touch, std::vector<MovingNode> nodes, double time) {
+  for (MovingNode& node : nodes) {
+    const LocalFrame local =
+        node.motion.valid() ? sample_motion(world.motions[node.motion], node.rest, time) : local_frame(node.rest);
+    node.world = (node.parent < 0 ? node.above : nodes[static_cast<std::size_t>(node.parent)].world) * local.matrix();
+    if (node.object < 0) continue;
+    Pose& pose = world.registry.get<Pose>(node.entity);
+    pose = rigid_part(node.world);
+    ObjectState& object = touch.objects[static_cast<std::size_t>(node.object)];
+    object.world_box = touch_box(world.meshes[world.registry.get<Deformable>(node.entity).mesh], pose);
+    touch.object_boxes.move(static_cast<std::uint32_t>(node.object), object.world_box);
+  }
+}
+
 void move_objects(World& world, Tick tick) {
   std::vector<MovingNode>& nodes = world.touch->moving;
   for (MovingNode& node : nodes) {

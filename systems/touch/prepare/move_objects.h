@@ -31,6 +31,11 @@ struct MovingNode {
 // `touch` has its objects.
 std::vector<MovingNode> find_moving(World& world, const TouchState& touch);
 
+// Every time of a key of their motions, ascending. [s]
+std::vector<double> key_times(const World& world, const std::vector<MovingNode>& nodes);
+// Poses and boxes of the nodes' objects at that time, without velocities. For preparation.
+void place_at(World& world, TouchState& touch, std::vector<MovingNode> nodes, double time);
+
 // Kinematic -> local transforms at the tick's time -> Pose, MovingPose and world box; for untouchable nodes ->
 // WorldTransform. Velocities are the mean over the tick, so that a probe riding on a surface is at rest on it.
 void move_objects(World& world, Tick tick);

@@ -284,6 +284,7 @@ Status prepare_touch(World& world) {
   std::vector<Box> boxes;
   for (const ObjectState& object : touch->objects) boxes.push_back(object.world_box);
   touch->object_boxes.build(boxes);
+  touch->moving = find_moving(world, *touch);
   find_seams(world, *touch);
   for (ObjectState& object : touch->objects)
     list_creases(world.meshes[registry.get<Deformable>(object.entity).mesh], object);
@@ -291,7 +292,6 @@ Status prepare_touch(World& world) {
   if (something_presses(registry)) make_presses(world, *touch);
   for (ObjectState& object : touch->objects) make_echoes(world, object);
   snapshot.probes.resize(touch->probes.size());
-  touch->moving = find_moving(world, *touch);
   snapshot.moved = moved_snapshots(world, *touch);
   world.snapshots = std::make_unique<TripleBuffer<Snapshot>>(snapshot);
   world.touch = std::move(touch);
