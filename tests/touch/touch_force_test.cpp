@@ -51,6 +51,33 @@ TEST(Touch, ASofteningLawGivesLessAndLessPerDepthAndNeverLessForMoreDepth) {
   EXPECT_LT(last, 0.6 * d.stiffness * deepest);
 }
 
+// A law that leaves the range of numbers is felt as much as a device can render, and lets go where the tip has left.
+TEST(Touch, AForceBeyondAllNumbersIsStillAForce) {
+  for (const double deepest : {300.0, 400.0, 700.0, 800.0, 5000.0}) {  // alpha d
+    Stage stage;
+    Deformable d = frictionless(SpringLaw::kExponential);
+    d.stiffening = 1e5;
+    stage.add(scenes::sheet(40, 0.2), d);
+    const Entity probe = stage.add_probe({0.013, 0.002, 0.007});
+    stage.prepare();
+    const auto check = [&](const ProbeReading& r) {
+      const double depth = -r.position.y, force = stage.world.registry.get<Probe>(probe).force.y;
+      ASSERT_TRUE(std::isfinite(length(stage.world.registry.get<Probe>(probe).force)));
+      if (depth <= 0) ASSERT_EQ(force, 0.0);
+    };
+    double last = 0.0;
+    stage.move(probe, {0.013, -deepest / d.stiffening, 0.007}, 2.0, [&](const ProbeReading& r) {
+      check(r);
+      const double force = stage.world.registry.get<Probe>(probe).force.y;
+      ASSERT_GE(force, last);
+      if (r.position.y < 0 && d.stiffening * -r.position.y < 20) ASSERT_NEAR(force, law(d, -r.position.y), 1e-3 * force + 1e-12);
+      last = force;
+    });
+    EXPECT_GE(last, 1e8) << deepest;
+    stage.move(probe, {0.013, 0.002, 0.007}, 2.0, check);
+  }
+}
+
 TEST(Touch, StandardLinearSolidRelaxesByItsClosedForm) {
   Stage stage;
   Deformable d = frictionless(SpringLaw::kStandardLinearSolid);

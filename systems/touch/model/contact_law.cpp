@@ -41,10 +41,21 @@ double ContactLaw::potential(double depth) const {
   return half * sum;
 }
 
+ContactLaw::Limited ContactLaw::limited(double depth) const {
+  const double whole = force(depth);
+  if (whole <= kMostForce || !std::isfinite(depth)) return {whole, potential(depth)};
+  double low = 0.0, high = depth;
+  for (int i = 0; i < 100 && high - low > 1e-15 * high; ++i) {
+    const double middle = 0.5 * (low + high);
+    (force(middle) <= kMostForce ? low : high) = middle;
+  }
+  return {kMostForce, potential(low) + kMostForce * (depth - low)};
+}
+
 StoredEnergy ContactLaw::stored(double depth) const {
   StoredEnergy out;
   if (!(depth > 0)) return out;
-  const double offset = force(free_depth);
+  const double offset = std::min(force(free_depth), kMostForce);
   double from = free_depth;  // depth of zero force
   if (arm > 0) {
     // force(d) + arm (d - q) increases with d: at most zero at 0 (q, y >= 0), at least zero at max(q, y).
@@ -58,8 +69,9 @@ StoredEnergy ContactLaw::stored(double depth) const {
   }
   if (depth <= from) return out;
   const double q = relaxed_depth;
-  out.force = force(depth) - offset + arm * (depth - q);
-  out.energy = potential(depth) - potential(from) - offset * (depth - from) +
+  const Limited at = limited(depth);
+  out.force = at.force - offset + arm * (depth - q);
+  out.energy = at.potential - limited(from).potential - offset * (depth - from) +
                0.5 * arm * ((depth - q) * (depth - q) - (from - q) * (from - q));
   out.by_relaxed = -arm * (depth - from);
   return out;

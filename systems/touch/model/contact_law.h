@@ -19,6 +19,9 @@ double law_force(const RestoringLaw& law, double stiffness, double depth);
 // A painted factor (Mesh::stiffness_factor, friction_factor) at a place on the surface. [1]
 double painted(const std::vector<float>& factor, const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric);
 
+// The force of a contact no longer rises above this: squares of it stay finite, whatever the law. [N]
+inline constexpr double kMostForce = 1e9;
+
 struct StoredEnergy {
   double energy = 0.0;      // [J]  W
   double force = 0.0;       // [N]  dW/dd >= 0
@@ -37,6 +40,12 @@ struct ContactLaw {
   double slope(double depth) const;      // [N/m] of force(), arm included
   double potential(double depth) const;  // [J] its integral from 0
   StoredEnergy stored(double depth) const;
+
+ private:
+  struct Limited {
+    double force, potential;  // [N] at most kMostForce, [J] its integral from 0
+  };
+  Limited limited(double depth) const;
 };
 
 // E* = E / (1 - nu^2). [Pa]
