@@ -92,8 +92,24 @@ double BondedLayer::surface(double radii) const {
   return u;
 }
 
+namespace {
+
+// F = pi a^2 (M d / h) (1 - 2 I1(y) / (y I0(y))), y = a / l, over 2 E* a d; x = a / h.
+double thin_layer_factor(double x, double poisson) {
+  const double per_modulus = kPi * x * (1 - poisson) / 4;                 // pi a^2 / h * G / (2 E* a)
+  const double y2 = 3 * x * x * (1 - 2 * poisson) / (2 * (1 - poisson));  // (a / l)^2
+  if (y2 < 1e-4) return per_modulus * 3 * x * x * (1 - y2 / 6) / 8;  // M y^2 / 8 = 3 G x^2 / 8: it cannot be compressed
+  const double y = std::sqrt(y2);
+  const double ratio = y < 500 ? std::cyl_bessel_i(1.0, y) / std::cyl_bessel_i(0.0, y) : 1 - 0.5 / y;
+  return per_modulus * 2 * (1 - poisson) / (1 - 2 * poisson) * (1 - 2 * ratio / y);
+}
+
+}  // namespace
+
 double bonded_layer_factor(double radius_over_thickness, double poisson) {
-  return BondedLayer(radius_over_thickness, poisson).factor();
+  if (radius_over_thickness <= kThin) return BondedLayer(radius_over_thickness, poisson).factor();
+  const double rim = BondedLayer(kThin, poisson).factor() / thin_layer_factor(kThin, poisson) - 1;
+  return thin_layer_factor(radius_over_thickness, poisson) * (1 + rim * kThin / radius_over_thickness);
 }
 
 }  // namespace pliant

@@ -17,8 +17,8 @@
 
 namespace pliant {
 
-// [1] as a function of a / h, from 0 (half-space: 1); above kThinnest the value at kThinnest is used. nu from 0 to 0.5.
-inline constexpr double kThinnest = 20.0;
+// a / h from 0 (half-space: kappa 1) up to this; thinner layers are solved as if they had it. nu from 0 to 0.5.
+inline constexpr double kThinnest = 60.0;
 
 class BondedLayer {
  public:
@@ -31,6 +31,10 @@ class BondedLayer {
   double factor_ = 1.0;
 };
 
+// [1] kappa for any a / h. Above kThin from the equation of thin layers: the pressure p under the punch obeys
+//   p - l^2 (p'' + p'/r) = M d / h,   p(a) = 0,   M = 2 G (1 - nu) / (1 - 2 nu),   l^2 = M h^2 / (3 G),
+// with the rim's correction, O(h / a), of the solution at kThin.
+inline constexpr double kThin = 20.0;
 double bonded_layer_factor(double radius_over_thickness, double poisson);
 
 }  // namespace pliant
