@@ -118,11 +118,13 @@ std::vector<Key> deformable_keys() {
   keys.push_back(choice("spring", d(&D::spring), "law of the normal force"));
   keys.push_back(number("stiffness", "N/m", {R::kStiffness, {1.0, 1e5}}, d(&D::stiffness),
                         "small-depth slope of normal force against depth at the probe"));
-  keys.push_back(number("cubic", "N/m3", R::kCubic, d(&D::cubic), "k3 of the cubic law"));
+  keys.push_back(number("cubic", "N/m3", R::kCubic, d(&D::cubic),
+                        "k3 of the cubic law; with `young`, unstated: 10,000/m2 of its stiffness"));
   keys.push_back(number("stiffening", "1/m", {R::kStiffening, {-1e3, 1e4}}, d(&D::stiffening),
                         "alpha of the exponential law; below 0 it softens"));
   keys.push_back(number("relaxation.stiffness", "N/m", {R::kRelaxationStiffness, {1.0, 1e5}},
-                        d(&D::relaxation_stiffness), "arm of the standard linear solid"));
+                        d(&D::relaxation_stiffness),
+                        "arm of the standard linear solid; with `young`, unstated: its stiffness"));
   keys.push_back(number("relaxation.time", "s", {R::kRelaxationTime, {1e-3, 1e3}}, d(&D::relaxation_time),
                         "relaxation time of that arm"));
   keys.push_back(number("damping_ratio", "1", {R::kDampingRatio, {0.01, 20.0}}, d(&D::damping_ratio),
@@ -192,8 +194,23 @@ std::vector<Key> deformable_keys() {
   return keys;
 }
 
+// Constants in N/m and N/m3 are in proportion to the stiffness that follows from `young`, as their defaults are to the
+// default stiffness, unless they are stated.
+void scale_with_young(LevelNode& node) {
+  const Deformable usual;
+  Deformable& it = *node.deformable;
+  const double last = node.scaled_with_young, share = it.young > 0.0 ? it.stiffness / usual.stiffness : 1.0;
+  const auto scale = [&](const char* key, double Deformable::*constant) {
+    if (it.*constant == usual.*constant * last && !node.stated.contains(key)) it.*constant = usual.*constant * share;
+  };
+  scale("deformable.relaxation.stiffness", &Deformable::relaxation_stiffness);
+  scale("deformable.cubic", &Deformable::cubic);
+  node.scaled_with_young = share;
+}
+
 std::optional<Note> settle_deformable(void* owner) {
-  Deformable& it = *static_cast<LevelNode*>(owner)->deformable;
+  LevelNode& node = *static_cast<LevelNode*>(owner);
+  Deformable& it = *node.deformable;
   if (it.friction_sliding > it.friction_static)
     return Note{
         fmt::format("friction_sliding ({}) is above friction_static ({})", it.friction_sliding, it.friction_static),
@@ -204,6 +221,7 @@ std::optional<Note> settle_deformable(void* owner) {
                 fmt::format("it must be in the range [{}, {}] N/m", DeformableRange::kStiffness.min,
                             DeformableRange::kStiffness.max),
                 "key.value", "young"};
+  scale_with_young(node);
   return std::nullopt;
 }
 

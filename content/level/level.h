@@ -72,6 +72,7 @@ struct LevelNode {
   std::optional<NodeMotion> motion;      // PLIANT_motion
   std::int32_t source = -1;              // /nodes/i of Level::source; -1: new, for instance a copy
   std::set<std::string> stated;          // keys set by the file or --set, even to their default: deformable.shape
+  double scaled_with_young = 1.0;        // [1] factor of the deformable's unstated constants in N/m and N/m3
 
   bool has_pliant() const;  // any of the above
 };

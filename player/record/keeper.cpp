@@ -15,7 +15,7 @@ namespace pliant {
 namespace {
 
 constexpr const char* kColumns =
-    "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft,objects";
+    "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft,objects,clipped,withheld,gated,slewed";
 constexpr const char* kTorqueColumns = ",tx,ty,tz";  // only if there is a tool: probes have no torque
 
 std::string name_of(const World& world, Entity entity) {
@@ -82,6 +82,9 @@ void Keeper::keep(const TickRow& row) {
   put(line_, r.normal_force);
   put(line_, r.tangential_force);
   put(line_, row.objects);
+  for (const SafetyLimit limit :
+       {SafetyLimit::kClipped, SafetyLimit::kWithheld, SafetyLimit::kGated, SafetyLimit::kSlewed})
+    line_ += row.limited & bit(limit) ? ",1" : ",0";
   if (torque_) put(line_, row.torque);
   line_ += '\n';
   csv_->add(line_);

@@ -63,6 +63,29 @@ TEST(Extension, EveryKeyOfADeformableIsRead) {
   EXPECT_EQ(it.crease_angle, 0.4);
 }
 
+// A soft organ does not get the arm of a stiff one: with `young` the constants in N/m and N/m3 follow, unless stated.
+TEST(Extension, ConstantsFollowYoungsModulusUnlessTheyAreStated) {
+  const Deformable usual;
+  const auto of = [](const Json& keys) { return *deformable(keys).load()->nodes[0].deformable; };
+  const Deformable soft = of({{"young", 5000}, {"spring", "sls"}});
+  EXPECT_DOUBLE_EQ(soft.relaxation_stiffness / soft.stiffness, usual.relaxation_stiffness / usual.stiffness);
+  EXPECT_DOUBLE_EQ(soft.cubic / soft.stiffness, usual.cubic / usual.stiffness);
+  const Deformable stated = of({{"young", 5000}, {"cubic", 3e6}, {"relaxation", {{"stiffness", 300}}}});
+  EXPECT_EQ(stated.relaxation_stiffness, 300.0);
+  EXPECT_EQ(stated.cubic, 3e6);
+  EXPECT_EQ(of({{"stiffness", 50}}).relaxation_stiffness, usual.relaxation_stiffness);
+
+  Result<Level> level = deformable({{"young", 5000}}).load();
+  const auto now = [&] { return *level->nodes[0].deformable; };
+  EXPECT_EQ(set(*level, "*.deformable.young=10000"), "");
+  EXPECT_DOUBLE_EQ(now().relaxation_stiffness, 2 * soft.relaxation_stiffness);
+  const Json saved = node_extensions(level->nodes[0]);
+  EXPECT_FALSE(saved["PLIANT_deformable"].contains("relaxation"));
+  EXPECT_FALSE(saved["PLIANT_deformable"].contains("cubic"));
+  EXPECT_EQ(set(*level, "*.deformable.stiffness=300"), "");
+  EXPECT_EQ(now().relaxation_stiffness, usual.relaxation_stiffness);
+}
+
 TEST(Extension, YoungsModulusBecomesTheStiffnessOfAPointContact) {
   // methods.md, section 4: liver of 5.4 kPa, a = 4 mm, nu = 0.5: k = 2 E/(1-nu^2) a = 57.6 N/m.
   const Result<Level> liver = deformable({{"young", 5400}, {"poisson", 0.5}}).load();
