@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "engine/run/limits.h"
 #include "lab/files/csv.h"
 #include "player/record/plot.h"
 #include "systems/safety/safety.h"
@@ -15,7 +16,7 @@ namespace pliant {
 namespace {
 
 constexpr const char* kColumns =
-    "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft,objects,clipped,withheld,gated,slewed";
+    "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft,objects";
 constexpr const char* kTorqueColumns = ",tx,ty,tz";  // only if there is a tool: probes have no torque
 
 std::string name_of(const World& world, Entity entity) {
@@ -33,7 +34,9 @@ Result<Keeper> Keeper::create(const World& world, const std::vector<Entity>& pro
   keeper.csv_.emplace(std::move(file).value());
   keeper.torque_ =
       std::any_of(probes.begin(), probes.end(), [&](Entity hand) { return !world.registry.has<Probe>(hand); });
-  keeper.csv_->add(std::string(kColumns) + (keeper.torque_ ? kTorqueColumns : "") + '\n');
+  std::string header = kColumns;
+  for (std::size_t i = 0; i < kSafetyLimits; ++i) header += std::string(",") + key_of(static_cast<SafetyLimit>(i));
+  keeper.csv_->add(header + (keeper.torque_ ? kTorqueColumns : "") + '\n');
   for (std::size_t i = 0; i < probes.size(); ++i) {
     ProbeSummary summary;
     summary.name = name_of(world, probes[i]);
@@ -82,9 +85,8 @@ void Keeper::keep(const TickRow& row) {
   put(line_, r.normal_force);
   put(line_, r.tangential_force);
   put(line_, row.objects);
-  for (const SafetyLimit limit :
-       {SafetyLimit::kClipped, SafetyLimit::kWithheld, SafetyLimit::kGated, SafetyLimit::kSlewed})
-    line_ += row.limited & bit(limit) ? ",1" : ",0";
+  for (std::size_t i = 0; i < kSafetyLimits; ++i)
+    line_ += row.limited & bit(static_cast<SafetyLimit>(i)) ? ",1" : ",0";
   if (torque_) put(line_, row.torque);
   line_ += '\n';
   csv_->add(line_);

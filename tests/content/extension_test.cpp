@@ -79,7 +79,7 @@ TEST(Extension, ConstantsFollowYoungsModulusUnlessTheyAreStated) {
   const auto now = [&] { return *level->nodes[0].deformable; };
   EXPECT_EQ(set(*level, "*.deformable.young=10000"), "");
   EXPECT_DOUBLE_EQ(now().relaxation_stiffness, 2 * soft.relaxation_stiffness);
-  const Json saved = node_extensions(level->nodes[0]);
+  const Json saved = node_extensions(level->nodes[0], Json::object());
   EXPECT_FALSE(saved["PLIANT_deformable"].contains("relaxation"));
   EXPECT_FALSE(saved["PLIANT_deformable"].contains("cubic"));
   EXPECT_EQ(set(*level, "*.deformable.stiffness=300"), "");
