@@ -71,8 +71,8 @@ StoredEnergy ContactLaw::stored(double depth) const {
   const double q = relaxed_depth;
   const Limited at = limited(depth);
   out.force = at.force - offset + arm * (depth - q);
-  out.energy = at.potential - limited(from).potential - offset * (depth - from) +
-               0.5 * arm * ((depth - q) * (depth - q) - (from - q) * (from - q));
+  out.by_arm = 0.5 * ((depth - q) * (depth - q) - (from - q) * (from - q));  // the force at `from` is zero
+  out.energy = at.potential - limited(from).potential - offset * (depth - from) + arm * out.by_arm;
   out.by_relaxed = -arm * (depth - from);
   return out;
 }

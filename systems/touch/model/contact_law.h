@@ -26,6 +26,7 @@ struct StoredEnergy {
   double energy = 0.0;      // [J]  W
   double force = 0.0;       // [N]  dW/dd >= 0
   double by_relaxed = 0.0;  // [N]  dW/dq <= 0
+  double by_arm = 0.0;      // [m2] dW/dk1
 };
 
 struct ContactLaw {

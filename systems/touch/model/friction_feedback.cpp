@@ -11,6 +11,7 @@
 #include "systems/touch/model/contact_law.h"
 #include "systems/touch/model/field_kernels.h"
 #include "systems/touch/model/friction.h"
+#include "systems/touch/model/smooth_paint.h"
 #include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
@@ -67,12 +68,12 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
   const FootBlend& place = pressing.source->place;
   const Contact& contact = *pressing.contact;
   const double depth = -contact.height;
-  pressing.stiffness = painted(place, mesh, mesh.stiffness_factor);
+  pressing.stiffness = smooth_painted(place, mesh, object.felt_stiffness);
   ContactLaw law = contact_law(deformable, object.motion, pressing.stiffness.value, pressing.source->tip.radius);
   law.free_depth = std::max(-contact.free_height, contact.unpushed);
   Painted relaxed{0.0, dvec3(0)}, relaxation;
   if (!field.arm.empty() && law.arm > 0) {
-    relaxation = painted(place, mesh, mesh.relaxation_factor);
+    relaxation = smooth_painted(place, mesh, object.felt_relaxation);
     law.arm *= relaxation.value;
     relaxed = relaxed_depth(place, mesh, object.motion, field);
     if (relaxed.value < 0) relaxed = {0.0, dvec3(0)};  // no tensile force
@@ -83,10 +84,12 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
   const double least = kLeastDepth * deformable.reach;
   if (!(pressing.stored.energy > 0.5 * law.stiffness * least * least)) return false;
   out.energy = pressing.stored.energy;
-  // W is proportional to the painted stiffness; its dependence on q adds q's slope.
+  // W is proportional to the painted stiffness; its dependence on q adds q's slope, that of the arm's own paint its
+  // slope.
   out.pull = pressing.stored.force * place.gradient -
              (pressing.stored.energy / std::max(pressing.stiffness.value, 1e-12)) * pressing.stiffness.gradient -
-             pressing.stored.by_relaxed * relaxed.gradient;
+             pressing.stored.by_relaxed * relaxed.gradient -
+             pressing.stored.by_arm * (law.arm / std::max(relaxation.value, 1e-12)) * relaxation.gradient;
   out.p = place.p;
   out.normal = place.normal;
   out.moves = place.moves;

@@ -12,6 +12,7 @@
 #include "systems/touch/collide/seams.h"
 #include "systems/touch/model/field.h"
 #include "systems/touch/model/force_field.h"
+#include "systems/touch/model/smooth_paint.h"
 
 namespace pliant {
 namespace {
@@ -193,7 +194,10 @@ ObjectState make_object(World& world, Entity entity, const Pose& pose, double dt
   object.motion = motion(deformable, dt);
   object.painted = paint_motion(object.motion, mesh);
   const double reach = std::max(deformable.reach, kLeastReach * static_cast<double>(mesh.mean_edge));
-  object.kernel = share_kernel(deformable.shape, reach, deformable.volume, contact_radius(deformable, reach) / reach);
+  const double contact = contact_radius(deformable, reach);
+  object.kernel = share_kernel(deformable.shape, reach, deformable.volume, contact / reach);
+  object.felt_stiffness = felt_paint(mesh, mesh.stiffness_factor, contact);
+  object.felt_relaxation = felt_paint(mesh, mesh.relaxation_factor, contact);
   object.searched.assign(tips, dvec3(std::numeric_limits<double>::max()));
   object.world_box = touch_box(mesh, pose);
   object.zone_sources.assign(mesh.zone_count(), 0);

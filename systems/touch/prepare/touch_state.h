@@ -128,6 +128,8 @@ struct ObjectState {
   Entity entity;
   Motion motion;  // of unpainted vertices
   PaintedMotion painted;
+  std::vector<float> felt_stiffness;   // the painted factors as a contact feels them (smooth_paint.h)
+  std::vector<float> felt_relaxation;
   SeamsFound found;                         // all that may be; the next lists have those that are closed now
   std::vector<Seam> seams;                  // by edge, ascending
   std::vector<SeamZones> seam_zones;        // to other objects, each pair once

@@ -1,0 +1,182 @@
+#include "systems/touch/model/smooth_paint.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "systems/touch/collide/around_vertex.h"
+#include "systems/touch/collide/box_tree.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kFewest = 10;  // vertices of a regression
+
+// A vertex's value, and its gradient limited to the range of the ring. [1], per metre
+struct VertexPaint {
+  double value = 0.0;
+  dvec3 gradient{0};
+};
+
+template <class Visit>
+void visit_ring(const Mesh& mesh, std::uint32_t vertex, std::uint32_t triangle, Visit visit) {
+  around_vertex(mesh, vertex, triangle, [&](std::uint32_t t) {
+    for (int i = 0; i < 3; ++i)
+      if (const std::uint32_t v = mesh.triangles[t][i]; v != vertex) visit(v);
+  });
+}
+
+VertexPaint vertex_paint(const Mesh& mesh, const std::vector<float>& factor, std::uint32_t vertex,
+                         std::uint32_t triangle) {
+  const double value = factor[vertex];
+  const dvec3 p(mesh.position(vertex));
+  double low = value, high = value;
+  dmat3 moments(0.0);
+  dvec3 right(0);
+  visit_ring(mesh, vertex, triangle, [&](std::uint32_t v) {
+    const double other = factor[v];
+    low = std::min(low, other);
+    high = std::max(high, other);
+    const dvec3 e = dvec3(mesh.position(v)) - p;
+    const double weight = 1 / std::max(dot(e, e), 1e-300);
+    moments += weight * glm::outerProduct(e, e);
+    right += weight * (other - value) * e;
+  });
+  if (low == high) return {value, dvec3(0)};
+  // A flat ring says nothing across it: the least gradient.
+  moments += 1e-9 * (moments[0][0] + moments[1][1] + moments[2][2]) * dmat3(1.0);
+  const dvec3 gradient = glm::inverse(moments) * right;
+  double share = 1.0;
+  visit_ring(mesh, vertex, triangle, [&](std::uint32_t v) {
+    const double step = dot(gradient, dvec3(mesh.position(v)) - p) / 3;
+    if (value + share * step > high) share = (high - value) / step;
+    if (value + share * step < low) share = (low - value) / step;
+  });
+  return {value, share * gradient};
+}
+
+// Value at b and its derivatives by the barycentric coordinates.
+struct CubicAt {
+  double value;
+  std::array<double, 3> slope;
+};
+
+CubicAt clough_tocher(const std::array<dvec3, 3>& p, const std::array<VertexPaint, 3>& at, dvec3 b) {
+  // Ordinates: corner[i] at vertex i, towards[i][j] next to it on the edge to j, inward[i] next to it on the line to
+  // the centroid, middle[i] between the edge opposite of i and the centroid, outward[i] next to the centroid.
+  double corner[3], towards[3][3], inward[3], middle[3], outward[3];
+  for (int i = 0; i < 3; ++i) {
+    corner[i] = at[i].value;
+    for (int j = 0; j < 3; ++j) towards[i][j] = corner[i] + dot(at[i].gradient, p[j] - p[i]) / 3;
+    inward[i] = (corner[i] + towards[i][(i + 1) % 3] + towards[i][(i + 2) % 3]) / 3;
+  }
+  const dvec3 centre = (p[0] + p[1] + p[2]) / 3.0;
+  for (int i = 0; i < 3; ++i) {  // the derivative across edge jk is linear along it
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const dvec3 e = p[k] - p[j];
+    const double s = std::clamp(dot(centre - p[j], e) / std::max(dot(e, e), 1e-300), 0.0, 1.0);
+    middle[i] = 0.5 * (inward[j] + inward[k] - (1 - s) * (corner[j] + towards[k][j] - 2 * towards[j][k]) -
+                       s * (towards[j][k] + corner[k] - 2 * towards[k][j]));
+  }
+  for (int i = 0; i < 3; ++i) outward[i] = (inward[i] + middle[(i + 1) % 3] + middle[(i + 2) % 3]) / 3;
+  const double top = (outward[0] + outward[1] + outward[2]) / 3;
+
+  // The part opposite of corner m, by its own coordinates: u at j, v at k, w at the centroid.
+  int m = 0;
+  for (int i = 1; i < 3; ++i)
+    if (b[i] < b[m]) m = i;
+  const int j = (m + 1) % 3, k = (m + 2) % 3;
+  const double u = b[j] - b[m], v = b[k] - b[m], w = 3 * b[m];
+  // One step of de Casteljau leaves a quadratic in three corners, whose values are the derivatives' thirds.
+  const auto quadratic = [&](double uu, double vv, double ww, double uv, double vw, double uw) {
+    return u * u * uu + v * v * vv + w * w * ww + 2 * (u * v * uv + v * w * vw + u * w * uw);
+  };
+  const double by_u = quadratic(corner[j], towards[k][j], outward[j], towards[j][k], middle[m], inward[j]);
+  const double by_v = quadratic(towards[j][k], corner[k], outward[k], towards[k][j], inward[k], middle[m]);
+  const double by_w = quadratic(inward[j], inward[k], top, middle[m], outward[k], outward[j]);
+  CubicAt out;
+  out.value = u * by_u + v * by_v + w * by_w;
+  out.slope[j] = 3 * by_u;
+  out.slope[k] = 3 * by_v;
+  out.slope[m] = 3 * (3 * by_w - by_u - by_v);
+  return out;
+}
+
+}  // namespace
+
+std::vector<float> felt_paint(const Mesh& mesh, const std::vector<float>& factor, double radius) {
+  std::vector<float> felt = factor;
+  if (factor.empty()) return felt;
+  std::vector<float> low(mesh.zone_count()), high(mesh.zone_count());
+  for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {
+    const auto [least, most] =
+        std::minmax_element(factor.begin() + mesh.zone_begin(zone), factor.begin() + mesh.zone_end(zone));
+    low[zone] = *least;
+    high[zone] = *most;
+  }
+  const BoxTree zones(mesh.zone_box);
+  const vec3 r(static_cast<float>(radius));
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {
+    const Box& box = mesh.zone_box[zone];
+    near.clear();
+    float least = low[zone], most = high[zone];
+    zones.visit(Box{box.min - r, box.max + r}, [&](std::uint32_t other) {
+      near.push_back(other);
+      least = std::min(least, low[other]);
+      most = std::max(most, high[other]);
+    });
+    std::sort(near.begin(), near.end());
+    if (least == most) continue;
+    for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
+      const dvec3 p(mesh.position(v)), n(mesh.normal(v));
+      const dvec3 along = normalize(cross(n, std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0))),
+                  aside = cross(n, along);
+      dmat3 moments(0.0);
+      dvec3 right(0);
+      double smallest = factor[v], largest = factor[v];
+      int count = 0;
+      for (const std::uint32_t other : near)
+        for (std::uint32_t i = mesh.zone_begin(other); i < mesh.zone_end(other); ++i) {
+          const dvec3 d = dvec3(mesh.position(i)) - p;
+          const double u = 1 - dot(d, d) / (radius * radius);
+          if (u <= 0 || dot(dvec3(mesh.normal(i)), n) <= 0) continue;
+          const double weight = u * u * double{mesh.area[i]}, value = factor[i];
+          const dvec3 basis(1, dot(d, along) / radius, dot(d, aside) / radius);
+          moments += weight * glm::outerProduct(basis, basis);
+          right += weight * value * basis;
+          smallest = std::min(smallest, value);
+          largest = std::max(largest, value);
+          ++count;
+        }
+      if (count < kFewest || smallest == largest) continue;
+      moments += 1e-12 * moments[0][0] * dmat3(1.0);
+      felt[v] = static_cast<float>(std::clamp((glm::inverse(moments) * right).x, smallest, largest));
+    }
+  }
+  return felt;
+}
+
+Painted smooth_painted(const FootBlend& blend, const Mesh& mesh, const std::vector<float>& factor) {
+  if (factor.empty()) return {};
+  Painted sum{0.0, dvec3(0)};
+  for (std::uint32_t f = 0; f < blend.count; ++f) {
+    const Foot& foot = blend.foot[f];
+    const uvec3 t = mesh.triangles[foot.triangle];
+    std::array<dvec3, 3> p;
+    std::array<VertexPaint, 3> at;
+    for (int i = 0; i < 3; ++i) {
+      const auto corner = static_cast<std::size_t>(i);
+      p[corner] = dvec3(mesh.position(t[i]));
+      at[corner] = vertex_paint(mesh, factor, t[i], foot.triangle);
+    }
+    const CubicAt here = clough_tocher(p, at, foot.barycentric);
+    dvec3 gradient(0);
+    for (std::size_t i = 0; i < 3; ++i) gradient += here.slope[i] * foot.shifts[i];
+    sum.value += blend.weight[f] * here.value;
+    sum.gradient += blend.weight[f] * gradient + here.value * blend.weight_slope[f];
+  }
+  return sum;
+}
+
+}  // namespace pliant

@@ -1,0 +1,22 @@
+// A painted map as a contact feels it: a value with a continuous gradient, so that no force steps where the tip crosses
+// an edge of the mesh, and of the same width on every mesh.
+#pragma once
+
+#include <vector>
+
+#include "systems/touch/collide/foot_blend.h"
+
+namespace pliant {
+
+// The map without detail that a contact cannot resolve: at each vertex the regression plane of the values within
+// `radius` [m] on its side of the surface (weights: area times (1 - r2/R2)^2). A vertex with too few others there keeps
+// its value. Empty for an empty map.
+std::vector<float> felt_paint(const Mesh& mesh, const std::vector<float>& factor, double radius);
+
+// Value and gradient by x at the blended place. On each triangle the reduced Clough-Tocher cubic (Clough & Tocher 1965;
+// ordinates as in Farin, Triangular Bernstein-Bezier patches, 1986), from values and least-squares gradients at the
+// vertices: exact for linear maps and continuously differentiable over edges of a flat mesh. Gradients are limited so
+// that no value leaves the range of its neighbours.
+Painted smooth_painted(const FootBlend& blend, const Mesh& mesh, const std::vector<float>& factor);
+
+}  // namespace pliant
