@@ -25,6 +25,7 @@
 #include "systems/prepare_world.h"
 #include "systems/soft/under_gravity.h"
 #include "systems/touch/model/local_model.h"
+#include "systems/touch/prepare/nested.h"
 #include "systems/visual/field_cost.h"
 
 namespace pliant {
@@ -333,6 +334,7 @@ Outcome make_world(const RunOptions& options, bool windowed, Level& level, std::
   say_unmoved(windowed, run);
   if (windowed) keep_one_mouse(sources, run);
   if (const auto unfelt = unfelt_bodies(run.world)) say(run, *unfelt);
+  for (const Note& nested : explain_nested(run.world)) say(run, nested);
   say_creeping(run);
   say_locking(run);
   return {};
