@@ -10,18 +10,10 @@ namespace {
 
 constexpr std::uint32_t kTried = 16;  // vertices, spread over the inner surface
 
-bool encloses(const Box& outer, const Box& inner) {
-  for (int i = 0; i < 3; ++i)
-    if (inner.min[i] < outer.min[i] || inner.max[i] > outer.max[i]) return false;
-  return true;
-}
-
 bool is_inside(const World& world, const ObjectState& outer, const ObjectState& inner) {
   const Mesh &around = world.meshes[world.registry.get<Deformable>(outer.entity).mesh],
              &mesh = world.meshes[world.registry.get<Deformable>(inner.entity).mesh];
-  if (!around.closed || outer.world_box.empty() || inner.world_box.empty() ||
-      !encloses(outer.world_box, inner.world_box))
-    return false;
+  if (!around.closed || outer.world_box.empty() || inner.world_box.empty()) return false;
   const Pose &to = world.registry.get<Pose>(outer.entity), &from = world.registry.get<Pose>(inner.entity);
   const auto size = static_cast<double>(around.box.diagonal());
   for (std::uint32_t i = 0; i < kTried; ++i) {
