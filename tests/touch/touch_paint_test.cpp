@@ -107,6 +107,50 @@ TEST(TouchPaint, AStepIsFeltTheSameOnEveryMesh) {
   for (const double peak : peaks) EXPECT_NEAR(peak, peaks[0], 0.05 * peaks[0]);
 }
 
+// Two flush nodes, one six times as stiff: a ridge as if it were painted. On meshes that do not meet at their vertices,
+// too.
+TEST(TouchPaint, AJumpOverASeamIsARidgeAsIfItWerePainted) {
+  const auto step = [](double x, double) { return x < 1e-9 ? 1.0 : 6.0; };
+  Deformable soft = frictionless(), stiff = soft;
+  soft.reach = stiff.reach = 0.02;
+  soft.stiffness = 300;
+  stiff.stiffness = 1800;
+  const std::vector<Felt> painted = slide(painted_sheet(96, false, step), 0.02, 0.0013, 0.02);
+  for (const int cells : {96, 77}) {
+    Stage stage;
+    stage.add(scenes::sheet(96, kWide), soft, Pose{{-0.5 * kWide, 0, 0}});
+    stage.add(scenes::sheet(cells, kWide), stiff, Pose{{0.5 * kWide, 0, 0}});
+    const Entity probe = stage.add_probe({-0.02, 0.001, 0.0013});
+    stage.prepare();
+    stage.move(probe, {-0.02, -kDeep, 0.0013}, 0.2);
+    std::vector<Felt> there, back;
+    const auto note = [&](std::vector<Felt>& felt) {
+      return [&](const ProbeReading& r) {
+        const dvec3 f = raw_force(stage, probe);
+        felt.push_back({r.position.x, f.x, f.y});
+      };
+    };
+    stage.move(probe, {0.02, -kDeep, 0.0013}, 2.0, note(there));
+    stage.move(probe, {-0.02, -kDeep, 0.0013}, 2.0, note(back));
+    EXPECT_NEAR(there.back().normal, 1800 * kDeep, 1e-4);
+    EXPECT_NEAR(back.back().normal, 300 * kDeep, 1e-4);
+    EXPECT_NEAR(most(there, &Felt::along), most(painted, &Felt::along), 0.15 * most(painted, &Felt::along)) << cells;
+    const double energy = 0.5 * kDeep * kDeep * 1500;
+    double work = 0;
+    for (const auto* way : {&there, &back}) {
+      double most_normal = 0, one_way = 0;
+      for (std::size_t i = 1; i < way->size(); ++i) {
+        one_way += 0.5 * ((*way)[i].along + (*way)[i - 1].along) * ((*way)[i].x - (*way)[i - 1].x);
+        most_normal = std::max(most_normal, std::abs((*way)[i].normal - (*way)[i - 1].normal));
+      }
+      EXPECT_NEAR(std::abs(one_way), energy, 0.03 * energy) << cells;
+      EXPECT_LT(most_normal, 0.03 * 1500 * kDeep) << cells << ": no step at the seam";
+      work += one_way;
+    }
+    EXPECT_LT(std::abs(work), 0.02 * energy) << cells;
+  }
+}
+
 TEST(TouchPaint, ARampIsExactToTheBorder) {
   const auto ramp = [](double x, double z) { return 2 + 10 * x - 4 * z; };
   for (const int cells : {6, 48}) {

@@ -68,7 +68,8 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
   const FootBlend& place = pressing.source->place;
   const Contact& contact = *pressing.contact;
   const double depth = -contact.height;
-  pressing.stiffness = smooth_painted(place, mesh, object.felt_stiffness);
+  const bool flush = !object.flush_stiffness.empty() && !object.neighbours.empty();
+  pressing.stiffness = smooth_painted(place, mesh, flush ? object.flush_stiffness : object.felt_stiffness);
   ContactLaw law = contact_law(deformable, object.motion, pressing.stiffness.value, pressing.source->tip.radius);
   law.free_depth = std::max(-contact.free_height, contact.unpushed);
   Painted relaxed{0.0, dvec3(0)}, relaxation;

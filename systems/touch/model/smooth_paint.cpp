@@ -104,54 +104,112 @@ CubicAt clough_tocher(const std::array<dvec3, 3>& p, const std::array<VertexPain
 
 }  // namespace
 
-std::vector<float> felt_paint(const Mesh& mesh, const std::vector<float>& factor, double radius) {
-  std::vector<float> felt = factor;
-  if (factor.empty()) return felt;
-  std::vector<float> low(mesh.zone_count()), high(mesh.zone_count());
-  for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {
-    const auto [least, most] =
-        std::minmax_element(factor.begin() + mesh.zone_begin(zone), factor.begin() + mesh.zone_end(zone));
-    low[zone] = *least;
-    high[zone] = *most;
+namespace {
+
+float at(const std::vector<float>& factor, std::uint32_t v) {
+  return factor.empty() ? 1.0f : factor[v];
+}
+
+// Values around a vertex: sums of a regression plane.
+struct Regression {
+  dvec3 p, n, along, aside;
+  double radius;
+  dmat3 moments{0.0};
+  dvec3 right{0};
+  double low, high;
+  int count = 0;
+
+  Regression(dvec3 place, dvec3 normal, double reach, double value)
+      : p(place),
+        n(normal),
+        along(normalize(cross(normal, std::abs(normal.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)))),
+        aside(cross(normal, along)),
+        radius(reach),
+        low(value),
+        high(value) {}
+
+  void add(dvec3 place, dvec3 normal, double area, double value) {
+    const dvec3 d = place - p;
+    const double u = 1 - dot(d, d) / (radius * radius);
+    if (u <= 0 || dot(normal, n) <= 0) return;
+    const double weight = u * u * area;
+    const dvec3 basis(1, dot(d, along) / radius, dot(d, aside) / radius);
+    moments += weight * glm::outerProduct(basis, basis);
+    right += weight * value * basis;
+    low = std::min(low, value);
+    high = std::max(high, value);
+    ++count;
   }
-  const BoxTree zones(mesh.zone_box);
+  double value(double own) const {
+    if (count < kFewest || low == high) return own;
+    const dmat3 regular = moments + 1e-12 * moments[0][0] * dmat3(1.0);
+    return std::clamp((glm::inverse(regular) * right).x, low, high);
+  }
+};
+
+// Zones of a mesh with the range of their values, in another's frame.
+struct PaintedZones {
+  const Mesh& mesh;
+  const std::vector<float>& factor;
+  Pose place;
+  double value;
+  std::vector<Box> boxes;
+  std::vector<float> low, high;
+  BoxTree tree;
+
+  PaintedZones(const Mesh& of, const std::vector<float>& painted, const Pose& pose, double whole)
+      : mesh(of), factor(painted), place(pose), value(whole) {
+    for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {
+      float least = at(factor, mesh.zone_begin(zone)), most = least;
+      Box box;
+      for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
+        least = std::min(least, at(factor, v));
+        most = std::max(most, at(factor, v));
+        box.add(vec3(place.to_world(dvec3(mesh.position(v)))));
+      }
+      boxes.push_back(box);
+      low.push_back(least * static_cast<float>(value));
+      high.push_back(most * static_cast<float>(value));
+    }
+    tree.build(boxes);
+  }
+  void add(std::uint32_t zone, Regression& sums) const {
+    for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v)
+      sums.add(place.to_world(dvec3(mesh.position(v))), place.rotation * dvec3(mesh.normal(v)), double{mesh.area[v]},
+               value * double{at(factor, v)});
+  }
+};
+
+}  // namespace
+
+std::vector<float> felt_paint(const Mesh& mesh, const std::vector<float>& factor, double radius,
+                              const std::vector<FlushPaint>& flush) {
+  const bool even = std::all_of(flush.begin(), flush.end(),
+                                [](const FlushPaint& other) { return other.value == 1.0 && other.factor->empty(); });
+  if (factor.empty() && even) return {};
+  std::vector<PaintedZones> surfaces;
+  surfaces.emplace_back(mesh, factor, Pose{}, 1.0);
+  for (const FlushPaint& other : flush) surfaces.emplace_back(*other.mesh, *other.factor, other.place, other.value);
+  std::vector<float> felt = factor;
+  if (felt.empty()) felt.assign(mesh.px.size(), 1.0f);
+  std::vector<std::pair<const PaintedZones*, std::uint32_t>> near;
   const vec3 r(static_cast<float>(radius));
-  std::vector<std::uint32_t> near;
   for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {
-    const Box& box = mesh.zone_box[zone];
+    const Box& box = surfaces[0].boxes[zone];
+    float least = surfaces[0].low[zone], most = surfaces[0].high[zone];
     near.clear();
-    float least = low[zone], most = high[zone];
-    zones.visit(Box{box.min - r, box.max + r}, [&](std::uint32_t other) {
-      near.push_back(other);
-      least = std::min(least, low[other]);
-      most = std::max(most, high[other]);
-    });
-    std::sort(near.begin(), near.end());
+    for (const PaintedZones& surface : surfaces)
+      surface.tree.visit(Box{box.min - r, box.max + r}, [&](std::uint32_t other) {
+        near.emplace_back(&surface, other);
+        least = std::min(least, surface.low[other]);
+        most = std::max(most, surface.high[other]);
+      });
     if (least == most) continue;
+    std::sort(near.begin(), near.end());
     for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
-      const dvec3 p(mesh.position(v)), n(mesh.normal(v));
-      const dvec3 along = normalize(cross(n, std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0))),
-                  aside = cross(n, along);
-      dmat3 moments(0.0);
-      dvec3 right(0);
-      double smallest = factor[v], largest = factor[v];
-      int count = 0;
-      for (const std::uint32_t other : near)
-        for (std::uint32_t i = mesh.zone_begin(other); i < mesh.zone_end(other); ++i) {
-          const dvec3 d = dvec3(mesh.position(i)) - p;
-          const double u = 1 - dot(d, d) / (radius * radius);
-          if (u <= 0 || dot(dvec3(mesh.normal(i)), n) <= 0) continue;
-          const double weight = u * u * double{mesh.area[i]}, value = factor[i];
-          const dvec3 basis(1, dot(d, along) / radius, dot(d, aside) / radius);
-          moments += weight * glm::outerProduct(basis, basis);
-          right += weight * value * basis;
-          smallest = std::min(smallest, value);
-          largest = std::max(largest, value);
-          ++count;
-        }
-      if (count < kFewest || smallest == largest) continue;
-      moments += 1e-12 * moments[0][0] * dmat3(1.0);
-      felt[v] = static_cast<float>(std::clamp((glm::inverse(moments) * right).x, smallest, largest));
+      Regression sums(dvec3(mesh.position(v)), dvec3(mesh.normal(v)), radius, double{felt[v]});
+      for (const auto& [surface, other] : near) surface->add(other, sums);
+      felt[v] = static_cast<float>(sums.value(double{at(factor, v)}));
     }
   }
   return felt;

@@ -4,14 +4,24 @@
 
 #include <vector>
 
+#include "components/transform.h"
 #include "systems/touch/collide/foot_blend.h"
 
 namespace pliant {
 
+// A surface flush with the mesh, beyond its border: the stiffer or softer side of a seam.
+struct FlushPaint {
+  const Mesh* mesh = nullptr;
+  Pose place;          // in the frame of the mesh
+  double value = 1.0;  // [1] of the unpainted flush surface, relative to the unpainted mesh
+  const std::vector<float>* factor = nullptr;
+};
+
 // The map without detail that a contact cannot resolve: at each vertex the regression plane of the values within
-// `radius` [m] on its side of the surface (weights: area times (1 - r2/R2)^2). A vertex with too few others there keeps
-// its value. Empty for an empty map.
-std::vector<float> felt_paint(const Mesh& mesh, const std::vector<float>& factor, double radius);
+// `radius` [m] on its side of the surface and of those flush with it (weights: area times (1 - r2/R2)^2). A vertex with
+// too few others there keeps its value. Empty if it is 1 everywhere.
+std::vector<float> felt_paint(const Mesh& mesh, const std::vector<float>& factor, double radius,
+                              const std::vector<FlushPaint>& flush = {});
 
 // Value and gradient by x at the blended place. On each triangle the reduced Clough-Tocher cubic (Clough & Tocher 1965;
 // ordinates as in Farin, Triangular Bernstein-Bezier patches, 1986), from values and least-squares gradients at the

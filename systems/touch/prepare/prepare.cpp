@@ -249,6 +249,32 @@ void make_sources(World& world, TouchState& touch, std::size_t contacts) {
   }
 }
 
+// Stiffness over seams that are closed at the start, so that a jump from one surface to the other is a ridge as wide as
+// a contact, like one that is painted.
+void feel_over_seams(const World& world, TouchState& touch) {
+  const Registry& registry = world.registry;
+  for (ObjectState& object : touch.objects) {
+    const Deformable& here = registry.get<Deformable>(object.entity);
+    const Pose& pose = registry.get<Pose>(object.entity);
+    std::vector<FlushPaint> flush;
+    for (const std::uint32_t slot : object.neighbours) {
+      const ObjectState& other = touch.objects[slot];
+      if (&other == &object) continue;
+      const Deformable& there = registry.get<Deformable>(other.entity);
+      const Pose& at = registry.get<Pose>(other.entity);
+      const dquat back = glm::conjugate(pose.rotation);
+      flush.push_back({&world.meshes[there.mesh],
+                       {back * (at.position - pose.position), back * at.rotation},
+                       there.stiffness / here.stiffness,
+                       &world.meshes[there.mesh].stiffness_factor});
+    }
+    if (flush.empty()) continue;
+    const Mesh& mesh = world.meshes[here.mesh];
+    const double reach = std::max(here.reach, kLeastReach * static_cast<double>(mesh.mean_edge));
+    object.flush_stiffness = felt_paint(mesh, mesh.stiffness_factor, contact_radius(here, reach), flush);
+  }
+}
+
 }  // namespace
 
 Box touch_box(const Mesh& mesh, const Pose& pose) {
@@ -290,6 +316,7 @@ Status prepare_touch(World& world) {
   touch->object_boxes.build(boxes);
   touch->moving = find_moving(world, *touch);
   find_seams(world, *touch);
+  feel_over_seams(world, *touch);
   for (ObjectState& object : touch->objects)
     list_creases(world.meshes[registry.get<Deformable>(object.entity).mesh], object);
   make_sources(world, *touch, tips.contacts);

@@ -130,6 +130,7 @@ struct ObjectState {
   PaintedMotion painted;
   std::vector<float> felt_stiffness;   // the painted factors as a contact feels them (smooth_paint.h)
   std::vector<float> felt_relaxation;
+  std::vector<float> flush_stiffness;  // the same while its seams are closed: that of what is flush with it counts too
   SeamsFound found;                         // all that may be; the next lists have those that are closed now
   std::vector<Seam> seams;                  // by edge, ascending
   std::vector<SeamZones> seam_zones;        // to other objects, each pair once
