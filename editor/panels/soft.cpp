@@ -402,13 +402,14 @@ class SoftPanel : public Panel {
         if (of.soft_body->under_gravity == UnderGravity::kModelled && sag->held)
           unloaded = find_unloaded((*shared)->body, *of.soft_body, gravity, token);
       }
-      const std::string doubt = sag ? sag_doubt(*of.soft_body, *sag, unloaded ? &*unloaded : nullptr) : std::string();
+      const std::optional<Note> doubt =
+          sag ? sag_doubt(*of.soft_body, *sag, unloaded ? &*unloaded : nullptr) : std::nullopt;
       return [this, shared, frame, sag, unloaded, doubt](Editor&) {
         trouble_.reset();
         preview_.reset();
         sag_ = sag;
         unloaded_ = unloaded;
-        doubt_ = doubt;
+        doubt_ = doubt ? doubt->message() : std::string();
         if (*shared)
           preview_ = std::move(**shared);
         else

@@ -161,10 +161,10 @@ void SessionRun::restore_parameters() {
 
 Status SessionRun::prepare_spawned() {
   begin_part(0.7, 1.0);
-  const std::vector<std::string> found = tissue_findings(world);
+  const std::vector<Note> found = tissue_findings(world);
   if (Status s = prepare_world(world); !s) return s;
-  for (std::string& sentence : tissue_findings(world))
-    if (std::find(found.begin(), found.end(), sentence) == found.end()) notes.push_back(std::move(sentence));
+  for (const Note& note : tissue_findings(world))
+    if (std::find(found.begin(), found.end(), note) == found.end()) notes.push_back(note.message());
   for (std::string& sentence : make_orbits(world)) notes.push_back(std::move(sentence));
   return Done{};
 }
