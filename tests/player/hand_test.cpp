@@ -25,7 +25,7 @@ TEST(Hand, WordsAreTakenApart) {
   EXPECT_EQ(hand_words("omni").file, "");
 }
 
-// Quick subset of docs/devices/simulated.md's table.
+// Quick subset of `pliant study hand`.
 TEST(Hand, DemoOrganIsStableInEveryShippedDevice) {
   for (const DeviceProfile& profile : device_profiles()) {
     const auto run = run_hand("three_probes", profile.name, 0.0, true, 2.5);

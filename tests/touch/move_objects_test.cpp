@@ -253,6 +253,45 @@ TEST(MoveObjects, AProbeAtRestIsFoundByASurfaceThatComesToIt) {
   }
 }
 
+// A sheet has no thickness: it passes the probe between two ticks. Straight, and as a door that turns.
+TEST(MoveObjects, AProbeAtRestIsFoundByASheetThatPassesItInATick) {
+  for (const double radius : {0.0, 0.004})
+    for (const double speed : {0.001, 0.01, 0.1, 1.0, 10.0}) {
+      Stage stage;
+      Deformable deformable;
+      deformable.stiffness = 200;
+      deformable.reach = 0.02;
+      deformable.friction_static = deformable.friction_sliding = 0.0;
+      const Entity sheet = stage.add(scenes::sheet(12, 0.1), deformable);
+      PrescribedMotion motion;
+      const double rise = 0.0153, duration = rise / speed;
+      motion.translation = {Interpolation::kLinear, {0.0, duration}, {dvec4(0), dvec4(0, rise, 0, 0)}, duration};
+      motion.repeats = false;
+      stage.carry(sheet, motion);
+      const Entity probe = stage.add_probe({0.003, 0.01 + radius, 0.002}, radius);
+      stage.prepare();
+      stage.wait(duration + 0.01);
+      EXPECT_NEAR(stage.world.registry.get<Probe>(probe).force.y, 200 * 0.0053, 1e-4) << radius << ' ' << speed;
+    }
+  for (const double turns : {0.1, 1.0, 20.0}) {  // a second, up to 0.13 rad a tick
+    Stage stage;
+    Deformable deformable;
+    deformable.stiffness = 200;
+    deformable.reach = 0.02;
+    deformable.friction_static = deformable.friction_sliding = 0.0;
+    const Entity door = stage.add(scenes::sheet(12, 0.4), deformable);
+    PrescribedMotion motion;
+    motion.rotation = turning({0, 0, 1}, 0.25 / turns, 1);
+    motion.repeats = false;
+    stage.carry(door, motion);
+    const double angle = 0.5 * kPi - 0.03;  // the door turns 0.03 rad past the probe
+    const Entity probe = stage.add_probe(0.15 * dvec3(std::cos(angle), std::sin(angle), 0.1));
+    stage.prepare();
+    stage.wait(0.25 / turns + 0.01);
+    EXPECT_NEAR(length(stage.world.registry.get<Probe>(probe).force), 200 * 0.15 * std::sin(0.03), 1e-4) << turns;
+  }
+}
+
 // A probe that rides on a turning ball feels the same in the ball's frame, and no friction; one that stays is dragged.
 TEST(MoveObjects, ContactAndFrictionGoWithATurningBall) {
   for (const bool rides : {true, false}) {

@@ -92,7 +92,14 @@ TEST(Tick, NeverAllocatesOverSeamsAndBehindCreases) {
       Deformable d;
       d.reach = 0.04;
       d.spring = kind;
-      for (const double x : {-0.05, 0.05}) stage.add(scenes::slab(10, 0.1, 0.1), d, Pose{{x, 0.09, 0}});
+      Entity slab{};
+      for (const double x : {-0.05, 0.05}) slab = stage.add(scenes::slab(10, 0.1, 0.1), d, Pose{{x, 0.09, 0}});
+      PrescribedMotion motion;  // opens the seam and closes it again
+      motion.translation = {Interpolation::kLinear,
+                            {0.0, 0.05, 0.06, 0.07},
+                            {{0.05, 0.09, 0, 0}, {0.05, 0.09, 0, 0}, {0.07, 0.09, 0, 0}, {0.05, 0.09, 0, 0}},
+                            0.07};
+      stage.carry(slab, motion);
       const Entity a = stage.add_probe({0, 0.11, 0}), b = stage.add_probe({0.01, 0.12, 0.01}, 0.005);
       stage.prepare();
       ASSERT_FALSE(stage.world.touch->objects[0].seams.empty());

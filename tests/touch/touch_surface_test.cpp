@@ -162,6 +162,75 @@ TEST(TouchSurface, FourNodesLookAsOneUnderTwoProbes) {
   EXPECT_LT(corner, -0.001) << "in the node that no probe is on";
 }
 
+// Sheets and slabs that are flush, part and come back: one surface, then borders with air or edges between them, then one
+// surface again. The one on the right moves.
+TEST(TouchSurface, SeamsOpenWhenSurfacesPartAndCloseWhenTheyMeetAgain) {
+  using glm::dvec4;
+  constexpr double kSize = 0.1, kGap = 0.03;
+  for (const bool thick : {false, true}) {
+    const Primitive half = thick ? scenes::slab(10, kSize, 0.05) : scenes::sheet(10, kSize);
+    const auto pressed_at = [&](double x, double time) {  // [N] held 3 mm deep from then on
+      Stage stage;
+      stage.add(half, frictionless(), Pose{{-kSize / 2, 0, 0}});
+      const Entity right = stage.add(half, frictionless(), Pose{{kSize / 2, 0, 0}});
+      PrescribedMotion motion;
+      motion.translation = {Interpolation::kLinear,
+                            {0.0, 0.2, 0.4, 0.6, 0.8},
+                            {dvec4(kSize / 2, 0, 0, 0), dvec4(kSize / 2, 0, 0, 0), dvec4(kSize / 2 + kGap, 0, 0, 0),
+                             dvec4(kSize / 2 + kGap, 0, 0, 0), dvec4(kSize / 2, 0, 0, 0)},
+                            0.8};
+      motion.repeats = false;
+      stage.carry(right, motion);
+      const Entity probe = stage.add_probe({x, 0.02, 0.0037});
+      stage.prepare();
+      stage.wait(time);
+      stage.move(probe, {x, 0.001, 0.0037}, 0.02);
+      stage.move(probe, {x, -0.003, 0.0037}, 0.05);
+      stage.wait(0.02);
+      return raw_force(stage, probe);
+    };
+    const double whole = law(frictionless(), 0.003);
+    const auto expect = [&](double x, double time, double y) {
+      EXPECT_LT(length(pressed_at(x, time) - dvec3(0, y, 0)), 1e-6) << thick << ' ' << x << ' ' << time;
+    };
+    for (const double x : {-1e-7, 1e-7, 0.001}) expect(x, 0.05, whole);  // flush
+    for (const double x : {0.001, 0.015, kGap - 0.001}) expect(x, 0.45, 0.0);  // in the gap
+    for (const double x : {-0.01, kGap + 0.01}) expect(x, 0.45, whole);        // beside it
+    for (const double x : {-1e-7, 1e-7, 0.001}) expect(x, 0.85, whole);        // flush again
+    // Held while the surface leaves: felt until its border passes the tip.
+    for (const double x : {-0.001, 0.002, 0.02}) {
+      Stage stage;
+      stage.add(half, frictionless(), Pose{{-kSize / 2, 0, 0}});
+      const Entity right = stage.add(half, frictionless(), Pose{{kSize / 2, 0, 0}});
+      PrescribedMotion motion;
+      motion.translation = {Interpolation::kLinear,
+                            {0.0, 0.2, 0.7},
+                            {dvec4(kSize / 2, 0, 0, 0), dvec4(kSize / 2, 0, 0, 0), dvec4(kSize / 2 + kGap, 0, 0, 0)},
+                            0.7};
+      motion.repeats = false;
+      stage.carry(right, motion);
+      const Entity probe = stage.add_probe({x, 0.001, 0.0037});
+      stage.prepare();
+      stage.move(probe, {x, -0.003, 0.0037}, 0.1);
+      while (stage.time() < 0.8) {
+        stage.tick();
+        const double border = kGap * std::clamp((stage.time() - 0.2) / 0.5, 0.0, 1.0);
+        const double felt = length(raw_force(stage, probe));
+        ASSERT_LT(felt, whole * 1.001) << thick << ' ' << x << ' ' << stage.time();
+        if (x < 0 && !thick) ASSERT_NEAR(felt, whole, 1e-6) << stage.time();
+        if (x > 0 && border < x - 0.006) ASSERT_NEAR(felt, whole, 1e-6) << thick << ' ' << x << ' ' << stage.time();
+        if (x > 0 && border > x + 0.002) ASSERT_EQ(felt, 0.0) << thick << ' ' << x << ' ' << stage.time();
+      }
+    }
+    // A slab's edge: 1 mm beside it and 3 mm deep the tip is nearer to the side.
+    const dvec3 edge = pressed_at(-0.001, 0.45);
+    if (thick)
+      EXPECT_GT(edge.x, 0.1) << "its edge is felt";
+    else
+      EXPECT_NEAR(edge.y, whole, 1e-6);
+  }
+}
+
 // Past the end of a seam there is nothing to interpolate.
 TEST(TouchSurface, AContactThatRunsOffTheEndOfASeamEnds) {
   Stage stage;

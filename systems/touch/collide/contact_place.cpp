@@ -23,8 +23,11 @@ void visit_creases(const ObjectState& object, dvec3 x, double within, Visit visi
   Box around;
   around.add(vec3(x - dvec3(within)));
   around.add(vec3(x + dvec3(within)));
-  object.crease_boxes.visit(
-      around, [&](std::uint32_t i) { visit(object.creases[i] / 3, static_cast<int>(object.creases[i] % 3)); });
+  object.crease_boxes.visit(around, [&](std::uint32_t i) {
+    const std::uint32_t key = object.creases[i];
+    if (!std::binary_search(object.closed.begin(), object.closed.end(), key))  // else another surface continues
+      visit(key / 3, static_cast<int>(key % 3));
+  });
 }
 
 // A crease that may matter, and the distance of its edge.

@@ -39,27 +39,150 @@ std::uint32_t goes_on(const Mesh& mesh, const Pose& pose, const SeamPlace& at, d
   return found;
 }
 
-// A dent continues in both directions, wherever a foot may, over all connected seams.
-void join_zones(TouchState& touch) {
-  for (std::uint32_t i = 0; i < touch.objects.size(); ++i)
-    for (const SeamZones& seam : std::vector<SeamZones>(touch.objects[i].seam_zones))
-      touch.objects[seam.object].seam_zones.push_back({seam.other, i, seam.zone});
-  for (ObjectState& object : touch.objects) {
-    for (auto* list : {&object.cracks, &object.seam_zones}) {
-      std::sort(list->begin(), list->end());
-      list->erase(std::unique(list->begin(), list->end()), list->end());
+bool is_closed(const TouchState& touch, std::uint32_t bond) {
+  return bond == Seam::kCrack || !touch.bonds[bond].open;
+}
+
+// The lists of the seams that are closed now. Only the first call allocates: all are closed then.
+void list_closed(const TouchState& touch, ObjectState& object) {
+  object.seams.clear();
+  object.closed.clear();
+  object.seam_zones.clear();
+  object.neighbours.clear();
+  for (const Seam& seam : object.found.seams) {
+    if (!is_closed(touch, seam.bond)) continue;
+    object.seams.push_back(seam);
+    if (std::find(object.neighbours.begin(), object.neighbours.end(), seam.object) == object.neighbours.end())
+      object.neighbours.push_back(seam.object);
+  }
+  for (const SeamsFound::ClosedEdge& edge : object.found.closed)
+    if (is_closed(touch, edge.bond) && (object.closed.empty() || object.closed.back() != edge.edge))
+      object.closed.push_back(edge.edge);
+  for (const SeamsFound::Zones& zones : object.found.zones)
+    if (is_closed(touch, zones.bond) && (object.seam_zones.empty() || object.seam_zones.back() != zones.zones))
+      object.seam_zones.push_back(zones.zones);
+}
+
+// The objects that a dent reaches over all connected seams.
+void list_joined(TouchState& touch, std::uint32_t slot) {
+  std::vector<std::uint32_t>& joined = touch.objects[slot].joined;
+  joined.clear();
+  const auto add = [&](const ObjectState& from) {
+    for (const std::uint32_t b : from.found.bonds) {
+      const Bond& bond = touch.bonds[b];
+      const std::uint32_t other = &touch.objects[bond.first] == &from ? bond.second : bond.first;
+      if (!bond.open && other != slot && std::find(joined.begin(), joined.end(), other) == joined.end())
+        joined.push_back(other);
+    }
+  };
+  add(touch.objects[slot]);
+  for (std::size_t k = 0; k < joined.size(); ++k) add(touch.objects[joined[k]]);
+}
+
+Pose relative_pose(const Pose& first, const Pose& second) {
+  const dquat back = glm::conjugate(first.rotation);
+  return {back * (second.position - first.position), back * second.rotation};
+}
+
+// How far the farthest corner of the box is from where it is at another pose. [m]
+double farthest_move(const Box& box, const Pose& from, const Pose& to) {
+  double farthest = 0;
+  for (int i = 0; i < 8; ++i) {
+    const dvec3 corner(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z);
+    farthest = std::max(farthest, length(to.to_world(corner) - from.to_world(corner)));
+  }
+  return farthest;
+}
+
+const Mesh& mesh_of(const World& world, const ObjectState& object) {
+  return world.meshes[world.registry.get<Deformable>(object.entity).mesh];
+}
+
+// The bond of two objects at their current pose.
+std::uint32_t bond_of(const World& world, TouchState& touch, std::uint32_t here, std::uint32_t there) {
+  const std::uint32_t first = std::min(here, there), second = std::max(here, there);
+  for (const std::uint32_t b : touch.objects[first].found.bonds)
+    if (touch.bonds[b].second == second) return b;
+  const ObjectState &one = touch.objects[first], &other = touch.objects[second];
+  const auto bond = static_cast<std::uint32_t>(touch.bonds.size());
+  touch.bonds.push_back(
+      {first, second, relative_pose(world.registry.get<Pose>(one.entity), world.registry.get<Pose>(other.entity)),
+       kCrack * static_cast<double>(std::max(mesh_of(world, one).mean_edge, mesh_of(world, other).mean_edge))});
+  touch.objects[first].found.bonds.push_back(bond);
+  touch.objects[second].found.bonds.push_back(bond);
+  return bond;
+}
+
+// The surfaces that pass an edge of an object, in the world.
+void find_seams_of(const World& world, TouchState& touch, std::uint32_t i) {
+  const Registry& registry = world.registry;
+  ObjectState& object = touch.objects[i];
+  const Mesh& mesh = mesh_of(world, object);
+  const Pose& pose = registry.get<Pose>(object.entity);
+  const double crack = kCrack * static_cast<double>(mesh.mean_edge);  // search distance beyond an edge
+  Box around = object.world_box;
+  around.min -= vec3(static_cast<float>(2 * crack));
+  around.max += vec3(static_cast<float>(2 * crack));
+  std::vector<std::uint32_t> others;
+  touch.object_boxes.visit(around, [&](std::uint32_t j) { others.push_back(j); });
+  std::sort(others.begin(), others.end());
+  const bool alone = others.size() == 1;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int edge = 0; edge < 3; ++edge) {
+      const bool border = mesh.across[t][edge] == kBorder;
+      if (!border && (alone || !mesh.is_crease(t, edge))) continue;
+      const uvec3 c = mesh.triangles[t];
+      const dvec3 a(mesh.position(c[edge])), b(mesh.position(c[(edge + 1) % 3])), n = facet_normal(mesh, t);
+      const SeamPlace at{pose.to_world(0.5 * (a + b) + crack * normalize(cross(b - a, n))), pose.rotation * n};
+      for (const std::uint32_t j : others) {
+        if (j == i && !border) continue;
+        const Box& box = touch.objects[j].world_box;
+        const vec3 p(at.p);
+        const vec3 out = glm::max(glm::max(box.min - p, p - box.max), vec3(0));
+        if (length(out) > static_cast<float>(2 * crack)) continue;
+        const std::uint32_t on = goes_on(mesh_of(world, touch.objects[j]), registry.get<Pose>(touch.objects[j].entity),
+                                         at, kOff * crack, j == i ? t : kBorder);
+        if (on == kBorder) continue;
+        object.found.seams.push_back({3 * t + static_cast<std::uint32_t>(edge), j, on,
+                                      j == i ? Seam::kCrack : bond_of(world, touch, i, j)});
+        break;
+      }
     }
   }
-  for (std::uint32_t i = 0; i < touch.objects.size(); ++i) {
-    std::vector<std::uint32_t>& joined = touch.objects[i].joined;
-    const auto add = [&](const ObjectState& from) {
-      for (const SeamZones& seam : from.seam_zones)
-        if (seam.object != i && std::find(joined.begin(), joined.end(), seam.object) == joined.end())
-          joined.push_back(seam.object);
-    };
-    add(touch.objects[i]);
-    for (std::size_t k = 0; k < joined.size(); ++k) add(touch.objects[joined[k]]);
+}
+
+template <class Value>
+void sort_unique(std::vector<Value>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+// Feet stop at seams from both sides: a wall covered by another surface is ignored. Dents go over them from zone to
+// zone, in both directions.
+void find_closed_edges_and_zones(const World& world, TouchState& touch, std::uint32_t i) {
+  ObjectState& object = touch.objects[i];
+  const Mesh& mesh = mesh_of(world, object);
+  for (const Seam& seam : object.found.seams) {
+    object.found.closed.push_back({seam.edge, seam.bond});
+    const std::uint32_t t = seam.edge / 3, next = mesh.across[t][static_cast<int>(seam.edge % 3)];
+    if (next != kBorder)
+      for (std::uint32_t e = 0; e < 3; ++e)
+        if (mesh.across[next][static_cast<int>(e)] == t) object.found.closed.push_back({3 * next + e, seam.bond});
+    const uvec3 here = mesh.triangles[t];
+    const uvec3 there = mesh_of(world, touch.objects[seam.object]).triangles[seam.triangle];
+    for (int k = 0; k < 3; ++k)
+      for (int l = 0; l < 3; ++l) {
+        const std::uint32_t zone = here[k] / kZoneSize, other = there[l] / kZoneSize;
+        if (seam.object == i) {
+          object.cracks.push_back({zone, i, other});
+        } else {
+          object.found.zones.push_back({{zone, seam.object, other}, seam.bond});
+          touch.objects[seam.object].found.zones.push_back({{other, i, zone}, seam.bond});
+        }
+      }
   }
+  sort_unique(object.found.closed);
+  sort_unique(object.cracks);
 }
 
 }  // namespace
@@ -87,67 +210,34 @@ bool at_seam(const ObjectState& object, const Foot& foot) {
 }
 
 void find_seams(const World& world, TouchState& touch) {
-  const Registry& registry = world.registry;
-  for (std::uint32_t i = 0; i < touch.objects.size(); ++i) {
-    ObjectState& object = touch.objects[i];
-    const Mesh& mesh = world.meshes[registry.get<Deformable>(object.entity).mesh];
-    const Pose& pose = registry.get<Pose>(object.entity);
-    const double crack = kCrack * static_cast<double>(mesh.mean_edge);  // search distance beyond an edge
-    const bool moves = registry.has<MovingPose>(object.entity);
-    Box around = object.world_box;
-    around.min -= vec3(static_cast<float>(2 * crack));
-    around.max += vec3(static_cast<float>(2 * crack));
-    std::vector<std::uint32_t> others;
-    touch.object_boxes.visit(around, [&](std::uint32_t j) {
-      if (j == i || (!moves && !registry.has<MovingPose>(touch.objects[j].entity))) others.push_back(j);
-    });
-    std::sort(others.begin(), others.end());
-    const bool alone = others.size() == 1;
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      for (int edge = 0; edge < 3; ++edge) {
-        const bool border = mesh.across[t][edge] == kBorder;
-        if (!border && (alone || !mesh.is_crease(t, edge))) continue;
-        const uvec3 c = mesh.triangles[t];
-        const dvec3 a(mesh.position(c[edge])), b(mesh.position(c[(edge + 1) % 3])), n = facet_normal(mesh, t);
-        const SeamPlace at{pose.to_world(0.5 * (a + b) + crack * normalize(cross(b - a, n))), pose.rotation * n};
-        for (const std::uint32_t j : others) {
-          if (j == i && !border) continue;
-          const Box& box = touch.objects[j].world_box;
-          const vec3 p(at.p);
-          const vec3 out = glm::max(glm::max(box.min - p, p - box.max), vec3(0));
-          if (length(out) > static_cast<float>(2 * crack)) continue;
-          const Mesh& other = world.meshes[registry.get<Deformable>(touch.objects[j].entity).mesh];
-          const std::uint32_t on =
-              goes_on(other, registry.get<Pose>(touch.objects[j].entity), at, kOff * crack, j == i ? t : kBorder);
-          if (on == kBorder) continue;
-          object.seams.push_back({3 * t + static_cast<std::uint32_t>(edge), j, on});
-          break;
-        }
-      }
-    }
-    // Feet stop at these edges from both sides: a wall covered by another surface is ignored.
-    for (const Seam& seam : object.seams) {
-      object.closed.push_back(seam.edge);
-      const std::uint32_t t = seam.edge / 3, next = mesh.across[t][static_cast<int>(seam.edge % 3)];
-      if (next == kBorder) continue;
-      for (std::uint32_t e = 0; e < 3; ++e)
-        if (mesh.across[next][static_cast<int>(e)] == t) object.closed.push_back(3 * next + e);
-    }
-    for (const Seam& seam : object.seams)
-      if (std::find(object.neighbours.begin(), object.neighbours.end(), seam.object) == object.neighbours.end())
-        object.neighbours.push_back(seam.object);
-    for (const Seam& seam : object.seams) {
-      const uvec3 here = mesh.triangles[seam.edge / 3];
-      const Mesh& other = world.meshes[registry.get<Deformable>(touch.objects[seam.object].entity).mesh];
-      const uvec3 there = other.triangles[seam.triangle];
-      auto& list = seam.object == i ? object.cracks : object.seam_zones;
-      for (int k = 0; k < 3; ++k)
-        for (int l = 0; l < 3; ++l) list.push_back({here[k] / kZoneSize, seam.object, there[l] / kZoneSize});
-    }
-    std::sort(object.closed.begin(), object.closed.end());
-    object.closed.erase(std::unique(object.closed.begin(), object.closed.end()), object.closed.end());
+  const auto count = static_cast<std::uint32_t>(touch.objects.size());
+  for (std::uint32_t i = 0; i < count; ++i) find_seams_of(world, touch, i);
+  for (std::uint32_t i = 0; i < count; ++i) find_closed_edges_and_zones(world, touch, i);
+  for (ObjectState& object : touch.objects) {
+    sort_unique(object.found.zones);
+    list_closed(touch, object);
   }
-  join_zones(touch);
+  for (std::uint32_t i = 0; i < count; ++i) list_joined(touch, i);
+}
+
+void move_seams(const World& world, TouchState& touch, std::uint32_t slot) {
+  bool changed = false;
+  for (const std::uint32_t b : touch.objects[slot].found.bonds) {
+    Bond& bond = touch.bonds[b];
+    ObjectState &first = touch.objects[bond.first], &second = touch.objects[bond.second];
+    const Pose now =
+        relative_pose(world.registry.get<Pose>(first.entity), world.registry.get<Pose>(second.entity));
+    const bool open = first.world_box.empty() || second.world_box.empty() ||
+                      farthest_move(mesh_of(world, second).box, bond.relative, now) > bond.slack;
+    if (open == bond.open) continue;
+    bond.open = open;
+    changed = true;
+    list_closed(touch, first);
+    list_closed(touch, second);
+  }
+  if (!changed) return;
+  for (std::uint32_t i = 0; i < touch.objects.size(); ++i)
+    if (!touch.objects[i].found.bonds.empty()) list_joined(touch, i);
 }
 
 }  // namespace pliant

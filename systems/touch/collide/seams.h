@@ -14,7 +14,11 @@ const Seam* seam_at(const ObjectState& object, const Foot& foot);
 // Whether a foot is on either side of a seam.
 bool at_seam(const ObjectState& object, const Foot& foot);
 
-// Fills ObjectState::seams and closed. Moving objects have no seams with others. Allocates.
+// Finds the seams of surfaces that are flush at the start. Allocates.
 void find_seams(const World& world, TouchState& touch);
+
+// Opens the seams of an object that has left the pose at which it was flush with another, and closes those of one that
+// has come back. Does not allocate.
+void move_seams(const World& world, TouchState& touch, std::uint32_t slot);
 
 }  // namespace pliant

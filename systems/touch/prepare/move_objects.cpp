@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "systems/touch/collide/seams.h"
 #include "systems/touch/prepare/prepare.h"
 #include "systems/touch/prepare/touch_state.h"
 
@@ -17,6 +19,20 @@ dvec3 angular_velocity(const dquat& from, const dquat& to, double dt) {
   const double sine = length(axis);
   if (sine == 0.0) return dvec3(0);
   return axis * (2.0 * std::atan2(sine, turn.w) / (sine * dt));
+}
+
+// The object's box over the tick: from its previous pose to the current one. Between them a point is off the line that
+// joins its places by at most the sagitta of its arc.
+Box swept_box(const Mesh& mesh, const ObjectState& object, const MovingPose& moving) {
+  Box swept = touch_box(mesh, moving.previous);
+  swept.add(object.world_box.min);
+  swept.add(object.world_box.max);
+  const double half = 0.5 * std::min(length(moving.angular_velocity) * moving.dt, std::numbers::pi);
+  const vec3 farthest = glm::max(glm::abs(mesh.box.min), glm::abs(mesh.box.max));
+  const vec3 sagitta(static_cast<float>((1 - std::cos(half)) * double{length(farthest)}));
+  swept.min -= sagitta;
+  swept.max += sagitta;
+  return swept;
 }
 
 // A touchable node's scale is in its mesh and does not change.
@@ -36,8 +52,9 @@ void place_object(World& world, const MovingNode& node, double dt) {
   if (node.object < 0) return;
   ObjectState& object = world.touch->objects[static_cast<std::size_t>(node.object)];
   if (object.world_box.empty()) return;  // the object is removed
-  object.world_box = touch_box(world.meshes[world.registry.get<Deformable>(node.entity).mesh], pose);
-  world.touch->object_boxes.move(static_cast<std::uint32_t>(node.object), object.world_box);
+  const Mesh& mesh = world.meshes[world.registry.get<Deformable>(node.entity).mesh];
+  object.world_box = touch_box(mesh, pose);
+  world.touch->object_boxes.move(static_cast<std::uint32_t>(node.object), swept_box(mesh, object, moving));
 }
 
 bool carries_something(const Registry& registry, Entity entity) {
@@ -109,6 +126,8 @@ void move_objects(World& world, Tick tick) {
     else if (WorldTransform* transform = world.registry.find<WorldTransform>(node.entity))
       transform->matrix = mat4(node.world);
   }
+  for (const MovingNode& node : nodes)
+    if (node.object >= 0) move_seams(world, *world.touch, static_cast<std::uint32_t>(node.object));
 }
 
 std::vector<MovedSnapshot> moved_snapshots(const World& world, const TouchState& touch) {

@@ -66,9 +66,8 @@ void list_creases(const Mesh& mesh, ObjectState& object) {
     for (int edge = 0; edge < 3; ++edge) {
       const std::uint32_t key = 3 * t + static_cast<std::uint32_t>(edge);
       if (!mesh.is_crease(t, edge) || mesh.across[t][edge] == kBorder || !is_convex(mesh, t, edge)) continue;
-      if (std::binary_search(object.closed.begin(), object.closed.end(), key))
-        continue;  // another surface continues
-                   // here
+      if (object.found.bonds.empty() && std::binary_search(object.closed.begin(), object.closed.end(), key))
+        continue;  // a crack, which stays
       Box box;
       box.add(mesh.position(mesh.triangles[t][edge]));
       box.add(mesh.position(mesh.triangles[t][(edge + 1) % 3]));

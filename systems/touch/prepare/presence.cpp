@@ -1,6 +1,7 @@
 #include "systems/touch/prepare/presence.h"
 
 #include "systems/touch/collide/collision.h"
+#include "systems/touch/collide/seams.h"
 #include "systems/touch/prepare/prepare.h"
 #include "systems/touch/prepare/touch_state.h"
 
@@ -20,10 +21,15 @@ void let_go_of(World& world, ObjectState& object) {
   for (dvec3& searched : object.searched) searched = dvec3(1e30);  // walls are searched anew
 }
 
+std::uint32_t slot_of(const World& world, const ObjectState& object) {
+  return static_cast<std::uint32_t>(&object - world.touch->objects.data());
+}
+
 void take_in(World& world, ObjectState& object) {
   const Mesh& mesh = world.meshes[world.registry.get<Deformable>(object.entity).mesh];
   object.world_box = touch_box(mesh, world.registry.get<Pose>(object.entity));
-  world.touch->object_boxes.move(static_cast<std::uint32_t>(&object - world.touch->objects.data()), object.world_box);
+  world.touch->object_boxes.move(slot_of(world, object), object.world_box);
+  move_seams(world, *world.touch, slot_of(world, object));
 }
 
 }  // namespace
@@ -33,6 +39,7 @@ void take_out_surface(World& world, Entity surface) {
   if (!object) return;
   let_go_of(world, *object);
   object->world_box = Box();
+  move_seams(world, *world.touch, slot_of(world, *object));
 }
 
 void put_back_surface(World& world, Entity surface) {

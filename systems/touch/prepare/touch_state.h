@@ -81,11 +81,21 @@ struct PressState {
 // At rest: heights below this share of the reach, normals rotated by less than this angle [rad]. Imperceptible.
 inline constexpr float kRest = 1e-6f;
 
+// Two objects that are flush with each other at one relative pose. While they are elsewhere their seams are open.
+struct Bond {
+  std::uint32_t first = 0, second = 0;  // indices into TouchState::objects
+  Pose relative;                        // of the second in the first's frame
+  double slack = 0.0;                   // [m] farthest that a point of the second may be from there
+  bool open = false;
+};
+
 // An edge at which another surface continues: a node flush with this one, or the far side of a crack (seams.h).
 struct Seam {
-  std::uint32_t edge = 0;      // 3 * triangle + edge
-  std::uint32_t object = 0;    // index into TouchState::objects
-  std::uint32_t triangle = 0;  // of that object, at the other side
+  static constexpr std::uint32_t kCrack = 0xffffffffu;
+  std::uint32_t edge = 0;       // 3 * triangle + edge
+  std::uint32_t object = 0;     // index into TouchState::objects
+  std::uint32_t triangle = 0;   // of that object, at the other side
+  std::uint32_t bond = kCrack;  // index into TouchState::bonds; kCrack: a crack in one mesh is always closed
 };
 
 // A zone beside a seam, and the zone on the other side.
@@ -96,11 +106,29 @@ struct SeamZones {
   auto operator<=>(const SeamZones&) const = default;
 };
 
+// The seams of an object at all relative poses, found at preparation.
+struct SeamsFound {
+  struct ClosedEdge {
+    std::uint32_t edge = 0, bond = 0;
+    auto operator<=>(const ClosedEdge&) const = default;
+  };
+  struct Zones {
+    SeamZones zones;
+    std::uint32_t bond = 0;
+    auto operator<=>(const Zones&) const = default;
+  };
+  std::vector<Seam> seams;         // by edge, ascending
+  std::vector<ClosedEdge> closed;  // ascending
+  std::vector<Zones> zones;        // ascending
+  std::vector<std::uint32_t> bonds;
+};
+
 // Touch state of one Deformable.
 struct ObjectState {
   Entity entity;
   Motion motion;  // of unpainted vertices
   PaintedMotion painted;
+  SeamsFound found;                         // all that may be; the next lists have those that are closed now
   std::vector<Seam> seams;                  // by edge, ascending
   std::vector<SeamZones> seam_zones;        // to other objects, each pair once
   std::vector<std::uint32_t> joined;        // objects in which a dent may continue, over any number of seams, each once
@@ -139,7 +167,8 @@ struct ProbeState {
 
 struct TouchState {
   std::vector<ObjectState> objects;
-  BoxTree object_boxes;  // world boxes of the objects, with room for curved patches
+  BoxTree object_boxes;  // world boxes of the objects over the tick, with room for curved patches
+  std::vector<Bond> bonds;
   std::vector<ProbeState> probes;
   std::vector<std::uint32_t> awake;                // objects with a tracked contact or a moving field; capacity: all
   std::uint32_t unseen = 0;                        // number of successive snapshots that were not taken
