@@ -1,4 +1,4 @@
-// State of a device: what its samples, its orders and its faults make of it.
+// State of a device, from its samples, orders and faults.
 #include "devices/guard/guard.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A script that drives the program: its steps, and what it asks for.
+// A script that drives the program: its steps and its requests.
 #include <fmt/format.h>
 
 #include <algorithm>

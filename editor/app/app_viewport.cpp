@@ -1,4 +1,4 @@
-// The viewport: its picture, what the mouse does in it, and the order for the next picture.
+// The viewport: its picture, its mouse, and the order for the next picture.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ vec4 as_vec(const ImVec4& c, float alpha = 1.0f) {
 
 }  // namespace
 
-// What the mouse and the keys do in the viewport in this frame.
+// Mouse and keys of this frame, in the viewport.
 ViewportInput App::viewport_input(ImVec2 low, ImVec2 high, double dt) {
   const ImGuiIO& io = ImGui::GetIO();
   ViewportInput in;
@@ -83,7 +83,7 @@ void App::move_camera(const ViewportInput& in, bool active, bool taken) {
   if (in.over && wheel != 0 && !taken) editor.camera.zoom(static_cast<double>(wheel));
 }
 
-// What lies under the mouse is asked of the next picture; a click selects it.
+// The next picture tells which object is under the mouse; a click selects it.
 void App::pick(const ViewportInput& in, bool taken) {
   if (in.released && !taken && !moved_since_press_) {
     asked_ = dvec2(in.x, in.y);

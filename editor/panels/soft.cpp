@@ -1,4 +1,4 @@
-// The panel Tissue: what kind of object it is, its material, its pins, and instruments to touch it.
+// The panel Tissue: kind and material of an object, its pins, and instruments to touch it.
 #include <fmt/format.h>
 
 #include <algorithm>

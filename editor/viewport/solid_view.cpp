@@ -134,7 +134,7 @@ void SolidView::clear(const SolidOrder& order, int width, int height) {
   glDisable(GL_BLEND);
 }
 
-// What the shader of surfaces needs of the whole scene.
+// Uniforms of the surfaces' shader that hold for the whole scene.
 void SolidView::set_up_surfaces(const Scene& scene) {
   const SolidOrder& order = scene.order;
   const dmat4 eye = glm::lookAt(order.view.eye, order.view.target, order.view.up);

@@ -1,4 +1,4 @@
-// What studies read of a Session beyond its public interface: its world, and every tick.
+// Access of studies to a Session beyond its public interface: its world, and every tick.
 #pragma once
 
 #include <functional>

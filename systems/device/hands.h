@@ -15,7 +15,7 @@ std::vector<Entity> hands(const World& world);
 Entity device_of(const World& world, Entity hand);
 const HapticDevice* find_device(const World& world, Entity hand);
 
-// A probe of its caller, who sets its device's position and is not to be hurt: no limit of its force cuts in.
+// A probe that its caller moves by its device's position; its force is not limited.
 Entity add_free_probe(World& world, const std::string& name, double radius, dvec3 position);
 
 }  // namespace pliant
