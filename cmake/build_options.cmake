@@ -17,7 +17,7 @@ add_compile_options("$<IF:$<CONFIG:Debug>,-fmacro-prefix-map,-ffile-prefix-map>=
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-Wno-restrict)
 endif()
-# Twelve source files are compiled as one (CMAKE_UNITY_BUILD, set by the presets), because a small file's compile time
+# Many source files are compiled as one (CMAKE_UNITY_BUILD, set by the presets), because a small file's compile time
 # is mostly that of its headers. A name in an unnamed namespace must therefore be unique within its library. In a unity
 # build a local may legally shadow such a name of another file, so the shadow warning is enabled only in the debug
 # build, file by file. GCC treats an unnamed namespace in an included file as one in a header.
@@ -50,14 +50,49 @@ if(PLIANT_SANITIZE)
   endif()
 endif()
 
-# For code that runs only a few times, where compile time matters more: tests, and under the sanitizers everything
-# except the engine.
+# For code outside the ticks, where compile time matters more than speed. Its units are larger too: it is mostly headers.
+# Under the sanitizers everything except the engine is such code.
 function(pliant_compile_fast target)
   if(PLIANT_SANITIZE)
     target_compile_options(${target} PRIVATE -O0)
   else()
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 36)
+endfunction()
+
+# A static library of one folder and its subfolders, of code outside the ticks:
+#   pliant_outer_library(NAME DEPENDS libraries... FULL folders or files...)
+# FULL: optimised as the engine is: loops over meshes, or loops of its own that a study times. Files that use Eigen's
+# dense matrices are among them: of a template instantiated in several files, the linker keeps one copy for all.
+function(pliant_outer_library name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;FULL" ${ARGN})
+  set(here ${CMAKE_CURRENT_SOURCE_DIR})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${here}/*.cpp)
+  list(REMOVE_ITEM sources ${here}/main.cpp)
+  set(full)
+  foreach(path ${ARG_FULL})
+    set(found ${sources})
+    list(FILTER found INCLUDE REGEX "^${here}/${path}[/.]")
+    list(APPEND full ${found})
+    list(FILTER sources EXCLUDE REGEX "^${here}/${path}[/.]")
+  endforeach()
+  add_library(pliant_${name} STATIC ${sources})
+  set(targets pliant_${name})
+  target_link_libraries(pliant_${name} PUBLIC pliant_options ${ARG_DEPENDS})
+  pliant_compile_fast(pliant_${name})
+  if(full)
+    add_library(pliant_${name}_full OBJECT ${full})
+    list(APPEND targets pliant_${name}_full)
+    target_link_libraries(pliant_${name}_full PRIVATE pliant_options ${ARG_DEPENDS})
+    target_sources(pliant_${name} PRIVATE $<TARGET_OBJECTS:pliant_${name}_full>)
+    if(PLIANT_SANITIZE)
+      pliant_compile_fast(pliant_${name}_full)
+    endif()
+  endif()
+  foreach(target ${targets})
+    target_compile_definitions(${target} PRIVATE PLIANT_VERSION="${PROJECT_VERSION}")
+  endforeach()
 endfunction()
 
 # A library of one folder and its subfolders:

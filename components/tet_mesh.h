@@ -33,16 +33,16 @@ struct TetQuality {
 
 // Result of meshing a surface with tetrahedra, for inspection before the simulation. Zeros: from a file.
 struct TetReport {
-  double cell = 0.0;                  // [m] of the lattice, in its focus if it has one
-  double coarsest = 0.0;              // [m] cell farthest from the focus; `cell` without a focus
-  double wall = 0.0;                  // [m] median thickness of a surface that is a thin wall; 0: not a thin wall
-  std::uint32_t parts_dropped = 0;    // too small to keep
-  double volume_dropped = 0.0;        // [1] their share of the tissue
-  double thin = 0.0;                  // [1] share of the surface with less tissue behind it than thin_places.h requires
-  double least_thickness = 0.0;       // [m] of that tissue; 0: nothing is thin
-  vec3 thinnest{0};                   // [m] where
-  std::vector<Note> notes;            // on how it is filled and what it carries, without the body's name
-  std::vector<std::string> findings;  // on how it stands under gravity, one sentence each, without the body's name
+  double cell = 0.0;                // [m] of the lattice, in its focus if it has one
+  double coarsest = 0.0;            // [m] cell farthest from the focus; `cell` without a focus
+  double wall = 0.0;                // [m] median thickness of a surface that is a thin wall; 0: not a thin wall
+  std::uint32_t parts_dropped = 0;  // too small to keep
+  double volume_dropped = 0.0;      // [1] their share of the tissue
+  double thin = 0.0;                // [1] share of the surface with less tissue behind it than thin_places.h requires
+  double least_thickness = 0.0;     // [m] of that tissue; 0: nothing is thin
+  vec3 thinnest{0};                 // [m] where
+  std::vector<Note> notes;          // on how it is filled and what it carries, without the body's name
+  std::vector<Note> findings;       // on how it stands under gravity, without the body's name
 };
 
 // A mesh that is only drawn and moves with the tissue around it.

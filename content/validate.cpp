@@ -234,8 +234,7 @@ void find_in_tissue(const Level& level, const World& world, Findings& findings) 
     const std::string node = pointer_of(level, world, entity);  // clang 14 captures no structured bindings
     const TetMesh& tets = world.tet_meshes[soft_body.tets];
     for (const Note& note : tets.report.notes) findings.push_back(finding_of(note, Severity::kWarning, node));
-    for (const std::string& sentence : tets.report.findings)
-      findings.push_back({Severity::kWarning, node, sentence, {}, "tissue.gravity"});
+    for (const Note& note : tets.report.findings) findings.push_back(finding_of(note, Severity::kWarning, node));
     if (const std::optional<Note> doubt = locking_doubt(soft_body, tets.tets.size()))
       findings.push_back(finding_of(*doubt, Severity::kWarning, node));
     if (tets.quality.smallest_dihedral < kSharp)

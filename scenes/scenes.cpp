@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "content/mesh/mesh_build.h"
+#include "systems/device/hands.h"
 #include "systems/hash_state.h"
 #include "systems/schedule.h"
 #include "systems/touch/prepare/prepare.h"
@@ -133,19 +134,7 @@ Entity Stage::add_node(PrescribedMotion motion, Entity parent, LocalTransform re
 }
 
 Entity Stage::add_probe(dvec3 position, double radius) {
-  const Entity entity = world.registry.create();
-  Probe probe;
-  probe.radius = radius;
-  probe.device = entity;
-  world.registry.add(entity, Name{"probe"});
-  world.registry.add(entity, probe);
-  HapticDevice device;
-  device.driver = DriverKind::kExternal;
-  device.position = position;
-  device.max_force = 1e9;
-  device.max_slew = 1e12;
-  world.registry.add(entity, device);
-  return entity;
+  return add_free_probe(world, "probe", radius, position);
 }
 
 void Stage::prepare() {

@@ -7,6 +7,7 @@
 #include "content/author/edit_nodes.h"
 #include "content/author/hand.h"
 #include "content/author/save_script.h"
+#include "content/author/staging.h"
 #include "content/author/tube.h"
 
 namespace pliant {
@@ -106,15 +107,6 @@ Net rod(double length, double tip, double shaft, double bend) {
   return solids::tube({0, top, 0}, rings, pole);
 }
 
-std::int32_t add_color(Level& level, const std::string& name, vec3 color, float roughness) {
-  Material material;
-  material.name = name;
-  material.base_color = vec4(color, 1.0f);
-  material.roughness = roughness;
-  level.materials.push_back(material);
-  return static_cast<std::int32_t>(level.materials.size()) - 1;
-}
-
 Primitive as_primitive(const Net& net) {
   Primitive out;
   for (const dvec3& p : net.position) out.position.push_back(vec3(p));
@@ -140,7 +132,7 @@ void make_rigid(Level& level, LevelNode& node, const Instrument& kind, double di
   const double tip = asked.tip > 0.0 ? asked.tip : kind.tip * length;
   const bool ball = kind.kind == InstrumentKind::kSphereTip, arm = kind.kind == InstrumentKind::kTweezersArm;
   Primitive primitive = as_primitive(rod(length, tip, ball ? 0.55 * tip : arm ? 2.0 * tip : tip, arm ? 0.06 : 0.0));
-  primitive.material = add_color(level, "steel", kSteel, 0.3f);
+  primitive.material = add_material(level, "steel", kSteel, 0.3f);
   node.mesh = static_cast<std::int32_t>(level.meshes.size());
   level.meshes.push_back({node.name, {std::move(primitive)}});
   node.rigid_body = RigidBody{};
@@ -162,7 +154,7 @@ void make_hand(Level& level, LevelNode& node, double diagonal, const InstrumentS
   const solids::Solid solid = solids::hand_solid();
   Primitive primitive = solids::to_primitive(solids::cover_by_net(solid, solids::hand_box(), 0.0042), solid);
   for (vec3& p : primitive.position) p *= static_cast<float>(scale);
-  primitive.material = add_color(level, "hand", kSkinColor, 0.45f);
+  primitive.material = add_material(level, "hand", kSkinColor, 0.45f);
   node.mesh = static_cast<std::int32_t>(level.meshes.size());
   level.meshes.push_back({node.name, {std::move(primitive)}});
   node.soft_body = SoftBody{};

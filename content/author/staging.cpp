@@ -55,4 +55,13 @@ std::int32_t add_camera(Level& level, std::int32_t object) {
   return add_node(level, std::move(node));
 }
 
+std::int32_t add_material(Level& level, const std::string& name, vec3 color, float roughness) {
+  Material material;
+  material.name = name;
+  material.base_color = vec4(color, 1.0f);
+  material.roughness = roughness;
+  level.materials.push_back(material);
+  return static_cast<std::int32_t>(level.materials.size()) - 1;
+}
+
 }  // namespace pliant

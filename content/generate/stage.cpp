@@ -28,15 +28,6 @@ void add_view(Level& level, dvec3 eye, dvec3 target, const char* environment, dv
   level.environment = LevelEnvironment{std::string("../environments/") + environment, 0.8, 0.0};
 }
 
-std::int32_t add_material(Level& level, const std::string& name, vec3 color, float roughness) {
-  Material material;
-  material.name = name;
-  material.base_color = vec4(color, 1.0f);
-  material.roughness = roughness;
-  level.materials.push_back(material);
-  return static_cast<std::int32_t>(level.materials.size()) - 1;
-}
-
 namespace {
 
 // Tangents as in spawn, for viewers that would compute others; false if vertices would have to be split.

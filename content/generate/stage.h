@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "content/author/staging.h"
 #include "content/level/level.h"
 
 namespace pliant::generate {
@@ -16,8 +17,6 @@ LocalTransform looking(dvec3 eye, dvec3 target);
 // A camera, a key light and the environment. `to_light` [m] from the target; the default is the sky's sun.
 void add_view(Level& level, dvec3 eye, dvec3 target, const char* environment = "sky.exr",
               dvec3 to_light = {0.55, 0.62, 0.56});
-// Of one colour. Returns the material's index.
-std::int32_t add_material(Level& level, const std::string& name, vec3 color, float roughness);
 
 inline constexpr int kBits = 16;  // to which positions of all levels are rounded, as by Draco
 // Without required extensions, so that any viewer opens it; positions are rounded, so that runs keep their hashes.

@@ -17,10 +17,9 @@
 namespace pliant {
 namespace {
 
-constexpr int kTries = 10;             // attempts to reach the usual number of tetrahedra
-constexpr double kTetsPerCell = 12.0;  // of the lattice
-constexpr double kSamples = 20000;     // sample points in the box that estimate its enclosed share
-constexpr double kSure = 1.1;          // [1] of the limit: estimates above it are rejected
+constexpr int kTries = 10;          // attempts to reach the usual number of tetrahedra
+constexpr double kSamples = 20000;  // sample points in the box that estimate its enclosed share
+constexpr double kSure = 1.1;       // [1] of the limit: estimates above it are rejected
 
 // [1] Estimated number of tetrahedra for a cell: twelve per cell cube of the volume, which is sampled on a regular
 // grid. Filling a box with millions before rejecting them would take half a minute.

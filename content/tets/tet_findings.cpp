@@ -10,8 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kTetsPerCell = 12.0;  // of the lattice
-constexpr double kLeastCells = 1.2;    // [cells] thickness of a wall that stays connected
+constexpr double kLeastCells = 1.2;  // [cells] thickness of a wall that stays connected
 
 }  // namespace
 

@@ -12,6 +12,8 @@ namespace pliant {
 // Code of notes and errors that another `fill` cures.
 inline constexpr const char* kFillNote = "tissue.fill";
 
+inline constexpr double kTetsPerCell = 12.0;  // of the lattice
+
 // "0.93 mm", "12 cm", "1.4 m".
 std::string length_text(double metres);
 

@@ -17,10 +17,10 @@ namespace pliant {
 namespace {
 
 static_assert(sizeof(SHA256_CTX) == 112);
-constexpr std::size_t kBlock = SHA256_CBLOCK;
+constexpr std::size_t kHashBlock = SHA256_CBLOCK;
 
 void begin_block(std::span<const std::uint8_t> key, std::uint8_t pad, std::array<std::uint8_t, 112>& state) {
-  std::array<std::uint8_t, kBlock> block{};
+  std::array<std::uint8_t, kHashBlock> block{};
   std::copy(key.begin(), key.end(), block.begin());
   for (std::uint8_t& byte : block) byte ^= pad;
   SHA256_CTX hash;
@@ -51,7 +51,7 @@ Result<FrameKey> checked_key(const std::string& where, std::string secret) {
 
 FrameKey::FrameKey(std::span<const std::uint8_t> secret) {
   std::array<std::uint8_t, SHA256_DIGEST_LENGTH> shortened{};
-  if (secret.size() > kBlock) {
+  if (secret.size() > kHashBlock) {
     SHA256(secret.data(), secret.size(), shortened.data());
     secret = shortened;
   }

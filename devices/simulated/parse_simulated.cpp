@@ -8,7 +8,7 @@ namespace pliant {
 namespace {
 
 constexpr double kLongestDelay = 1.0;     // [s]
-constexpr double kFastest = 20000.0;      // [Hz]
+constexpr double kFastestRate = 20000.0;  // [Hz]
 constexpr double kShortest = 10e-6;       // [s] smallest time constant of a motion or an amplifier: its steps are half
                                           // of it
 constexpr double kFarthestOption = 10.0;  // [m] of `at`
@@ -22,7 +22,7 @@ struct NumberKey {
   const char* what;
 };
 constexpr NumberKey kNumbers[] = {
-    {"rate", &DeviceProfile::rate, plain_number, 10.0, kFastest, "a rate from 10 to 20000 Hz"},
+    {"rate", &DeviceProfile::rate, plain_number, 10.0, kFastestRate, "a rate from 10 to 20000 Hz"},
     {"delay", &DeviceProfile::delay, seconds_of, 0.0, kLongestDelay, "a time up to 1s, as 5ms"},
     {"lag", &DeviceProfile::lag, seconds_of, 0.0, kLongestDelay, "a time up to 1s, as 0.3ms"},
     {"mass", &DeviceProfile::mass, plain_number, 1e-3, 100.0, "a mass from 0.001 to 100 kg"},

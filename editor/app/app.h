@@ -9,6 +9,7 @@
 #include <string>
 
 #include "editor/app/findings.h"
+#include "editor/app/layout.h"
 #include "editor/app/panel.h"
 #include "editor/app/question.h"
 #include "editor/app/settings.h"
@@ -74,6 +75,10 @@ class App {
 
  private:
   void frame(std::span<const InputEvent> arrived, double dt);
+  void notice_changes();  // of the document and the view: another picture
+  Status follow_script(std::vector<InputEvent>& events);
+  Layout layout() const;
+  void draw_all(const Layout& at, double dt);
   bool shortcut_counts(const Action& action, const InputEvent& event) const;
   void keys(std::span<const InputEvent> events);
   void draw_top(float high);
@@ -84,7 +89,12 @@ class App {
   bool top_has_two_rows() const;
   void draw_bottom_bar();
   void draw_side(Panel::Place place, ImVec2 low, ImVec2 high);
+  void draw_tabs(Panel::Place place);
   void draw_viewport(ImVec2 low, ImVec2 high, double dt);
+  ViewportInput viewport_input(ImVec2 low, ImVec2 high, double dt);
+  bool offer_to_tool(const ViewportInput& in);
+  void move_camera(const ViewportInput& in, bool active, bool taken);
+  void pick(const ViewportInput& in, bool taken);
   void draw_start(ImVec2 low, ImVec2 high);
   bool ask_for_devices();
   void begin_play();

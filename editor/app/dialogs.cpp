@@ -21,6 +21,51 @@ void App::ask(Question question) {
   questions_.push_back(std::move(question));
 }
 
+void App::ask_to_leave() {
+  if (!after_leaving_) return;
+  const ui::Scope scope("Unsaved");
+  ImGui::OpenPopup("Unsaved changes");
+  ImGui::SetNextWindowPos({0.5f * ImGui::GetIO().DisplaySize.x, 0.4f * ImGui::GetIO().DisplaySize.y}, ImGuiCond_Always,
+                          {0.5f, 0.5f});
+  if (!ImGui::BeginPopupModal(
+          "Unsaved changes", nullptr,
+          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove))
+    return;
+  ui::title("Save the changes?");
+  ui::gap();
+  ImGui::TextUnformatted(
+      fmt::format("{} has changes that are in no file.", printable(editor.document.title())).c_str());
+  ui::gap(ui::kPad);
+  const auto go = [&] {
+    auto then = std::exchange(after_leaving_, nullptr);
+    ImGui::CloseCurrentPopup();
+    then();
+  };
+  const bool saves = ui::strong_button("Save", nullptr, true, 110);
+  if (ImGui::IsWindowAppearing()) {
+    ImGui::SetItemDefaultFocus();
+    ui::lead_by_keyboard();
+  }
+  if (saves) {
+    if (editor.document.file().empty()) {
+      auto then = std::exchange(after_leaving_, nullptr);
+      ImGui::CloseCurrentPopup();
+      files_->save_as(std::move(then));
+    } else if (save()) {
+      go();
+    }
+  }
+  ImGui::SameLine();
+  if (ui::button("Discard", "Undo could not bring them back.", true, 110)) go();
+  ImGui::SameLine();
+  if (ui::button("Cancel", "Esc", true, 110) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+    after_leaving_ = nullptr;
+    wants_out_ = false;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
 void App::draw_question() {
   if (questions_.empty() || after_leaving_) return;
   const ui::Scope scope("Question");

@@ -90,6 +90,8 @@ class Files {
 
 // Whether a name has an extension in which a level can be saved.
 bool is_level_name(const std::filesystem::path& file);
+// "today 14:03:20", or with its date.
+std::string time_text(std::filesystem::file_time_type time);
 // For documents without a file: "liver.level.glb"
 std::string suggested_name(const class Document& document);
 

@@ -13,10 +13,10 @@
 namespace pliant {
 namespace {
 
-constexpr float kPickReach = 9.0f;    // [point] of the mouse, to a point of the plot
-constexpr double kAir = 1.35;         // [1] margin around the outermost points
-constexpr double kLeastError = 1e-4;  // [1] drawn value for a zero error
-constexpr double kLeastCost = 1e-3;   // [us]
+constexpr float kPlotPickReach = 9.0f;  // [point] of the mouse, to a point of the plot
+constexpr double kAir = 1.35;           // [1] margin around the outermost points
+constexpr double kLeastError = 1e-4;    // [1] drawn value for a zero error
+constexpr double kLeastCost = 1e-3;     // [us]
 
 std::string ms_text(const ModelCandidate& it) {
   return it.ms > 0.0 ? fmt::format("{:.2g}", it.ms) : "\u2013";
@@ -138,7 +138,7 @@ void CandidateView::plot(const ModelChoice& choice, float wide, float high, bool
       front.size(), [&](std::size_t i) { return front[i]; }, p.faint, 1.0f);
   plot.level(errors.front(), p.accent, fmt::format("budget {:.3g}", choice.budget).c_str());
   const ImVec2 mouse = ImGui::GetIO().MousePos;
-  float nearest = ui::px(kPickReach);
+  float nearest = ui::px(kPlotPickReach);
   for (std::size_t i = 0; i < choice.tried.size(); ++i) {
     const ModelCandidate& it = choice.tried[i];
     const dvec2 at(cost_of(it), error_of(it));

@@ -76,7 +76,7 @@ class InspectorPanel : public Panel {
       }
       const dvec3 size = world_size(editor, node);
       ui::dim(fmt::format("{} triangles, {} vertices\n{} \u00d7 {} \u00d7 {} in the world", triangles, vertices,
-                          length_text(size.x, 3), length_text(size.y, 3), length_text(size.z, 3))
+                          metres_text(size.x, 3), metres_text(size.y, 3), metres_text(size.z, 3))
                   .c_str());
     }
   }

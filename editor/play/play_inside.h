@@ -7,7 +7,7 @@
 #include "editor/play/play_run.h"
 #include "engine/run/journal.h"
 #include "engine/run/kept_recording.h"
-#include "engine/session/session_inside.h"
+#include "engine/session/session_run.h"
 
 namespace pliant {
 
@@ -16,7 +16,7 @@ struct PlayRun::Inside {
 
   PlayRun& run;
   std::optional<Session> session;
-  Session::Parts* parts = nullptr;
+  SessionRun* inner = nullptr;
   std::optional<Journal> journal;  // touch clock -> this thread
   std::vector<TickRow> rows;
   KeptRecording* kept = nullptr;  // the session's recorder fills and owns it; null: no probe and no tool
@@ -75,7 +75,7 @@ struct PlayRun::Inside {
   void move_hand(double dt);
   void hold_again();
   void flush();
-  bool still() const { return !realtime && (again ? parts->ticks >= until : paused && steps == 0); }
+  bool still() const { return !realtime && (again ? inner->ticks >= until : paused && steps == 0); }
 };
 
 }  // namespace pliant

@@ -75,14 +75,14 @@ void PlayRun::order(const DeviceOrders& orders) {
     for (const std::string& name : orders.arm) static_cast<void>(in.session->arm(name));
     for (const std::string& name : orders.disarm) static_cast<void>(in.session->disarm(name));
     for (const std::string& name : orders.stop)
-      if (SessionEffector* const effector = in.parts->find_effector(name)) effector->link.stop();
+      if (SessionEffector* const effector = in.inner->find_effector(name)) effector->link.stop();
   });
 }
 
 void PlayRun::go_to(std::uint64_t tick) {
   post([tick](Inside& in) {
     if (in.again)
-      in.until = std::min<std::uint64_t>(std::max(tick, in.parts->ticks), in.run.options_.past->ticks.size());
+      in.until = std::min<std::uint64_t>(std::max(tick, in.inner->ticks), in.run.options_.past->ticks.size());
   });
 }
 
@@ -122,8 +122,8 @@ void PlayRun::wait() {
 
 bool PlayRun::make_picture(const std::function<void(World&)>& make) {
   const std::lock_guard still(stands_still_);
-  if (!opened() || inside_->parts->clock()) return false;
-  make(inside_->parts->world);
+  if (!opened() || inside_->inner->clock()) return false;
+  make(inside_->inner->world);
   const std::lock_guard lock(mutex_);
   pictured_ = true;
   changed_.notify_all();

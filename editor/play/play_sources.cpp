@@ -13,12 +13,12 @@
 namespace pliant {
 
 PlayRun::Inside::Level PlayRun::Inside::remember(const SessionEffector& effector) const {
-  const HapticDevice& device = parts->world.registry.get<HapticDevice>(effector.device);
+  const HapticDevice& device = inner->world.registry.get<HapticDevice>(effector.device);
   return {device.driver, device.path, effector.source, device.id};
 }
 
 void PlayRun::Inside::bring_back(SessionEffector& effector, const Level& level) {
-  HapticDevice& device = parts->world.registry.get<HapticDevice>(effector.device);
+  HapticDevice& device = inner->world.registry.get<HapticDevice>(effector.device);
   device.driver = level.driver;
   device.path = level.path;
   device.status = level.path.valid() ? DeviceStatus::kReady : DeviceStatus::kLost;
@@ -29,9 +29,9 @@ void PlayRun::Inside::bring_back(SessionEffector& effector, const Level& level) 
 
 // If the source is not available, the probe has none.
 void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
-  SessionEffector* const effector = parts->find_effector(name);
+  SessionEffector* const effector = inner->find_effector(name);
   if (!effector) return;
-  const auto index = static_cast<std::size_t>(effector - parts->effectors.data());
+  const auto index = static_cast<std::size_t>(effector - inner->effectors.data());
   PlaySource::Kind kind = source.kind;
   std::string wish = source.what;
   if (kind == PlaySource::Kind::kLevel && of_level[index].driver == DriverKind::kMouse) kind = PlaySource::Kind::kMouse;
@@ -54,15 +54,15 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
     moved.clear();
     run.hand.let_go();
     effector->hold = {};
-    if (Probe* const probe = parts->world.registry.find<Probe>(effector->entity)) probe->hold = {};
+    if (Probe* const probe = inner->world.registry.find<Probe>(effector->entity)) probe->hold = {};
   }
   sources[index] = source;
-  HapticDevice& device = parts->world.registry.get<HapticDevice>(effector->device);
+  HapticDevice& device = inner->world.registry.get<HapticDevice>(effector->device);
   const dquat rotation = device.rotation;
   if (effector->source != EffectorSource::kNone && effector->source != EffectorSource::kLevel)
     static_cast<void>(session->release(name));
   connected.erase(name);
-  if (kind == PlaySource::Kind::kDriver && (run.options_.past || parts->ticks > 0)) {
+  if (kind == PlaySource::Kind::kDriver && (run.options_.past || inner->ticks > 0)) {
     say(fmt::format("the device of `{}` takes over at the next Play", name));  // it needs real time
     static_cast<void>(session->release(name));
     return;
@@ -112,17 +112,17 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
         say(fmt::format("the mouse moves `{}` now; nothing moves `{}`", name, before));
       }
       dvec3 at = device.position;
-      if (const Probe* probe = parts->world.registry.find<Probe>(effector->entity)) {
-        run.hand.take_probe(parts->world, *probe, run.options_.view,
-                            parts->ticks > 0 ? std::optional(device.position) : std::nullopt);
+      if (const Probe* probe = inner->world.registry.find<Probe>(effector->entity)) {
+        run.hand.take_probe(inner->world, *probe, run.options_.view,
+                            inner->ticks > 0 ? std::optional(device.position) : std::nullopt);
         at = run.hand.update(0.0).value_or(at);
       } else {
-        if (parts->ticks == 0)
-          if (const Pose* pose = parts->world.registry.find<Pose>(effector->entity)) at = pose->position;
-        run.hand.take_tool(parts->world, effector->entity, at);
+        if (inner->ticks == 0)
+          if (const Pose* pose = inner->world.registry.find<Pose>(effector->entity)) at = pose->position;
+        run.hand.take_tool(inner->world, effector->entity, at);
       }
       held = rotation;
-      if (const Pose* pose = parts->world.registry.find<Pose>(effector->entity); pose && parts->ticks == 0)
+      if (const Pose* pose = inner->world.registry.find<Pose>(effector->entity); pose && inner->ticks == 0)
         held = pose->rotation;
       done = session->move(name, at, held);
       if (done) moved = name;
@@ -145,19 +145,19 @@ Status PlayRun::Inside::connect(const SessionEffector& effector, const std::stri
   auto made = make_device(chosen->id);
   if (!made) return made.error();
   for (const std::string& note : made->notes) say(fmt::format("`{}`: {}", effector.name, note));
-  if (Status s = parts->connect(effector.name, std::move(made->driver), made->id, chosen->id); !s) return s;
+  if (Status s = inner->connect(effector.name, std::move(made->driver), made->id, chosen->id); !s) return s;
   if (!effector.link.note().empty()) say(fmt::format("`{}`: {}", effector.name, effector.link.note()));
   connected[effector.name] = {chosen->id, chosen->name};
   return Done{};
 }
 
 bool PlayRun::Inside::feels() const {
-  return std::any_of(parts->effectors.begin(), parts->effectors.end(),
+  return std::any_of(inner->effectors.begin(), inner->effectors.end(),
                      [](const SessionEffector& each) { return each.link.connected(); });
 }
 
 void PlayRun::Inside::view(DevicesView& out) const {
-  for (SessionEffector& each : parts->effectors) {
+  for (SessionEffector& each : inner->effectors) {
     const auto of = connected.find(each.name);
     if (each.link && of != connected.end())
       out.devices.push_back({each.name, of->second.first, of->second.second, each.link.can(), each.link.report()});
@@ -168,7 +168,7 @@ void PlayRun::Inside::view(DevicesView& out) const {
 
 void PlayRun::Inside::apply_all() {
   std::vector<std::pair<std::string, PlaySource>> wanted;
-  for (const SessionEffector& effector : parts->effectors) {
+  for (const SessionEffector& effector : inner->effectors) {
     PlaySource source;
     for (const auto& [name, its] : run.options_.sources)
       if (name == effector.name) source = its;
@@ -178,7 +178,7 @@ void PlayRun::Inside::apply_all() {
   std::stable_partition(wanted.begin(), wanted.end(),
                         [](const auto& each) { return each.second.kind == PlaySource::Kind::kMouse; });
   for (auto& [name, source] : wanted) {
-    const auto index = static_cast<std::size_t>(parts->find_effector(name) - parts->effectors.data());
+    const auto index = static_cast<std::size_t>(inner->find_effector(name) - inner->effectors.data());
     const bool another = source.kind == PlaySource::Kind::kLevel && of_level[index].driver == DriverKind::kMouse;
     if (another && !moved.empty()) {
       say(fmt::format("the mouse moves `{}`; nothing moves `{}`: choose the mouse for it under What moves the probes",
@@ -194,8 +194,8 @@ void PlayRun::Inside::apply_all() {
 void PlayRun::Inside::watch() {
   watched.clear();
   if (!moved.empty() || realtime) return;
-  for (const SessionEffector& effector : parts->effectors)
-    if (!parts->world.registry.has<Probe>(effector.entity)) {
+  for (const SessionEffector& effector : inner->effectors)
+    if (!inner->world.registry.has<Probe>(effector.entity)) {
       watched = effector.name;
       run.hand.watch_tool(effector.entity);
       return;
@@ -204,23 +204,23 @@ void PlayRun::Inside::watch() {
 
 void PlayRun::Inside::begin_past(const PlayPast& of, std::uint64_t to) {
   before_past.clear();
-  for (const SessionEffector& effector : parts->effectors) before_past.push_back(remember(effector));
+  for (const SessionEffector& effector : inner->effectors) before_past.push_back(remember(effector));
   run.hand.let_go();
   until = std::min<std::uint64_t>(to, of.ticks.size());
   next_hold = 0;
   again = true;
-  parts->begin_replay(of);
+  inner->begin_replay(of);
 }
 
 // The present starts at the time that was reached.
 void PlayRun::Inside::end_past() {
   again = false;
-  parts->replay.reset();
-  parts->replayed.reset();
+  inner->replay.reset();
+  inner->replayed.reset();
   const std::vector<PlaySource> wanted = sources;
   moved.clear();
-  for (std::size_t i = 0; i < parts->effectors.size(); ++i) {
-    SessionEffector& effector = parts->effectors[i];
+  for (std::size_t i = 0; i < inner->effectors.size(); ++i) {
+    SessionEffector& effector = inner->effectors[i];
     if (before_past[i].source == EffectorSource::kPose || before_past[i].source == EffectorSource::kDriver) {
       effector.source = EffectorSource::kNone;
       apply(effector.name, wanted[i]);

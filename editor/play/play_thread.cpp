@@ -105,7 +105,7 @@ void PlayRun::Inside::tell() {
 PlayPast PlayRun::Inside::past() const {
   PlayPast past;
   if (kept) static_cast<Recording&>(past) = kept->copy();
-  past.header.rate = parts->world.simulation.touch_rate;
+  past.header.rate = inner->world.simulation.touch_rate;
   past.holds = holds;
   return past;
 }
@@ -126,8 +126,8 @@ Status PlayRun::open(Inside& in) {
   auto session = Session::open(Scene(*level));
   if (!session) return session.error();
   in.session = std::move(session).value();
-  in.parts = &SessionInside::of(*in.session);
-  World& world = in.parts->world;
+  in.inner = &SessionRun::of(*in.session);
+  World& world = in.inner->world;
   for (const std::string& note : in.session->notes()) in.say(note);
   if (level->environment && !level->environment->panorama.empty()) {
     auto panorama = load_named_panorama(level->path.parent_path(), level->environment->panorama, &in.notes);
@@ -136,10 +136,10 @@ Status PlayRun::open(Inside& in) {
     else
       in.say("the surroundings cannot be shown: " + panorama.error().message());
   }
-  const std::size_t count = in.parts->effectors.size();
+  const std::size_t count = in.inner->effectors.size();
   if (count == 0) in.say("the level has no probe and no tool, so nothing is touched");
   in.journal.emplace(world, kRowSeconds);
-  in.parts->noted = [&in](Tick tick) { in.journal->note(in.parts->world, tick); };
+  in.inner->noted = [&in](Tick tick) { in.journal->note(in.inner->world, tick); };
   in.limited.resize(count);
   in.sources.resize(count);
   in.realtime = options_.realtime && !options_.past;
@@ -149,7 +149,7 @@ Status PlayRun::open(Inside& in) {
   for (auto [entity, device] : world.registry.view<const HapticDevice>())
     if (device.driver == DriverKind::kScript && device.path.valid())
       in.period = std::max(in.period, world.paths[device.path].rows.back().time);
-  for (const SessionEffector& effector : in.parts->effectors) in.of_level.push_back(in.remember(effector));
+  for (const SessionEffector& effector : in.inner->effectors) in.of_level.push_back(in.remember(effector));
   in.apply_all();
   if (!options_.past && !in.realtime && in.feels()) {
     in.realtime = true;
@@ -160,13 +160,13 @@ Status PlayRun::open(Inside& in) {
   if (count > 0) {
     auto sink = std::make_unique<KeptRecording>(count, PlayPast::kMostTicks);
     in.kept = sink.get();
-    in.parts->recorder = std::make_unique<PoseRecorder>(std::move(sink), count);
+    in.inner->recorder = std::make_unique<PoseRecorder>(std::move(sink), count);
   }
   {
     const std::lock_guard lock(mutex_);
     samples_.resize(count);
   }
-  in.status.objects = in.parts->objects;
+  in.status.objects = in.inner->objects;
   show(in);
   return Done{};
 }
@@ -185,7 +185,7 @@ Status PlayRun::begin(Inside& in) {
 
 Status PlayRun::Inside::tick() {
   hold_again();
-  move_hand(1.0 / parts->world.simulation.touch_rate);
+  move_hand(1.0 / inner->world.simulation.touch_rate);
   const Status done = session->step(1);
   take_rows();
   return done;
@@ -197,11 +197,11 @@ void PlayRun::Inside::move_hand(double dt) {
   if (moved.empty()) return;
   const std::optional<dvec3> to = run.hand.update(dt);
   if (!to) return;
-  SessionEffector& effector = *parts->find_effector(moved);
+  SessionEffector& effector = *inner->find_effector(moved);
   const ProbeHold hold = run.hand.probe_hold();
   if (!(hold == effector.hold) && kept->ticks() < PlayPast::kMostTicks) {
-    const std::uint64_t at = realtime && parts->clock() ? parts->clock()->now() + 1 : parts->ticks;
-    holds.push_back({at, static_cast<std::uint32_t>(&effector - parts->effectors.data()), hold});
+    const std::uint64_t at = realtime && inner->clock() ? inner->clock()->now() + 1 : inner->ticks;
+    holds.push_back({at, static_cast<std::uint32_t>(&effector - inner->effectors.data()), hold});
   }
   effector.hold = hold;
   static_cast<void>(session->move(moved, *to, held));
@@ -210,12 +210,12 @@ void PlayRun::Inside::move_hand(double dt) {
 // Restores the mouse's drags of a repeated past.
 void PlayRun::Inside::hold_again() {
   if (!again) return;
-  for (const auto& had = run.options_.past->holds; next_hold < had.size() && had[next_hold].tick <= parts->ticks;
+  for (const auto& had = run.options_.past->holds; next_hold < had.size() && had[next_hold].tick <= inner->ticks;
        ++next_hold) {
     const PlayHold& hold = had[next_hold];
-    if (Probe* const probe = parts->world.registry.find<Probe>(parts->effectors[hold.effector].entity))
+    if (Probe* const probe = inner->world.registry.find<Probe>(inner->effectors[hold.effector].entity))
       probe->hold = hold.hold;
-    parts->effectors[hold.effector].hold = hold.hold;
+    inner->effectors[hold.effector].hold = hold.hold;
     holds.push_back(hold);
   }
 }
@@ -224,7 +224,7 @@ void PlayRun::Inside::take_rows() {
   rows.clear();
   journal->drain(rows);
   if (rows.empty()) return;
-  const std::size_t count = parts->effectors.size();
+  const std::size_t count = inner->effectors.size();
   const std::lock_guard lock(run.mutex_);
   for (const TickRow& row : rows) {
     if (row.probe >= count) continue;
@@ -236,8 +236,8 @@ void PlayRun::Inside::take_rows() {
     sample.depth = static_cast<float>(row.reading.depth);
     sample.limited = row.limited;
     sample.touching = row.reading.in_contact;
-    for (std::size_t i = 0; i < parts->object_entities.size(); ++i)
-      if (sample.touching && parts->object_entities[i] == row.reading.object)
+    for (std::size_t i = 0; i < inner->object_entities.size(); ++i)
+      if (sample.touching && inner->object_entities[i] == row.reading.object)
         sample.object = static_cast<std::uint16_t>(i);
     for (std::size_t i = 0; i < kSafetyLimits; ++i) limited[row.probe][i] += (row.limited >> i) & 1u;
     run.samples_[row.probe].push_back(sample);
@@ -246,13 +246,13 @@ void PlayRun::Inside::take_rows() {
 
 // Publishes all changes, after the last tick.
 void PlayRun::Inside::flush() {
-  World& world = parts->world;
+  World& world = inner->world;
   if (world.snapshots->unseen()) return;
   const bool dirty = std::any_of(world.touch->objects.begin(), world.touch->objects.end(),
                                  [](const ObjectState& object) { return !object.dirty.empty(); });
-  if (flushed == parts->ticks && !dirty) return;
-  flushed = parts->ticks;
-  publish(world, parts->last);
+  if (flushed == inner->ticks && !dirty) return;
+  flushed = inner->ticks;
+  publish(world, inner->last);
 }
 
 void PlayRun::turn(Inside& in) {
@@ -266,7 +266,7 @@ void PlayRun::turn(Inside& in) {
   const double passed = seconds_since(in.turned_ns);
   in.turned_ns = now_ns();
   const std::uint64_t began = in.turned_ns;
-  const double rate = in.parts->world.simulation.touch_rate;
+  const double rate = in.inner->world.simulation.touch_rate;
   Status status = Done{};
   bool more = false;
   if (in.realtime) {
@@ -279,8 +279,8 @@ void PlayRun::turn(Inside& in) {
     }
   } else {
     if (in.again) {
-      while (status && !end_ && in.parts->ticks < in.until && seconds_since(began) < kTickSlice) status = in.tick();
-      more = in.parts->ticks < in.until;
+      while (status && !end_ && in.inner->ticks < in.until && seconds_since(began) < kTickSlice) status = in.tick();
+      more = in.inner->ticks < in.until;
     } else if (in.steps > 0) {
       for (; status && !end_ && in.steps > 0 && seconds_since(began) < kTickSlice; --in.steps) status = in.tick();
       more = in.steps > 0;
@@ -307,7 +307,7 @@ void PlayRun::turn(Inside& in) {
 }
 
 void PlayRun::show(Inside& in) {
-  const Session::Parts& p = *in.parts;
+  const SessionRun& p = *in.inner;
   const bool still = in.still() && !in.opening;
   const bool figures = seconds_since(in.shown_ns) > kShowEvery || still;
   if (figures) in.shown_ns = now_ns();
@@ -344,7 +344,7 @@ void PlayRun::show(Inside& in) {
   in.view(shown.devices);
   shown.devices.late_ticks = shown.figures.overruns;
   const SoftFigures* const soft = !p.runner->soft().any() ? nullptr
-                                  : p.clock()             ? &in.parts->runner->soft().latest()
+                                  : p.clock()             ? &in.inner->runner->soft().latest()
                                                           : &p.runner->soft().figures();
   shown.surfaces.clear();
   for (const auto& [name, surface] : p.surfaces) shown.surfaces.emplace(name, surface);
@@ -375,16 +375,16 @@ void PlayRun::close(Inside& in) {
   if (!in.session) return;
   const std::lock_guard works(stands_still_);
   Status ended = in.session->stop();
-  for (SessionEffector& effector : in.parts->effectors) in.parts->take_away(effector, EffectorSource::kReleased);
-  in.parts->noted = nullptr;
+  for (SessionEffector& effector : in.inner->effectors) in.inner->take_away(effector, EffectorSource::kReleased);
+  in.inner->noted = nullptr;
   if (in.journal) in.take_rows();
-  if (in.parts->recorder) {
-    const Status complete = in.parts->recorder->finish();
+  if (in.inner->recorder) {
+    const Status complete = in.inner->recorder->finish();
     if (ended) ended = complete;
   }
   auto past = std::make_shared<const PlayPast>(in.past());
   in.kept = nullptr;
-  in.parts->recorder.reset();
+  in.inner->recorder.reset();
   {
     const std::lock_guard lock(kept->mutex);
     kept->past = std::move(past);

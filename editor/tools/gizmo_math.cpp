@@ -251,7 +251,7 @@ TypedValue typed_value(const std::string& text, const std::string& unit) {
   return out;
 }
 
-std::string length_text(double metres, int digits) {
+std::string metres_text(double metres, int digits) {
   const double size = std::abs(metres);
   const auto [unit, name] = size == 0.0   ? std::pair{1.0, "m"}
                             : size < 1e-6 ? std::pair{1e-9, "nm"}

@@ -86,6 +86,6 @@ struct TypedValue {
 TypedValue typed_value(const std::string& text, const std::string& unit);
 
 // "12 mm", with a suitable unit.
-std::string length_text(double metres, int digits = 4);
+std::string metres_text(double metres, int digits = 4);
 
 }  // namespace pliant

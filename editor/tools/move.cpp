@@ -51,11 +51,11 @@ class MoveTool : public GizmoTool {
   std::vector<Placing> placings(dvec3 by) const override { return moved(grip_, grip_.axes * by); }
   std::string readout(dvec3 by) const override {
     if (waits_) return "preparing the surface under the mouse";
-    if (is_axis(part_)) return fmt::format("{}  {}", "xyz"[axis_of(part_)], length_text(by[axis_of(part_)]));
+    if (is_axis(part_)) return fmt::format("{}  {}", "xyz"[axis_of(part_)], metres_text(by[axis_of(part_)]));
     std::string text;
     for (int i = 0; i < 3; ++i)
       if (!is_plane(part_) || i != axis_of(part_))
-        text += fmt::format("{}{}  {}", text.empty() ? "" : "   ", "xyz"[i], length_text(by[i], 3));
+        text += fmt::format("{}{}  {}", text.empty() ? "" : "   ", "xyz"[i], metres_text(by[i], 3));
     return text;
   }
   GizmoPart pick(const GizmoPicture& picture, const GizmoGrip& grip, dvec2 mouse) const override {

@@ -85,7 +85,15 @@ class SolidView {
   MeshOnGpu& on_gpu(const std::shared_ptr<const DocumentMesh>& mesh);
   void show_values(MeshOnGpu& mesh, std::size_t number, const SolidOrder& order);
   void make_room(int width, int height);
+  struct Scene;
   void draw_scene(const SolidOrder& order, int width, int height);
+  void clear(const SolidOrder& order, int width, int height);
+  void draw_meshes(Scene& scene);
+  void set_up_surfaces(const Scene& scene);
+  // Of node `i`.
+  void draw_surfaces(const Scene& scene, std::size_t i, MeshOnGpu& mesh);
+  void draw_edges(const Scene& scene, std::size_t i, MeshOnGpu& mesh, std::size_t primitive);
+  static void add_overlays(Scene& scene, std::size_t i, MeshOnGpu& mesh);
   void draw_ends(const std::vector<LineEnd>& ends, const mat4& clip_from_world, bool over, bool points = false);
   static void add_grid(const SolidOrder& order, std::vector<LineEnd>& ends);
   static void add_edges(PrimitiveOnGpu& to, const Primitive& primitive);

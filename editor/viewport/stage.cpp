@@ -14,7 +14,7 @@ constexpr double kTooLong = 1000.0;                            // [ms] limit for
                                                                // responsive
 constexpr auto kRefineAfter = std::chrono::milliseconds(160);  // without changes, after which a coarse picture is
                                                                // redrawn in full
-constexpr double kFinest = 2.0;                                // [1] of the resolution, each way: edges are smoothed
+constexpr double kFinestPicture = 2.0;                         // [1] of the resolution, each way: edges are smoothed
 
 }  // namespace
 
@@ -27,7 +27,7 @@ Result<std::unique_ptr<Stage>> Stage::create(Window& window, std::function<void(
   stage->wake_ = std::move(wake);
   const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   const bool software = renderer && (std::strstr(renderer, "llvmpipe") || std::strstr(renderer, "softpipe"));
-  stage->budget_ = PictureBudget(software ? 1.0 : kFinest);
+  stage->budget_ = PictureBudget(software ? 1.0 : kFinestPicture);
   window.take_context();
   stage->thread_ = std::thread([s = stage.get()] { s->run(); });
   return stage;

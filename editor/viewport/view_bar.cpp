@@ -117,7 +117,7 @@ void ViewBar::draw_over(const Editor& editor, const ViewportInput& in, ImDrawLis
   const ui::Palette& p = ui::palette();
   if (editor.view.names) draw_names(editor, in, list);
   if (editor.view.grid) {
-    const std::string text = "Grid  " + length_text(grid_step(in.view, in.orthographic));
+    const std::string text = "Grid  " + metres_text(grid_step(in.view, in.orthographic));
     const ImVec2 at(in.corner.x + ui::px(ui::kPad), in.corner.y + static_cast<float>(in.height) - ui::px(26));
     const ImVec2 size = size_of(text), around(ui::px(ui::kGap), ui::px(2));
     list.AddRectFilled({at.x - around.x, at.y - around.y}, {at.x + size.x + around.x, at.y + size.y + around.y},

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runtime/clock.h"
+#include "systems/device/hands.h"
 #include "systems/schedule.h"
 #include "systems/touch/collide/surface_distance.h"
 #include "systems/touch/prepare/prepare.h"
@@ -11,23 +12,6 @@ namespace pliant {
 namespace {
 
 constexpr double kAside = 0.01;  // [1] of the reach
-
-Entity add_probe(World& world, double radius, dvec3 at) {
-  const Entity entity = world.registry.create();
-  Probe probe;
-  probe.device = entity;
-  probe.radius = radius;
-  probe.position = at;
-  world.registry.add(entity, Name{"press"});
-  world.registry.add(entity, probe);
-  HapticDevice device;
-  device.driver = DriverKind::kExternal;
-  device.position = at;
-  device.max_force = 1e9;
-  device.max_slew = 1e12;
-  world.registry.add(entity, device);
-  return entity;
-}
 
 // Offsets of vertices along the surface from the contact, up to `reach` [m].
 std::vector<vec3> distances(const Mesh& mesh, const Contact& contact, double reach) {
@@ -75,8 +59,9 @@ Result<PressBench> PressBench::make(const Level& level, const PressPlaces* place
   const Pose pose = bench.world_.registry.get<Pose>(bench.object_);
   for (std::size_t k = 0; k < bench.places_.foot.size(); ++k) {
     const double outside = probe_radius + bench.aside_;
-    bench.probes_.push_back(add_probe(bench.world_, probe_radius,
-                                      pose.to_world(bench.places_.foot[k] + outside * bench.places_.normal[k])));
+    const dvec3 at = pose.to_world(bench.places_.foot[k] + outside * bench.places_.normal[k]);
+    bench.probes_.push_back(add_free_probe(bench.world_, "press", probe_radius, at));
+    bench.world_.registry.get<Probe>(bench.probes_.back()).position = at;
   }
   bench.regions_.resize(bench.probes_.size());
   return bench;

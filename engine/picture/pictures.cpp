@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 #include "pliant/picture.h"
 #include "systems/visual/gpu/context.h"
 #include "systems/visual/renderer.h"
@@ -29,20 +29,21 @@ Status check(const PictureView& view, int width, int height) {
 
 // The session's view passes every snapshot on to the renderer.
 struct Pictures::Parts {
-  Session::Parts* session = nullptr;
-  std::weak_ptr<int> run;  // of the session
+  SessionRun* session = nullptr;
+  std::weak_ptr<int> session_alive;
   std::unique_ptr<HeadlessContext> context;
   std::unique_ptr<Renderer> renderer;
 
   ~Parts() {
     if (context) context->make_current();
     renderer.reset();
-    if (run.expired()) return;
+    if (session_alive.expired()) return;
     session->view.seen = {};
     session->view.soft_seen = {};
   }
   Status ready() {
-    if (run.expired()) return Error{"Pictures", "its session has been restarted or has ended", "make Pictures anew"};
+    if (session_alive.expired())
+      return Error{"Pictures", "its session has been restarted or has ended", "make Pictures anew"};
     if (context) context->make_current();
     session->look();
     return Done{};
@@ -52,7 +53,7 @@ struct Pictures::Parts {
 };
 
 Status Pictures::Parts::may_make(const Session& session) {
-  const Session::Parts& of = *session.parts_;
+  const SessionRun& of = SessionRun::of(session);
   if (Status s = of.stand_still("Pictures"); !s) return s;
   if (of.ended) return Error{"Pictures", std::string(of.ended), "call Session::restart() first"};
   if (of.view.seen) return Error{"Pictures", "the session has Pictures already", "let them go first"};
@@ -60,7 +61,7 @@ Status Pictures::Parts::may_make(const Session& session) {
 }
 
 Result<Pictures> Pictures::Parts::make(Session& session, std::unique_ptr<HeadlessContext> context) {
-  Session::Parts& of = *session.parts_;
+  SessionRun& of = SessionRun::of(session);
   auto parts = std::make_unique<Parts>();
   parts->context = std::move(context);
   of.look();
@@ -68,7 +69,7 @@ Result<Pictures> Pictures::Parts::make(Session& session, std::unique_ptr<Headles
   if (!renderer) return renderer.error();
   parts->renderer = std::move(renderer).value();
   parts->session = &of;
-  parts->run = of.run;
+  parts->session_alive = of.alive;
   Renderer* const to = parts->renderer.get();
   of.view.seen = [to](const Snapshot& snapshot) { to->update(snapshot); };
   of.view.soft_seen = [to](const SoftSnapshot& snapshot) { to->update(snapshot); };
@@ -93,7 +94,7 @@ Result<Pictures> Pictures::in_current_context(Session& session) {
 }
 
 PictureView Pictures::view() const {
-  if (parts_->run.expired()) return {};
+  if (parts_->session_alive.expired()) return {};
   const Viewpoint at = default_viewpoint(parts_->session->world);
   return {at.eye, at.target, at.up, at.yfov};
 }

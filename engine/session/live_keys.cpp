@@ -1,7 +1,5 @@
 #include "engine/session/live_keys.h"
 
-#include "engine/session/session_parts.h"
-
 namespace pliant {
 namespace {
 

@@ -9,7 +9,7 @@
 #include "devices/wrappers/chain.h"
 #include "engine/run/sources.h"
 #include "engine/session/scene_check.h"
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 #include "runtime/long_work.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/soft_state.h"
@@ -24,13 +24,13 @@ bool all_finite(dvec3 v) {
 
 }  // namespace
 
-Session::Session(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Session::Session(std::unique_ptr<SessionRun> run) : run_(std::move(run)) {}
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
 Session::~Session() = default;
 
 Result<Session> Session::open(const Scene& scene, const OpenProgress& progress) {
-  auto parts = std::make_unique<Parts>(scene);
+  auto parts = std::make_unique<SessionRun>(scene);
   const WatchedWork watch(progress);
   if (Status s = parts->prepare(); !s) return s.error();
   if (progress && !progress(1.0, "ready")) return work_stopped();
@@ -38,32 +38,32 @@ Result<Session> Session::open(const Scene& scene, const OpenProgress& progress) 
 }
 
 const std::vector<std::string>& Session::notes() const& {
-  return parts_->notes;
+  return run_->notes;
 }
 std::vector<std::string> Session::notes() && {
-  return std::move(parts_->notes);
+  return std::move(run_->notes);
 }
 const std::vector<std::string>& Session::objects() const& {
-  return parts_->objects;
+  return run_->objects;
 }
 std::vector<std::string> Session::objects() && {
-  return parts_->objects;
+  return run_->objects;
 }
 std::vector<std::string> Session::effectors() const {
   std::vector<std::string> names;
-  for (const SessionEffector& effector : parts_->effectors) names.push_back(effector.name);
+  for (const SessionEffector& effector : run_->effectors) names.push_back(effector.name);
   return names;
 }
 
 Status Session::move(const std::string& name, dvec3 position, dquat rotation) {
-  SessionEffector* const effector = parts_->find_effector(name);
-  if (!effector) return parts_->unknown_effector(name);
+  SessionEffector* const effector = run_->find_effector(name);
+  if (!effector) return run_->unknown_effector(name);
   if (!all_finite(position) || !plausible_rotation(rotation))
     return Error{"Session::move `" + name + "`", "the pose is not finite or its rotation is not of unit length"};
   if (effector->source != EffectorSource::kPose) {
-    if (Status s = parts_->stand_still("Session::move"); !s)
+    if (Status s = run_->stand_still("Session::move"); !s)
       return Error{"Session::move `" + name + "`", "it had no pose before start()", "give it one first"};
-    if (Status s = parts_->give(*effector, EffectorSource::kPose); !s) return s;
+    if (Status s = run_->give(*effector, EffectorSource::kPose); !s) return s;
   }
   effector->set = effector->prescribed->write() = {position, rotation / glm::length(rotation), effector->hold};
   effector->prescribed->publish();
@@ -71,9 +71,9 @@ Status Session::move(const std::string& name, dvec3 position, dquat rotation) {
 }
 
 Status Session::follow(const std::string& name, Path path) {
-  SessionEffector* const effector = parts_->find_effector(name);
-  if (!effector) return parts_->unknown_effector(name);
-  if (Status s = parts_->stand_still("Session::follow"); !s) return s;
+  SessionEffector* const effector = run_->find_effector(name);
+  if (!effector) return run_->unknown_effector(name);
+  if (Status s = run_->stand_still("Session::follow"); !s) return s;
   if (path.rows.empty()) return Error{"Session::follow `" + name + "`", "the path has no rows", "give it one at least"};
   double before = -std::numeric_limits<double>::infinity();
   for (PathRow& row : path.rows) {
@@ -89,17 +89,17 @@ Status Session::follow(const std::string& name, Path path) {
   }
   Path kept = std::move(effector->path);
   effector->path = std::move(path);
-  Status given = parts_->give(*effector, EffectorSource::kPath);
+  Status given = run_->give(*effector, EffectorSource::kPath);
   if (!given) effector->path = std::move(kept);
   return given;
 }
 
 Status Session::orbit(const std::string& name) {
-  SessionEffector* const effector = parts_->find_effector(name);
-  if (!effector) return parts_->unknown_effector(name);
-  if (Status s = parts_->stand_still("Session::orbit"); !s) return s;
-  const auto index = static_cast<unsigned>(effector - parts_->effectors.data());
-  Path path = orbit_of(parts_->world, effector->entity, index);
+  SessionEffector* const effector = run_->find_effector(name);
+  if (!effector) return run_->unknown_effector(name);
+  if (Status s = run_->stand_still("Session::orbit"); !s) return s;
+  const auto index = static_cast<unsigned>(effector - run_->effectors.data());
+  Path path = orbit_of(run_->world, effector->entity, index);
   if (path.rows.empty())
     return Error{"Session::orbit `" + name + "`", "found no deformable surface", "add one with Scene::add_surface"};
   return follow(name, std::move(path));
@@ -112,25 +112,25 @@ Status Session::connect(const std::string& name, const std::string& driver) {
     return Error{"Session::connect `" + name + "`", "the mouse is the window's: move the probe with Session::move"};
   auto made = make_device(chosen->id);
   if (!made) return made.error();
-  return parts_->connect(name, std::move(made->driver), made->id, chosen->id);
+  return run_->connect(name, std::move(made->driver), made->id, chosen->id);
 }
 
 Status Session::connect(const std::string& name, std::unique_ptr<Driver> driver, const std::string& id) {
-  return parts_->connect(name, std::move(driver), id, {});
+  return run_->connect(name, std::move(driver), id, {});
 }
 
 Status Session::release(const std::string& name) {
-  SessionEffector* const effector = parts_->find_effector(name);
-  if (!effector) return parts_->unknown_effector(name);
-  if (Status s = parts_->stand_still("Session::release"); !s) return s;
-  if (parts_->replayed) return Error{"`" + name + "`", "is moved by a recording", "call Session::restart() first"};
-  parts_->take_away(*effector, EffectorSource::kReleased);
+  SessionEffector* const effector = run_->find_effector(name);
+  if (!effector) return run_->unknown_effector(name);
+  if (Status s = run_->stand_still("Session::release"); !s) return s;
+  if (run_->replayed) return Error{"`" + name + "`", "is moved by a recording", "call Session::restart() first"};
+  run_->take_away(*effector, EffectorSource::kReleased);
   return Done{};
 }
 
 Status Session::step(std::uint64_t ticks) {
-  if (Status s = parts_->stand_still("Session::step"); !s) return s;
-  Parts& p = *parts_;
+  if (Status s = run_->stand_still("Session::step"); !s) return s;
+  SessionRun& p = *run_;
   if (p.ended) return Error{"Session::step", std::string(p.ended), "call Session::restart() first"};
   for (const SessionEffector& effector : p.effectors)
     if (Status s = effector.link.may_step(); !s) return s.error().at("Session::step `" + effector.name + "`");
@@ -165,8 +165,8 @@ Status Session::step(std::uint64_t ticks) {
 }
 
 Status Session::start() {
-  if (Status s = parts_->stand_still("Session::start"); !s) return s;
-  Parts& p = *parts_;
+  if (Status s = run_->stand_still("Session::start"); !s) return s;
+  SessionRun& p = *run_;
   if (p.ticks > 0) return Error{"Session::start", "it has run before", "call Session::restart() first"};
   if (p.ended) return Error{"Session::start", std::string(p.ended), "call Session::restart() first"};
   if (p.replayed) return Error{"Session::start", "a replay runs in lockstep", "call Session::step()"};
@@ -185,17 +185,17 @@ Status Session::start() {
 }
 
 Status Session::pause(bool paused) {
-  if (!parts_->clock()) return Error{"Session::pause", "the clocks do not run", "call Session::start() first"};
-  parts_->runner->pause(paused);
+  if (!run_->clock()) return Error{"Session::pause", "the clocks do not run", "call Session::start() first"};
+  run_->runner->pause(paused);
   return Done{};
 }
 
 bool Session::running() const {
-  return parts_->clock() && !parts_->clock()->done();
+  return run_->clock() && !run_->clock()->done();
 }
 
 Status Session::stop() {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   if (!p.clock()) return Done{};
   p.runner->stop();
   p.halt_drivers();
@@ -209,20 +209,20 @@ Status Session::stop() {
 
 Status Session::restart() {
   Status stopped = stop();
-  parts_->zero_drivers();
-  if (parts_->recorder) {
+  run_->zero_drivers();
+  if (run_->recorder) {
     const Status ended = end_recording();
     if (stopped && !ended) stopped = ended;
   }
-  parts_->replay.reset();
-  parts_->replayed.reset();
-  if (Status s = parts_->prepare(); !s) return s;
+  run_->replay.reset();
+  run_->replayed.reset();
+  if (Status s = run_->prepare(); !s) return s;
   return stopped;
 }
 
 double Session::time() const {
-  if (!parts_->clock()) return parts_->time;
-  return static_cast<double>(parts_->clock()->now()) / parts_->world.simulation.touch_rate;
+  if (!run_->clock()) return run_->time;
+  return static_cast<double>(run_->clock()->now()) / run_->world.simulation.touch_rate;
 }
 
 }  // namespace pliant

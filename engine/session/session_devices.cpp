@@ -1,11 +1,11 @@
 // State and control of the devices' servos in a Session (pliant/session.h).
 #include <cmath>
 
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 
 namespace pliant {
 
-Result<DriverLink*> Session::Parts::find_link(const std::string& name, const char* what) {
+Result<DriverLink*> SessionRun::find_link(const std::string& name, const char* what) {
   SessionEffector* const effector = find_effector(name);
   if (!effector) return unknown_effector(name);
   if (effector->link) return &effector->link;
@@ -13,8 +13,8 @@ Result<DriverLink*> Session::Parts::find_link(const std::string& name, const cha
 }
 
 Status Session::guard(const std::string& name, const GuardParameters& parameters) {
-  SessionEffector* const effector = parts_->find_effector(name);
-  if (!effector) return parts_->unknown_effector(name);
+  SessionEffector* const effector = run_->find_effector(name);
+  if (!effector) return run_->unknown_effector(name);
   const GuardParameters& p = parameters;
   for (const double value : {p.max_force, p.max_torque, p.max_velocity, p.ramp})
     if (!(value >= 0.0) || !std::isfinite(value))
@@ -25,27 +25,27 @@ Status Session::guard(const std::string& name, const GuardParameters& parameters
 }
 
 Result<DeviceReport> Session::device_state(const std::string& name) const {
-  auto link = parts_->find_link(name, "Session::device_state");
+  auto link = run_->find_link(name, "Session::device_state");
   if (!link) return link.error();
   return (*link)->report();
 }
 
 Status Session::arm(const std::string& name) {
-  auto link = parts_->find_link(name, "Session::arm");
+  auto link = run_->find_link(name, "Session::arm");
   if (!link) return link.error();
   (*link)->arm();
   return Done{};
 }
 
 Status Session::disarm(const std::string& name) {
-  auto link = parts_->find_link(name, "Session::disarm");
+  auto link = run_->find_link(name, "Session::disarm");
   if (!link) return link.error();
   (*link)->disarm();
   return Done{};
 }
 
 void Session::emergency_stop() {
-  for (SessionEffector& effector : parts_->effectors) effector.link.stop();
+  for (SessionEffector& effector : run_->effectors) effector.link.stop();
 }
 
 }  // namespace pliant

@@ -7,7 +7,7 @@
 
 #include "components/soft_body.h"
 #include "engine/run/driver_limits.h"
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 #include "systems/device/devices.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/soft_state.h"
@@ -62,7 +62,7 @@ bool replaces(const RecordedEvent& now, const RecordedEvent& before) {
 
 }  // namespace
 
-std::uint32_t Session::Parts::note_event(const RecordedEvent& event) {
+std::uint32_t SessionRun::note_event(const RecordedEvent& event) {
   if (!history.lacking) {
     history.events.push_back(event);
     history.events.back().tick = ticks;
@@ -70,12 +70,12 @@ std::uint32_t Session::Parts::note_event(const RecordedEvent& event) {
   return recorder ? recorder->announce(event) : 0;
 }
 
-void Session::Parts::note_new_source(Entity effector, const RecordedEvent& event) {
+void SessionRun::note_new_source(Entity effector, const RecordedEvent& event) {
   const std::uint32_t number = note_event(event);
   if (number > 0) edits->push({effector, EventEdit{EventKind::kNewSource, 0.0, {}, {}, {}}, number});
 }
 
-void Session::Parts::keep_standing(const RecordedEvent& event) {
+void SessionRun::keep_standing(const RecordedEvent& event) {
   if (event.kind == EventKind::kPush || event.kind == EventKind::kPointPush || event.kind == EventKind::kPlace) return;
   std::erase_if(standing, [&](const RecordedEvent& before) { return replaces(event, before); });
   if (event.kind == EventKind::kPresent) {
@@ -84,13 +84,13 @@ void Session::Parts::keep_standing(const RecordedEvent& event) {
     standing.push_back(event);
 }
 
-Status Session::Parts::send_standing() {
+Status SessionRun::send_standing() {
   for (const RecordedEvent& event : std::vector<RecordedEvent>(standing))
     if (Status s = send(event, "Session::restart"); !s) return s;
   return Done{};
 }
 
-Status Session::Parts::send(RecordedEvent event, const char* what) {
+Status SessionRun::send(RecordedEvent event, const char* what) {
   const std::string where = std::string(what) + " `" + event.name + "`";
   if (!sound(event)) return Error{where, "a value is no number, or beyond 1e9", "use SI units"};
   if (!edits->has_room()) return Error{where, "too many changes wait for a tick", "make fewer at a time"};
@@ -103,7 +103,7 @@ Status Session::Parts::send(RecordedEvent event, const char* what) {
   return event.kind == EventKind::kHandForce ? send_to_hand(event, what) : send_to_body(event, what);
 }
 
-Status Session::Parts::send_to_hand(const RecordedEvent& event, const char* what) {
+Status SessionRun::send_to_hand(const RecordedEvent& event, const char* what) {
   const SessionEffector* const effector = find_effector(event.name);
   if (!effector) return unknown_effector(event.name);
   if (event.second() != dvec3(0) && world.registry.has<Probe>(effector->entity))
@@ -113,7 +113,7 @@ Status Session::Parts::send_to_hand(const RecordedEvent& event, const char* what
   return Done{};
 }
 
-Status Session::Parts::send_to_body(const RecordedEvent& event, const char* what) {
+Status SessionRun::send_to_body(const RecordedEvent& event, const char* what) {
   const auto entity = find_object(event.name);
   if (!entity) return entity.error();
   const std::string where = std::string(what) + " `" + event.name + "`";
@@ -136,7 +136,7 @@ Status Session::Parts::send_to_body(const RecordedEvent& event, const char* what
   return Done{};
 }
 
-Status Session::Parts::check_place(Entity object, const RecordedEvent& event) const {
+Status SessionRun::check_place(Entity object, const RecordedEvent& event) const {
   const std::string where = "`" + event.name + "`";
   const Registry& all = world.registry;
   if (all.has<Handle6>(object)) return Error{where, "is held by a hand, which says where it is"};
@@ -152,7 +152,7 @@ Status Session::Parts::check_place(Entity object, const RecordedEvent& event) co
   return Done{};
 }
 
-Status Session::Parts::send_to_object(const RecordedEvent& event, const char* what) {
+Status SessionRun::send_to_object(const RecordedEvent& event, const char* what) {
   const auto entity = find_object(event.name);
   if (!entity) return entity.error();
   if (Status s = check_place(*entity, event); !s) return s.error().at(std::string(what) + " " + s.error().where);
@@ -178,7 +178,7 @@ Status Session::Parts::send_to_object(const RecordedEvent& event, const char* wh
   return Done{};
 }
 
-Status Session::Parts::perform(const RecordedEvent& event) {
+Status SessionRun::perform(const RecordedEvent& event) {
   if (event.kind == EventKind::kSet) return apply_setting(event.name + "." + event.key, Setting::kSend);
   if (event.kind != EventKind::kNewSource) return send(event, "replay");
   const SessionEffector* const effector = find_effector(event.name);
@@ -194,7 +194,7 @@ Status Session::Parts::perform(const RecordedEvent& event) {
   return apply_driver_settings(world, limits);
 }
 
-void Session::Parts::replay_events(std::uint64_t tick) {
+void SessionRun::replay_events(std::uint64_t tick) {
   const std::vector<RecordedEvent>& events = replayed->events;
   for (; replayed_events < events.size() && events[replayed_events].tick <= tick; ++replayed_events) {
     const RecordedEvent& event = events[replayed_events];
@@ -204,47 +204,47 @@ void Session::Parts::replay_events(std::uint64_t tick) {
 }
 
 Status Session::set_hand_force(const std::string& effector, dvec3 force, dvec3 torque) {
-  return parts_->send({0, EventKind::kHandForce, effector, {}, 0, two(force, torque)}, "Session::set_hand_force");
+  return run_->send({0, EventKind::kHandForce, effector, {}, 0, two(force, torque)}, "Session::set_hand_force");
 }
 
 Status Session::set_body_force(const std::string& body, dvec3 force, dvec3 torque) {
-  return parts_->send({0, EventKind::kBodyForce, body, {}, 0, two(force, torque)}, "Session::set_body_force");
+  return run_->send({0, EventKind::kBodyForce, body, {}, 0, two(force, torque)}, "Session::set_body_force");
 }
 
 Status Session::set_point_force(const std::string& body, std::uint32_t vertex, dvec3 force) {
-  return parts_->send({0, EventKind::kPointForce, body, {}, vertex, two(force, dvec3(0))}, "Session::set_point_force");
+  return run_->send({0, EventKind::kPointForce, body, {}, vertex, two(force, dvec3(0))}, "Session::set_point_force");
 }
 
 Status Session::place(const std::string& object, dvec3 position, dquat rotation) {
-  return parts_->send({0,
-                       EventKind::kPlace,
-                       object,
-                       {},
-                       0,
-                       {position.x, position.y, position.z, rotation.w, rotation.x, rotation.y, rotation.z}},
-                      "Session::place");
+  return run_->send({0,
+                     EventKind::kPlace,
+                     object,
+                     {},
+                     0,
+                     {position.x, position.y, position.z, rotation.w, rotation.x, rotation.y, rotation.z}},
+                    "Session::place");
 }
 
 Status Session::take_out(const std::string& object) {
-  return parts_->send({0, EventKind::kPresent, object, {}, 0, {0.0}}, "Session::take_out");
+  return run_->send({0, EventKind::kPresent, object, {}, 0, {0.0}}, "Session::take_out");
 }
 
 Status Session::put_back(const std::string& object) {
-  return parts_->send({0, EventKind::kPresent, object, {}, 0, {1.0}}, "Session::put_back");
+  return run_->send({0, EventKind::kPresent, object, {}, 0, {1.0}}, "Session::put_back");
 }
 
 Result<bool> Session::is_out(const std::string& object) const {
-  const auto found = std::find(parts_->objects.begin(), parts_->objects.end(), object);
-  if (found == parts_->objects.end()) return parts_->find_object(object).error();
-  return parts_->taken_out[static_cast<std::size_t>(found - parts_->objects.begin())] != 0;
+  const auto found = std::find(run_->objects.begin(), run_->objects.end(), object);
+  if (found == run_->objects.end()) return run_->find_object(object).error();
+  return run_->taken_out[static_cast<std::size_t>(found - run_->objects.begin())] != 0;
 }
 
 Status Session::push(const std::string& body, dvec3 impulse, dvec3 angular_impulse) {
-  return parts_->send({0, EventKind::kPush, body, {}, 0, two(impulse, angular_impulse)}, "Session::push");
+  return run_->send({0, EventKind::kPush, body, {}, 0, two(impulse, angular_impulse)}, "Session::push");
 }
 
 Status Session::push_at(const std::string& body, std::uint32_t vertex, dvec3 impulse) {
-  return parts_->send({0, EventKind::kPointPush, body, {}, vertex, two(impulse, dvec3(0))}, "Session::push_at");
+  return run_->send({0, EventKind::kPointPush, body, {}, vertex, two(impulse, dvec3(0))}, "Session::push_at");
 }
 
 }  // namespace pliant

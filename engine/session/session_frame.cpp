@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "engine/run/limits.h"
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 #include "systems/soft/soft_state.h"
 
 namespace pliant {
@@ -14,16 +14,16 @@ constexpr const char* kNoSurface = "is not deformable (it has no PLIANT_deformab
 }  // namespace
 
 Result<Reading> Session::reading(const std::string& name) const {
-  const SessionEffector* const effector = parts_->find_effector(name);
-  if (!effector) return parts_->unknown_effector(name);
-  if (parts_->clock()) parts_->rows.acquire();
-  EffectorRow row = parts_->rows.read()[static_cast<std::size_t>(effector - parts_->effectors.data())];
-  parts_->name_contacts(row);
+  const SessionEffector* const effector = run_->find_effector(name);
+  if (!effector) return run_->unknown_effector(name);
+  if (run_->clock()) run_->rows.acquire();
+  EffectorRow row = run_->rows.read()[static_cast<std::size_t>(effector - run_->effectors.data())];
+  run_->name_contacts(row);
   return row.reading;
 }
 
 SessionFigures Session::figures() const {
-  const Parts& p = *parts_;
+  const SessionRun& p = *run_;
   SessionFigures out;
   if (p.clock()) {
     const TouchFigures& newest = p.clock()->figures();
@@ -37,7 +37,7 @@ SessionFigures Session::figures() const {
 }
 
 Result<std::vector<Note>> Session::findings() const {
-  const Parts& p = *parts_;
+  const SessionRun& p = *run_;
   if (Status s = p.stand_still("Session::findings"); !s) return s.error();
   std::vector<Note> notes = explain_dropped(p.world.dropped | (p.world.soft ? p.world.soft->dropped : 0));
   for (const SessionEffector& effector : p.effectors) {
@@ -47,7 +47,7 @@ Result<std::vector<Note>> Session::findings() const {
   return notes;
 }
 
-void Session::Parts::look() {
+void SessionRun::look() {
   if (clock())
     view.take(world);
   else
@@ -55,7 +55,7 @@ void Session::Parts::look() {
 }
 
 Status Session::body_contacts(std::vector<BodyContact>& out) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   p.look();
   out.clear();
   for (const ContactMark& mark : p.view.contacts())
@@ -65,7 +65,7 @@ Status Session::body_contacts(std::vector<BodyContact>& out) {
 }
 
 Status Session::handles(std::vector<HandleReading>& out) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   p.look();
   out.clear();
   for (const HandleMark& mark : p.view.handles()) {
@@ -77,7 +77,7 @@ Status Session::handles(std::vector<HandleReading>& out) {
 }
 
 Status Session::vertices(const std::string& object, std::vector<vec3>& out) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   const auto entity = p.find_object(object);
   if (!entity) return entity.error();
   p.look();
@@ -86,7 +86,7 @@ Status Session::vertices(const std::string& object, std::vector<vec3>& out) {
 }
 
 Status Session::vertex_forces(const std::string& object, std::vector<vec3>& out) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   const auto entity = p.find_object(object);
   if (!entity) return entity.error();
   if (!p.world.registry.has<Deformable>(*entity)) return Error{"`" + object + "`", kNoSurface};
@@ -110,8 +110,8 @@ Status Session::vertex_forces(const std::string& object, std::vector<vec3>& out)
   return Done{};
 }
 
-void Session::Parts::share_out(const std::string& object, const Mesh& mesh, std::uint32_t vertex, vec3 force,
-                               std::vector<vec3>& out) {
+void SessionRun::share_out(const std::string& object, const Mesh& mesh, std::uint32_t vertex, vec3 force,
+                           std::vector<vec3>& out) {
   auto [place, is_new] = places[object].try_emplace(vertex);
   if (is_new) {
     std::vector<dvec3> source(mesh.of_source.size(), dvec3(std::numeric_limits<double>::max()));
@@ -131,10 +131,10 @@ void Session::Parts::share_out(const std::string& object, const Mesh& mesh, std:
 }
 
 Result<Geometry> Session::geometry(const std::string& object) const {
-  const Parts& p = *parts_;
+  const SessionRun& p = *run_;
   const auto entity = p.find_object(object);
   if (!entity) return entity.error();
-  if (!p.world.registry.has<Deformable>(*entity)) return parts_->body_geometry(*entity, object);
+  if (!p.world.registry.has<Deformable>(*entity)) return run_->body_geometry(*entity, object);
   const Drawable* const drawable = p.world.registry.find<Drawable>(*entity);
   if (!drawable) return Error{"`" + object + "`", "is not drawn", "it has no mesh"};
   const Mesh& mesh = *collision_mesh_of(p.world, *entity);
@@ -152,7 +152,7 @@ Result<Geometry> Session::geometry(const std::string& object) const {
 }
 
 Status Session::stream(const std::string& object, std::vector<vec4>& out) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   const auto entity = p.find_object(object);
   if (!entity) return entity.error();
   p.look();
@@ -163,7 +163,7 @@ Status Session::stream(const std::string& object, std::vector<vec4>& out) {
 }
 
 Status Session::stream(const std::string& object, std::vector<vec4>& out, std::vector<StreamPart>& changed) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   const auto entity = p.find_object(object);
   if (!entity) return entity.error();
   p.look();
@@ -172,7 +172,7 @@ Status Session::stream(const std::string& object, std::vector<vec4>& out, std::v
 }
 
 Result<mat4> Session::to_world(const std::string& object) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   const auto entity = p.find_object(object);
   if (!entity) return entity.error();
   p.look();

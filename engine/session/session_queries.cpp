@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "components/soft_body.h"
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 
 namespace pliant {
 namespace {
@@ -33,7 +33,7 @@ QueryHit hit_of(const TriangleBoxes& boxes, std::uint32_t object, const Triangle
 }
 
 // The objects selected by the options.
-Result<std::vector<std::size_t>> asked(const Session::Parts& p, const QueryOptions& options, const char* what) {
+Result<std::vector<std::size_t>> asked(const SessionRun& p, const QueryOptions& options, const char* what) {
   if (!(options.within >= 0.0)) return Error{what, "`within` is negative or no number", "give 0 m or more"};
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < p.objects.size(); ++i)
@@ -42,7 +42,7 @@ Result<std::vector<std::size_t>> asked(const Session::Parts& p, const QueryOptio
   return out;
 }
 
-const std::optional<TriangleBoxes>& boxes_of(Session::Parts& p, std::size_t object, bool rest) {
+const std::optional<TriangleBoxes>& boxes_of(SessionRun& p, std::size_t object, bool rest) {
   ObjectShape& shape = p.shape(object);
   ObjectShape::Placed& placed = rest ? shape.at_rest : shape.now;
   if (placed.version == p.view.version()) return placed.boxes;
@@ -59,26 +59,26 @@ const std::optional<TriangleBoxes>& boxes_of(Session::Parts& p, std::size_t obje
 
 }  // namespace
 
-void Session::Parts::see() {
+void SessionRun::see() {
   if (!clock() && looked == ticks + 1) return;
   look();
   looked = ticks + 1;
 }
 
-const LevelMesh* Session::Parts::given_mesh(const std::string& object) const {
+const LevelMesh* SessionRun::given_mesh(const std::string& object) const {
   for (const LevelNode& node : scene.level().nodes)
     if (node.name == object && node.mesh >= 0) return &scene.level().meshes[static_cast<std::size_t>(node.mesh)];
   return nullptr;
 }
 
-ObjectShape& Session::Parts::shape(std::size_t object) {
+ObjectShape& SessionRun::shape(std::size_t object) {
   if (!shapes[object])
     shapes[object] =
         std::make_unique<ObjectShape>(*collision_mesh_of(world, object_entities[object]), given_mesh(objects[object]));
   return *shapes[object];
 }
 
-void Session::Parts::place_vertices(Entity object, bool rest, std::vector<vec3>& out) const {
+void SessionRun::place_vertices(Entity object, bool rest, std::vector<vec3>& out) const {
   const Mesh& mesh = *collision_mesh_of(world, object);
   const std::vector<vec4>* const stream = view.stream(object);
   const SoftObjectSnapshot* const moved = view.soft(object);
@@ -96,7 +96,7 @@ void Session::Parts::place_vertices(Entity object, bool rest, std::vector<vec3>&
   }
 }
 
-Geometry Session::Parts::body_geometry(Entity entity, const std::string& object) {
+Geometry SessionRun::body_geometry(Entity entity, const std::string& object) {
   const Mesh& mesh = *collision_mesh_of(world, entity);
   const LevelMesh* const given = given_mesh(object);
   Geometry out;
@@ -119,7 +119,7 @@ Geometry Session::Parts::body_geometry(Entity entity, const std::string& object)
   return out;
 }
 
-ContactSide Session::Parts::side(const ContactPlace& place) {
+ContactSide SessionRun::side(const ContactPlace& place) {
   ContactSide side;
   for (std::uint32_t i = 0; i < effectors.size(); ++i)
     if (effectors[i].entity == place.entity) side.effector = i;
@@ -132,7 +132,7 @@ ContactSide Session::Parts::side(const ContactPlace& place) {
   return side;
 }
 
-void Session::Parts::name_contacts(EffectorRow& row) {
+void SessionRun::name_contacts(EffectorRow& row) {
   for (std::uint32_t i = 0; i < row.reading.contacts; ++i) {
     ContactReading& contact = row.reading.contact[i];
     if (contact.object >= shapes.size()) continue;
@@ -143,7 +143,7 @@ void Session::Parts::name_contacts(EffectorRow& row) {
 }
 
 Status Session::triangles(const std::string& object, std::vector<std::uint32_t>& out) const {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   const auto entity = p.find_object(object);
   if (!entity) return entity.error();
   out.clear();
@@ -154,7 +154,7 @@ Status Session::triangles(const std::string& object, std::vector<std::uint32_t>&
 
 // The nearest of what `find` gives for each object: TrianglePlace(boxes, within).
 template <class Find>
-static Result<QueryHit> nearest(Session::Parts& p, const QueryOptions& options, const char* what, const Find& find) {
+static Result<QueryHit> nearest(SessionRun& p, const QueryOptions& options, const char* what, const Find& find) {
   const auto objects = asked(p, options, what);
   if (!objects) return objects.error();
   p.see();
@@ -171,14 +171,14 @@ static Result<QueryHit> nearest(Session::Parts& p, const QueryOptions& options, 
 }
 
 Result<QueryHit> Session::closest_point(dvec3 point, const QueryOptions& options) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   if (!is_finite(point)) return Error{"Session::closest_point", "the point is no number", "check it"};
   return nearest(p, options, "Session::closest_point",
                  [&](const TriangleBoxes& boxes, double within) { return boxes.closest(point, within); });
 }
 
 Result<QueryHit> Session::ray(dvec3 from, dvec3 direction, const QueryOptions& options) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   const double size = length(direction);
   if (!is_finite(from) || !(size > 0.0) || !std::isfinite(size))
     return Error{"Session::ray", "its origin is no number, or its direction has no length", "check both"};
@@ -188,7 +188,7 @@ Result<QueryHit> Session::ray(dvec3 from, dvec3 direction, const QueryOptions& o
 }
 
 Result<Bounds> Session::bounds(const QueryOptions& options) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   const auto objects = asked(p, options, "Session::bounds");
   if (!objects) return objects.error();
   p.see();

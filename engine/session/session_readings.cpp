@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "content/files/limits.h"
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 
 namespace pliant {
 
-void Session::Parts::size_kept() {
+void SessionRun::size_kept() {
   kept.clear();
   lost_reported.assign(effectors.size(), 0);
   for (std::size_t i = 0; keeps > 0 && i < effectors.size(); ++i)
@@ -15,7 +15,7 @@ void Session::Parts::size_kept() {
 }
 
 Status Session::keep_readings(std::size_t ticks) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   if (Status s = p.stand_still("Session::keep_readings"); !s) return s;
   const std::size_t most_ticks =
       most(limits::kJournal) / (sizeof(EffectorRow) * std::max<std::size_t>(1, p.effectors.size()));
@@ -28,7 +28,7 @@ Status Session::keep_readings(std::size_t ticks) {
 }
 
 Result<std::uint64_t> Session::take_readings(const std::string& name, std::vector<Reading>& out) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   out.clear();
   const SessionEffector* const effector = p.find_effector(name);
   if (!effector) return p.unknown_effector(name);

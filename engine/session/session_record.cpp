@@ -10,7 +10,7 @@
 #include "content/files/file_io.h"
 #include "engine/run/driver_limits.h"
 #include "engine/run/scene_hash.h"
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 #include "runtime/printable.h"
 #include "systems/device/softening.h"
 #include "systems/safety/safety.h"
@@ -18,7 +18,7 @@
 namespace pliant {
 
 Status Session::record(const std::filesystem::path& file, bool replace) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   if (Status s = p.stand_still("Session::record"); !s) return s;
   if (p.recorder) return Error{"Session::record", "a recording is under way", "call Session::end_recording() first"};
   if (p.effectors.empty())
@@ -48,7 +48,7 @@ Status Session::record(const std::filesystem::path& file, bool replace) {
 }
 
 Status Session::end_recording() {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   if (Status s = p.stand_still("Session::end_recording"); !s) return s;
   if (!p.recorder) return Error{"Session::end_recording", "nothing is recorded", "call Session::record() first"};
   const Status ended = p.recorder->finish();
@@ -57,7 +57,7 @@ Status Session::end_recording() {
 }
 
 Status Session::replay(const std::filesystem::path& file) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   if (Status s = p.stand_still("Session::replay"); !s) return s;
   if (p.ticks > 0) return Error{"Session::replay", "ticks have run already", "call Session::restart() first"};
   auto recording = read_recording(file);
@@ -78,7 +78,7 @@ Status Session::replay(const std::filesystem::path& file) {
                                   recording->ticks.front()));
   std::vector<std::string> own = header.settings;
   std::erase_if(own, is_driver_setting);
-  for (const Error& refused : p.apply_settings(own, Parts::Setting::kSend))
+  for (const Error& refused : p.apply_settings(own, SessionRun::Setting::kSend))
     p.notes.push_back(file.string() + ": its setting " + refused.message());
   const std::vector<std::string> settings = header.settings;
   p.begin_replay(std::move(recording).value());
@@ -87,7 +87,7 @@ Status Session::replay(const std::filesystem::path& file) {
   return Done{};
 }
 
-void Session::Parts::begin_replay(Recording recording) {
+void SessionRun::begin_replay(Recording recording) {
   for (SessionEffector& effector : effectors) {
     take_away(effector, EffectorSource::kNone);
     world.registry.get<HapticDevice>(effector.device).driver = DriverKind::kExternal;

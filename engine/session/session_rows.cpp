@@ -1,7 +1,7 @@
 // Output of a tick for the owner of a Session. On the touch clock: nothing here allocates.
 #include <algorithm>
 
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 #include "systems/device/devices.h"
 #include "systems/device/reading.h"
 #include "systems/device/softening.h"
@@ -30,7 +30,7 @@ void add_contact(const World& world, const std::vector<Entity>& objects, const C
 
 }  // namespace
 
-void Session::Parts::after(Tick tick) {
+void SessionRun::after(Tick tick) {
   last = tick;
   shown = false;
   std::vector<EffectorRow>& out = rows.write();

@@ -9,7 +9,7 @@
 #include "components/soft_body.h"
 #include "engine/session/live_keys.h"
 #include "engine/session/scene_check.h"
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 #include "systems/soft/body/probe_tool.h"
 #include "systems/soft/prepare_soft.h"
 #include "systems/soft/soft_state.h"
@@ -32,7 +32,7 @@ const char* kind_of(const Named& named) {
   return named.node.soft_body ? "a soft body" : "a rigid body";
 }
 
-Result<Named> find_named(const Session::Parts& p, const std::string& name) {
+Result<Named> find_named(const SessionRun& p, const std::string& name) {
   Named named;
   if (const auto body = p.bodies.find(name); body != p.bodies.end()) named.node = body->second;
   if (const auto surface = p.surfaces.find(name); surface != p.surfaces.end()) named.node.deformable = surface->second;
@@ -87,7 +87,7 @@ bool moves_otherwise(const Motion& a, const Motion& b) {
          a.law.kind != b.law.kind || a.law.cubic != b.law.cubic || a.law.stiffening != b.law.stiffening;
 }
 
-Result<SurfaceSetting> surface_setting(const Session::Parts& p, const std::string& where, const Deformable& before,
+Result<SurfaceSetting> surface_setting(const SessionRun& p, const std::string& where, const Deformable& before,
                                        Deformable& now) {
   const Mesh& mesh = p.world.meshes[before.mesh];
   const bool arm = has_arm(before.spring);
@@ -118,7 +118,7 @@ struct SessionChange {
 
 namespace {
 
-Result<SessionChange> change_surface(Session::Parts& p, const std::string& name, const std::string& where,
+Result<SessionChange> change_surface(SessionRun& p, const std::string& name, const std::string& where,
                                      Deformable& now) {
   const Deformable& before = p.surfaces.at(name);
   auto setting = surface_setting(p, where, before, now);
@@ -131,7 +131,7 @@ Result<SessionChange> change_surface(Session::Parts& p, const std::string& name,
   return change;
 }
 
-Result<SessionChange> change_rigid(Session::Parts& p, const std::string& name, const LevelNode& node) {
+Result<SessionChange> change_rigid(SessionRun& p, const std::string& name, const LevelNode& node) {
   SessionChange change;
   change.entity = *p.find_object(name);
   RigidBody body = *node.rigid_body;
@@ -148,7 +148,7 @@ Result<SessionChange> change_rigid(Session::Parts& p, const std::string& name, c
   return change;
 }
 
-SessionChange change_soft(Session::Parts& p, const std::string& name, const SoftBody& body) {
+SessionChange change_soft(SessionRun& p, const std::string& name, const SoftBody& body) {
   SessionChange change;
   change.entity = *p.find_object(name);
   change.soft.push_back({change.entity, SoftSetting{body.young, body.poisson, body.rayleigh, body.friction_static,
@@ -156,8 +156,7 @@ SessionChange change_soft(Session::Parts& p, const std::string& name, const Soft
   return change;
 }
 
-Result<SessionChange> change_probe(Session::Parts& p, const std::string& name, const std::string& where,
-                                   const Probe& now) {
+Result<SessionChange> change_probe(SessionRun& p, const std::string& name, const std::string& where, const Probe& now) {
   const Probe& before = *p.bodies.at(name).probe;
   SessionChange change;
   change.entity = p.find_effector(name)->entity;
@@ -181,7 +180,7 @@ Result<SessionChange> change_probe(Session::Parts& p, const std::string& name, c
   return change;
 }
 
-SessionChange change_handle(Session::Parts& p, const std::string& name, const Handle6& handle) {
+SessionChange change_handle(SessionRun& p, const std::string& name, const Handle6& handle) {
   SessionChange change;
   change.entity = p.find_effector(name)->entity;
   change.touch.push_back({change.entity, coupling_of(handle), 0});
@@ -190,7 +189,7 @@ SessionChange change_handle(Session::Parts& p, const std::string& name, const Ha
 }
 
 // `node` contains the new value.
-Result<SessionChange> change_of(Session::Parts& p, const std::string& name, const std::string& where,
+Result<SessionChange> change_of(SessionRun& p, const std::string& name, const std::string& where,
                                 const Extension& extension, LevelNode& node) {
   if (extension.name == "deformable") return change_surface(p, name, where, *node.deformable);
   if (extension.name == "rigid_body") return change_rigid(p, name, node);
@@ -204,7 +203,7 @@ Result<SessionChange> change_of(Session::Parts& p, const std::string& name, cons
   return change;
 }
 
-void keep(Session::Parts& p, const std::string& name, const Extension& extension, const LevelNode& node) {
+void keep(SessionRun& p, const std::string& name, const Extension& extension, const LevelNode& node) {
   if (extension.name == "deformable")
     p.surfaces[name] = *node.deformable;
   else if (extension.name == "haptic_device")
@@ -217,7 +216,7 @@ void keep(Session::Parts& p, const std::string& name, const Extension& extension
 }
 
 // For recordings: the key, or the keys that an alias has changed.
-void note_settings(Session::Parts& p, const std::string& name, const Extension& extension, const Key& key,
+void note_settings(SessionRun& p, const std::string& name, const Extension& extension, const Key& key,
                    const LevelNode& before, const LevelNode& now) {
   for (const Key& each : extension.keys) {
     if (each.alias || (key.alias ? each.get(&before) == each.get(&now) : each.name != key.name)) continue;
@@ -237,7 +236,7 @@ void note_settings(Session::Parts& p, const std::string& name, const Extension& 
 
 // `note`: records the change, once there is room for it.
 template <class Note>
-Status send(Session::Parts& p, SessionChange& change, const Note& note) {
+Status send(SessionRun& p, SessionChange& change, const Note& note) {
   const bool soft = p.world.soft && !change.soft.empty();
   if (!p.edits->has_room() || (soft && !p.world.soft->parameter_edits.has_room()))
     return Error{"Session::set", "too many values wait for a tick", "set fewer at a time"};
@@ -250,7 +249,7 @@ Status send(Session::Parts& p, SessionChange& change, const Note& note) {
 }
 
 // Notes the value of `key` for the recording: KEY=VALUE with its extension.
-std::uint32_t note_set(Session::Parts& p, const std::string& name, const Extension& extension, const Key& key,
+std::uint32_t note_set(SessionRun& p, const std::string& name, const Extension& extension, const Key& key,
                        const Json& value) {
   return p.note_event(
       {0,
@@ -262,7 +261,7 @@ std::uint32_t note_set(Session::Parts& p, const std::string& name, const Extensi
 }
 
 // `sent` is false if a new world follows, which begins with the value.
-Status set_value(Session::Parts& p, const std::string& name, const std::string& key_name, const Json& value,
+Status set_value(SessionRun& p, const std::string& name, const std::string& key_name, const Json& value,
                  bool sent = true) {
   Result<Named> named = find_named(p, name);
   if (!named) return named.error();
@@ -288,7 +287,7 @@ Status set_value(Session::Parts& p, const std::string& name, const std::string& 
 
 }  // namespace
 
-Status Session::Parts::apply_setting(const std::string& setting, Setting how) {
+Status SessionRun::apply_setting(const std::string& setting, Setting how) {
   const bool sent = how == Setting::kSend;
   const std::size_t equals = setting.rfind('=');
   const std::string path = setting.substr(0, equals),
@@ -307,7 +306,7 @@ Status Session::Parts::apply_setting(const std::string& setting, Setting how) {
   return Error{"`" + setting + "`", "cannot change in a session", "set it in the scene"};
 }
 
-std::vector<Error> Session::Parts::apply_settings(std::vector<std::string> waiting, Setting how) {
+std::vector<Error> SessionRun::apply_settings(std::vector<std::string> waiting, Setting how) {
   std::vector<Error> refused;
   for (std::size_t before = waiting.size() + 1; waiting.size() < before;) {
     before = waiting.size();
@@ -323,7 +322,7 @@ std::vector<Error> Session::Parts::apply_settings(std::vector<std::string> waiti
   return refused;
 }
 
-void Session::Parts::keep_bodies() {
+void SessionRun::keep_bodies() {
   bodies.clear();
   const auto node_of = [&](Entity entity, const std::string& name) {
     LevelNode& node = bodies[name];
@@ -337,7 +336,7 @@ void Session::Parts::keep_bodies() {
   for (const SessionEffector& effector : effectors) node_of(effector.entity, effector.name);
 }
 
-void Session::Parts::restore_bodies() {
+void SessionRun::restore_bodies() {
   const auto restore = [&](Entity entity, const LevelNode& node) {
     Registry& all = world.registry;
     if (node.soft_body && all.has<SoftBody>(entity))
@@ -356,21 +355,21 @@ void Session::Parts::restore_bodies() {
 
 Status Session::set(const std::string& object, const std::string& key, double value) {
   if (!std::isfinite(value)) return Error{"`" + object + "`: " + key, "is not a number"};
-  return set_value(*parts_, object, key, value);
+  return set_value(*run_, object, key, value);
 }
 
 Status Session::set(const std::string& object, const std::string& key, const std::string& word) {
-  return set_value(*parts_, object, key, word);
+  return set_value(*run_, object, key, word);
 }
 
 Status Session::set(const std::string& object, const std::string& key, const std::vector<double>& values) {
   for (const double value : values)
     if (!std::isfinite(value)) return Error{"`" + object + "`: " + key, "has a value that is not a number"};
-  return set_value(*parts_, object, key, values);
+  return set_value(*run_, object, key, values);
 }
 
 Result<double> Session::get(const std::string& object, const std::string& key) const {
-  const Result<Named> named = find_named(*parts_, object);
+  const Result<Named> named = find_named(*run_, object);
   if (!named) return named.error();
   const Result<Found> found = find_named_key(*named, object, key, false);
   if (!found) return found.error();

@@ -9,7 +9,7 @@
 #include "engine/choice/model_choice.h"
 #include "engine/run/scene_hash.h"
 #include "engine/session/scene_check.h"
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 #include "systems/device/devices.h"
 #include "systems/device/softening.h"
 #include "systems/safety/safety.h"
@@ -73,7 +73,7 @@ Result<Scene> with_more(const Scene& scene, const Scene& more, std::vector<std::
 
 }  // namespace
 
-void Session::Parts::note_history(Tick tick) {
+void SessionRun::note_history(Tick tick) {
   if (history.lacking) return;
   if (replayed) {
     history = {};
@@ -95,7 +95,7 @@ void Session::Parts::note_history(Tick tick) {
   }
 }
 
-SavedState Session::Parts::saved_state() const {
+SavedState SessionRun::saved_state() const {
   SavedState state;
   state.rate = world.simulation.touch_rate;
   state.scene = scene_hash(scene.level());
@@ -121,7 +121,7 @@ SavedState Session::Parts::saved_state() const {
 }
 
 // Replays the inputs tick by tick. The caller has set sources and drivers aside.
-Status Session::Parts::run_again(SavedState state) {
+Status SessionRun::run_again(SavedState state) {
   const double dt = 1.0 / world.simulation.touch_rate;
   const std::vector<RecordedEvent> events = std::move(state.history.events);
   history = {};
@@ -152,8 +152,8 @@ Status Session::Parts::run_again(SavedState state) {
 }
 
 // The current sources take over at the restored places.
-void Session::Parts::go_on(const SavedState& state, std::vector<EffectorSource>& sources,
-                           std::vector<DriverLink>& links, std::vector<HapticDevice>& before) {
+void SessionRun::go_on(const SavedState& state, std::vector<EffectorSource>& sources, std::vector<DriverLink>& links,
+                       std::vector<HapticDevice>& before) {
   for (std::size_t i = 0; i < effectors.size(); ++i) {
     SessionEffector& effector = effectors[i];
     const SavedSource& was = state.sources[i];
@@ -186,7 +186,7 @@ void Session::Parts::go_on(const SavedState& state, std::vector<EffectorSource>&
 }
 
 Result<std::vector<std::uint8_t>> Session::save_state() const {
-  const Parts& p = *parts_;
+  const SessionRun& p = *run_;
   if (Status s = p.stand_still("Session::save_state"); !s) return s.error();
   if (p.ended || p.history.lacking)
     return Error{"Session::save_state",
@@ -195,7 +195,7 @@ Result<std::vector<std::uint8_t>> Session::save_state() const {
 }
 
 Status Session::restore_state(const std::vector<std::uint8_t>& bytes) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   if (Status s = p.stand_still(kRestore); !s) return s;
   if (p.recorder) return Error{kRestore, "a recording is under way", "call Session::end_recording() first"};
   if (p.replayed) return Error{kRestore, "a recording is replayed", "call Session::restart() first"};
@@ -208,7 +208,7 @@ Status Session::restore_state(const std::vector<std::uint8_t>& bytes) {
 }
 
 Status Session::add(const Scene& more) {
-  Parts& p = *parts_;
+  SessionRun& p = *run_;
   const char* const kAdd = "Session::add";
   if (p.clock())
     return Error{kAdd, "the clocks are running", "open the session with it, and take it out before start()"};
@@ -231,7 +231,7 @@ Status Session::add(const Scene& more) {
   return p.go_back(std::move(state));
 }
 
-Status Session::Parts::go_back(SavedState state) {
+Status SessionRun::go_back(SavedState state) {
   zero_drivers();
   settings.clear();
   surfaces.clear();

@@ -46,6 +46,7 @@ struct Note {
   std::string code;  // "force.clipped"; empty: nothing goes by it
   std::string of;    // name of the probe, tool, body or device concerned; empty: the whole
   std::string message() const { return sentence_of(what, cure); }
+  bool operator==(const Note&) const = default;
 };
 
 inline Error error_at(std::string where, Note fault) {

@@ -113,6 +113,8 @@ struct StreamPart {
   std::uint32_t first = 0, count = 0;
 };
 
+struct SessionRun;  // engine/session/session_run.h; not part of the public interface
+
 class Session {
  public:
   // Copies the scene and allocates everything a tick needs. For a large scene this takes seconds: `progress` is called
@@ -266,13 +268,10 @@ class Session {
   // Takes the buffered readings, oldest first; returns how many were lost since the last call.
   Result<std::uint64_t> take_readings(const std::string& effector, std::vector<Reading>& out);
 
-  struct Parts;  // engine/session/session_parts.h; not part of the public interface
-
  private:
-  friend class Pictures;
-  friend struct SessionInside;  // engine/session/session_inside.h; not part of the public interface
-  explicit Session(std::unique_ptr<Parts> parts);
-  std::unique_ptr<Parts> parts_;
+  friend struct SessionRun;
+  explicit Session(std::unique_ptr<SessionRun> run);
+  std::unique_ptr<SessionRun> run_;
 };
 
 // A recording as rows of tick, time, probe, position, rotation (w first) and whether its device was ready.

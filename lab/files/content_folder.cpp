@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "content/keys/extension_table.h"
+#include "content/level_file.h"
 
 namespace pliant {
 namespace fs = std::filesystem;
@@ -51,6 +52,14 @@ Result<fs::path> find_level(const std::string& argument) {
   const std::string near = name.find('/') == std::string::npos ? suggestion(fs::path(name).stem().string(), names) : "";
   return Error{argument, "there is no such file and no shipped level of that name",
                near.empty() ? "check the path, or see `pliant run --list`" : near, "file.missing"};
+}
+
+Result<World> world_of_level(const std::string& argument) {
+  const auto file = find_level(argument);
+  if (!file) return file.error();
+  const auto level = load_level(*file);
+  if (!level) return level.error();
+  return spawn(*level);
 }
 
 }  // namespace pliant

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "components/world.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -20,5 +21,8 @@ std::vector<std::filesystem::path> shipped_levels();
 
 // A file that exists, or the name of a shipped level; empty means the demo level `three_probes`.
 Result<std::filesystem::path> find_level(const std::string& argument);
+
+// Its world, not prepared.
+Result<World> world_of_level(const std::string& argument);
 
 }  // namespace pliant

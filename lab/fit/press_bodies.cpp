@@ -18,7 +18,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kCells = 2.0;         // cells per punch radius
+constexpr double kCellsAcross = 2.0;   // cells per punch radius
 constexpr double kFocusRadii = 5.0;    // [1] radius of the lattice's fine region, in punch radii
 constexpr double kReachRadii = 4.0;    // [1] radius within which the surface is refined, in punch radii
 constexpr std::size_t kTets = 16'000;  // target size of a single body for all places
@@ -89,12 +89,12 @@ Result<PressBodies> PressBodies::make(const Level& level, std::int32_t number, c
       usual_punch(level, static_cast<std::size_t>(number), static_cast<double>(frame.box.diagonal()));
   out.radius_ = options.radius > 0 ? options.radius : usual.radius;
   out.why_ = options.radius > 0 ? "--radius" : usual.why;
-  out.cell_ = options.cell > 0 ? options.cell : out.radius_ / kCells;
+  out.cell_ = options.cell > 0 ? options.cell : out.radius_ / kCellsAcross;
   if (!soft.mesh.empty() || soft.fill == Fill::kWall) {
     Result<TetMesh> tets = even_body(out.node_, mesh, to_object, level, options);
     if (!tets) return tets.error();
     out.cell_ = cell_of(*tets);
-    if (options.radius <= 0) out.radius_ = kCells * out.cell_, out.why_ = "two cells";
+    if (options.radius <= 0) out.radius_ = kCellsAcross * out.cell_, out.why_ = "two cells";
     Result<TissuePress> press = TissuePress::make(std::move(*tets), out.material_, PressKind::kDeep);
     if (!press) return press.error();
     out.one_ = std::make_shared<TissuePress>(std::move(*press));

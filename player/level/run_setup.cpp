@@ -322,10 +322,10 @@ Outcome make_world(const RunOptions& options, bool windowed, Level& level, std::
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
   if (windowed) repeat_scripts(run.world);
   run.world.field_place = choose_field(options, windowed, run.world);
-  const std::vector<std::string> found = tissue_findings(run.world);
+  const std::vector<Note> found = tissue_findings(run.world);
   if (const Status status = prepare_world(run.world); !status) return failed(status.error());
-  for (const std::string& sentence : tissue_findings(run.world))
-    if (std::find(found.begin(), found.end(), sentence) == found.end()) say(run, sentence);
+  for (const Note& note : tissue_findings(run.world))
+    if (std::find(found.begin(), found.end(), note) == found.end()) say(run, note);
   for (const std::string& sentence : make_orbits(run.world)) say(run, sentence);
   auto held = make_hands(run.world, sources);
   if (!held) return wrong_arguments(held.error());

@@ -68,7 +68,7 @@ std::vector<Note> explain_soft_steps(const World& world, const SoftFigures& figu
         fmt::format("{} of {} ended unconverged (residual at most {:.2g} m/s), so what is gripped or stacked may creep",
                     tally.unconverged, count(figures.steps, "soft step"), tally.residual),
         "make soft_step shorter, or give bodies in contact more similar masses and stiffnesses");
-  for (std::string& sentence : explain_sag(world)) add("soft.sagged", std::move(sentence), {});
+  for (Note& note : explain_sag(world)) notes.push_back(std::move(note));
   const double kept = static_cast<double>(figures.steps) * world.simulation.soft_step;  // [s] lower bound
   if (figures.time_lost > kSaidLoss * (kept + figures.time_lost))
     add("soft.time_lost",

@@ -168,7 +168,7 @@ void say_soft(const Level& level, const World& world, const Plan& plan) {
         print("    takes along what lies inside of it: {}\n", names);
       }
       for (const Note& found : tets.report.notes) note(in_quotes(name) + ": " + found.message());
-      for (const std::string& finding : tets.report.findings) note(in_quotes(name) + ": " + finding);
+      for (const Note& found : tets.report.findings) note(in_quotes(name) + ": " + found.message());
       say_pins(level, number, tets);
     }
   }

@@ -96,7 +96,7 @@ OrderedJson describe_tissue(const Level& level) {
     const TetMesh& tets = world->tet_meshes[body.tets];
     OrderedJson tissue = describe(tets);
     tissue["problems"] = messages(tets.report.notes);
-    for (const std::string& sentence : tets.report.findings) tissue["problems"].push_back(sentence);
+    for (const Note& finding : tets.report.findings) tissue["problems"].push_back(finding.message());
     if (const std::optional<Note> doubt = locking_doubt(body, tets.tets.size()))
       tissue["problems"].push_back(doubt->message());
     list.push_back(std::move(tissue));

@@ -23,4 +23,20 @@ const HapticDevice* find_device(const World& world, Entity hand) {
   return device == kNoEntity ? nullptr : world.registry.find<HapticDevice>(device);
 }
 
+Entity add_free_probe(World& world, const std::string& name, double radius, dvec3 position) {
+  const Entity entity = world.registry.create();
+  Probe probe;
+  probe.radius = radius;
+  probe.device = entity;
+  world.registry.add(entity, Name{name});
+  world.registry.add(entity, probe);
+  HapticDevice device;
+  device.driver = DriverKind::kExternal;
+  device.position = position;
+  device.max_force = 1e9;
+  device.max_slew = 1e12;
+  world.registry.add(entity, device);
+  return entity;
+}
+
 }  // namespace pliant

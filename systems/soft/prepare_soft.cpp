@@ -40,7 +40,8 @@ Status add_soft(const World& world, SoftState& soft) {
   for (auto [entity, body] : world.registry.view<SoftBody>()) {
     check_in("preparing " + soft_name(world, entity));
     if (!make_solver(body.solver, 1))
-      return Error{soft_name(world, entity), "its solver is not in this build, or its factory makes none; use `auto`"};
+      return Error{soft_name(world, entity), "its solver is not in this build, or its factory makes none",
+                   "use `auto`"};
     const Handle6* handle = world.registry.find<Handle6>(entity);
     auto state = std::make_unique<SoftBodyState>(world.tet_meshes[body.tets], world.meshes[body.collision_mesh], body,
                                                  handle, pose_of(world, entity), body.solver);
@@ -152,8 +153,8 @@ Result<RigidMass> rigid_mass(const World& world, Entity entity, const RigidBody&
   const double density = mass / shape.volume;
   const dmat3 inertia = density * shape.inertia;
   if (!(mass > 0.0 && std::isfinite(density) && glm::determinant(inertia) > 0.0))
-    return Error{soft_name(world, entity),
-                 "encloses no volume, so it has no weight to move with; close its surface, or make it `fixed`"};
+    return Error{soft_name(world, entity), "encloses no volume, so it has no weight to move with",
+                 "close its surface, or make it `fixed`"};
   return RigidMass{mass, shape.centre, inertia};
 }
 
@@ -168,7 +169,7 @@ Status prepare_soft(World& world) {
   if (soft->moving.empty()) return Done{};
   const double T = world.simulation.soft_step;
   if (!(T > 0.0 && T <= 1.0))
-    return Error{"PLIANT_simulation/soft_step", fmt::format("is {} s; give more than 0 and at most 1 s", T)};
+    return Error{"PLIANT_simulation/soft_step", fmt::format("is {} s", T), "give more than 0 and at most 1 s"};
   if (world.touch->presses) add_yielding(world, *soft);  // with probes alone, P1 handles these surfaces
   settle_tools(world, *soft);
   soft->proximity = std::make_unique<Proximity>(soft->bodies);

@@ -15,9 +15,9 @@ namespace {
 constexpr double kFarAtEnd = 0.1;    // [1] of a body's size: larger displacements from the start are reported
 constexpr double kOutOfScene = 5.0;  // [1] of its size: a body that has fallen this far is not supported
 
-std::string name_in_quotes(const World& world, Entity entity) {
+std::string body_name(const World& world, Entity entity) {
   const Name* name = world.registry.find<Name>(entity);
-  return "`" + (name ? name->value : std::string()) + "`";
+  return name ? name->value : std::string();
 }
 
 dvec3 gravity_of(const World& world, Entity entity) {
@@ -34,9 +34,9 @@ bool decides(const World& world, Entity entity, const SoftBody& body, const TetM
 void begin_body(const SoftBody& body, dvec3 gravity, TetMesh& tets) {
   if (!tets.start.empty() && body.under_gravity == UnderGravity::kModelled) tets.nodes = tets.start;
   tets.start.clear();
-  const auto say = [&](std::string what) { tets.report.findings.push_back(std::move(what)); };
+  const auto say = [&](Note note) { tets.report.findings.push_back(std::move(note)); };
   if (tets.pinned_begin() == tets.node_count())
-    return say("is not pinned, so it falls whatever `under_gravity` says; pin it");
+    return say({"is not pinned, so it falls whatever `under_gravity` says", "pin it", "tissue.gravity", {}});
   if (body.under_gravity == UnderGravity::kModelled) {
     Unloaded unloaded = find_unloaded(tets, body, gravity);
     if (unloaded.found) {
@@ -46,14 +46,15 @@ void begin_body(const SoftBody& body, dvec3 gravity, TetMesh& tets) {
     }
     Equilibrium rest = find_equilibrium(tets, body, gravity);
     if (rest.converged) tets.start = std::move(rest.nodes);
-    return say(sag_doubt(body, {.held = true}, &unloaded) +
-               (rest.converged
-                    ? fmt::format(" (it begins where it rests, {:.3g} mm from where it is drawn)", 1e3 * rest.most)
-                    : std::string(" (it falls)")));
+    std::optional<Note> doubt = sag_doubt(body, {.held = true}, &unloaded);
+    doubt->what += rest.converged
+                       ? fmt::format(", so it begins where it rests, {:.3g} mm from where it is drawn", 1e3 * rest.most)
+                       : std::string(", so it falls");
+    return say(*std::move(doubt));
   }
   Equilibrium rest = find_equilibrium(tets, body, gravity);
   if (rest.converged) tets.start = std::move(rest.nodes);
-  if (std::string doubt = sag_doubt(body, rest, nullptr); !doubt.empty()) say(std::move(doubt));
+  if (std::optional<Note> doubt = sag_doubt(body, rest, nullptr)) say(*std::move(doubt));
 }
 
 }  // namespace
@@ -71,21 +72,25 @@ void find_sag(World& world) {
     const bool tool = world.registry.has<Handle6>(entity);
     if (tool || body.under_gravity != UnderGravity::kFalls || !(length(world.simulation.gravity) > 0.0)) continue;
     const Equilibrium rest = find_equilibrium(tets, body, gravity_of(world, entity));
-    if (std::string doubt = sag_doubt(body, rest, nullptr); !doubt.empty())
-      tets.report.findings.push_back(std::move(doubt));
+    if (std::optional<Note> doubt = sag_doubt(body, rest, nullptr)) tets.report.findings.push_back(*std::move(doubt));
   }
 }
 
-std::vector<std::string> tissue_findings(const World& world) {
-  std::vector<std::string> all;
-  for (auto [entity, body] : world.registry.view<const SoftBody>())
-    for (const std::string& finding : world.tet_meshes[body.tets].report.findings)
-      all.push_back(name_in_quotes(world, entity) + ": " + finding);
+std::vector<Note> tissue_findings(const World& world) {
+  std::vector<Note> all;
+  for (auto [entity, body] : world.registry.view<const SoftBody>()) {
+    const std::string name = body_name(world, entity);
+    for (Note finding : world.tet_meshes[body.tets].report.findings) {
+      finding.what = "`" + name + "`: " + finding.what;
+      finding.of = name;
+      all.push_back(std::move(finding));
+    }
+  }
   return all;
 }
 
-std::vector<std::string> explain_sag(const World& world) {
-  std::vector<std::string> all;
+std::vector<Note> explain_sag(const World& world) {
+  std::vector<Note> all;
   if (!world.soft) return all;
   for (const std::unique_ptr<Body>& body : world.soft->bodies) {
     const auto* tissue = body->as_tissue();
@@ -100,22 +105,21 @@ std::vector<std::string> explain_sag(const World& world) {
     for (std::size_t i = 0; i < began.size(); ++i)
       most = std::max(most, length(tissue->tissue().position()[i] - began[i]));
     const double turned = turn_between(began, tissue->tissue().position());
-    const std::string name = name_in_quotes(world, body->entity);
+    const std::string name = body_name(world, body->entity);
+    const auto note = [&](const std::string& what, const char* cure) {
+      all.push_back({"`" + name + "` " + what, cure, "soft.sagged", name});
+    };
     const bool pinned = tets.pinned_begin() < tets.node_count();
     if (!pinned && most > kOutOfScene * size)
-      all.push_back(
-          fmt::format("{} fell {:.3g} m, as nothing holds it; pin it, or put something below it", name, most));
+      note(fmt::format("fell {:.3g} m, as nothing holds it", most), "pin it, or put something below it");
     else if (pinned && turned > kMuchTurn)
-      all.push_back(
-          fmt::format("{} ended turned by {:.0f} degrees, and {:.3g} mm from where it began: what is pinned "
-                      "does not hold it; pin more of it, or let it keep its shape (`under_gravity` "
-                      "`modelled`)",
-                      name, turned * 180.0 / 3.14159265358979, most * 1e3));
+      note(fmt::format("ended turned by {:.0f} degrees, and {:.3g} mm from where it began: what is pinned does not "
+                       "hold it",
+                       turned * 180.0 / 3.14159265358979, most * 1e3),
+           "pin more of it, or let it keep its shape (`under_gravity` `modelled`)");
     else if (pinned && most > kFarAtEnd * size)
-      all.push_back(
-          fmt::format("{} ended {:.3g} mm from where it began, {:.0f} % of its size; if it shall not sag so "
-                      "far, pin more of it, or let it keep its shape (`under_gravity` `modelled`)",
-                      name, most * 1e3, 100.0 * most / size));
+      note(fmt::format("ended {:.3g} mm from where it began, {:.0f} % of its size", most * 1e3, 100.0 * most / size),
+           "if it shall not sag so far, pin more of it, or let it keep its shape (`under_gravity` `modelled`)");
   }
   return all;
 }

@@ -1,7 +1,6 @@
 // Initial state of soft bodies under gravity (UnderGravity), and findings about it.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "components/world.h"
@@ -17,11 +16,11 @@ void begin_under_gravity(World& world);
 // TetReport::findings. Some tenths of a second per body. After begin_under_gravity.
 void find_sag(World& world);
 
-// "`name`: " and each of TetReport::findings, of all soft bodies.
-std::vector<std::string> tissue_findings(const World& world);
+// Each of TetReport::findings, "`name`: " before it, of all soft bodies.
+std::vector<Note> tissue_findings(const World& world);
 
 // After a run: pinned bodies that are far from their start, or have turned over, and unsupported ones that have fallen
 // out of the scene. Tools are left out.
-std::vector<std::string> explain_sag(const World& world);
+std::vector<Note> explain_sag(const World& world);
 
 }  // namespace pliant

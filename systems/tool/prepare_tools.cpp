@@ -73,8 +73,8 @@ void find_weight(const World& world, ToolTouchState& tool) {
 Status check_free(const World& world, Entity tool, Entity device) {
   const auto moves = [&](Entity other) {
     return Error{"tool `" + tool_name(world, tool) + "`",
-                 fmt::format("its device `{}` already moves `{}`; give each its own", tool_name(world, device),
-                             tool_name(world, other))};
+                 fmt::format("its device `{}` already moves `{}`", tool_name(world, device), tool_name(world, other)),
+                 "give each its own"};
   };
   for (auto [entity, probe] : world.registry.view<Probe>())
     if (probe.device == device) return moves(entity);
@@ -104,8 +104,8 @@ Status add_tool(World& world, Entity entity) {
   const std::string& wanted = world.registry.get<Handle6>(entity).device;
   const Entity named = wanted.empty() ? kNoEntity : find_by_name(world, wanted);
   if (!wanted.empty() && (named == kNoEntity || !world.registry.has<HapticDevice>(named)))
-    return Error{"tool `" + tool_name(world, entity) + "`",
-                 "its device `" + wanted + "` has no PLIANT_haptic_device; name a node that has one"};
+    return Error{"tool `" + tool_name(world, entity) + "`", "its device `" + wanted + "` has no PLIANT_haptic_device",
+                 "name a node that has one"};
   const Entity device = wanted.empty() ? resting_device(world, entity) : named;
   if (Status status = check_free(world, entity, device); !status) return status.error();
   world.tools->tools.push_back(make_tool(entity, device, world.registry.find<Pose>(entity)));

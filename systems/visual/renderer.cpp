@@ -191,7 +191,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const World& world) {
   parts.shadow = Shadow::make();
   parts.nothing = gpu::VertexArray::make();
   if (glGetError() == GL_OUT_OF_MEMORY)
-    return Error{"GPU", "has no room for this level's meshes and textures; use a coarser mesh or smaller ones"};
+    return Error{"GPU", "has no room for this level's meshes and textures", "use a coarser mesh or smaller ones"};
   return renderer;
 }
 

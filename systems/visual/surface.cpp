@@ -114,14 +114,15 @@ Result<Surfaces> Surfaces::make(const World& world) {
   for (auto [entity, drawable] : world.registry.view<Drawable>()) {
     Item item = make_item(world, entity, world.draw_meshes[drawable.mesh]);
     if (item.stream.buffer().size() > static_cast<std::size_t>(largest))
-      return Error{"GPU", fmt::format("a surface of {} vertices needs a stream of {} MiB, this driver allows {}; "
-                                      "use a GPU, or a coarser mesh",
-                                      item.stream.values().size(), item.stream.buffer().size() >> 20, largest >> 20)};
+      return Error{"GPU",
+                   fmt::format("a surface of {} vertices needs a stream of {} MiB, this driver allows {}",
+                               item.stream.values().size(), item.stream.buffer().size() >> 20, largest >> 20),
+                   "use a GPU, or a coarser mesh"};
     if (item.replay.bytes() > static_cast<std::size_t>(largest))
       return Error{"GPU",
-                   fmt::format("the field of a surface of {} vertices needs {} MiB there, this driver allows {}; "
-                               "use --field cpu, or a coarser mesh",
-                               item.stream.values().size(), item.replay.bytes() >> 20, largest >> 20)};
+                   fmt::format("the field of a surface of {} vertices needs {} MiB there, this driver allows {}",
+                               item.stream.values().size(), item.replay.bytes() >> 20, largest >> 20),
+                   "use --field cpu, or a coarser mesh"};
     made.boxes_.push_back(world_box(world.draw_meshes[drawable.mesh], item.to_world));
     item.number = static_cast<std::uint32_t>(made.items_.size()) + 1;
     const MapPlacement block = placement_block(item.to_world, item.number, false);

@@ -10,7 +10,7 @@
 namespace pliant::test {
 namespace {
 
-Gltf square() {
+Gltf shown_square() {
   Gltf gltf;
   Json& primitive = gltf.primitive({{"POSITION", gltf.positions(kSquare)}});
   primitive["indices"] = gltf.accessor(std::vector<std::uint16_t>{0, 1, 2, 1, 3, 2}, "SCALAR", kUnsignedShort);
@@ -22,7 +22,7 @@ Gltf square() {
 // A square on two joints, nodes 1 and 2, below node 0, which shows it.
 Gltf skinned(std::vector<std::uint8_t> joints = {0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0},
              std::vector<float> weights = {.5f, .5f, 0, 0, 1, 0, 0, 0, .5f, .5f, 0, 0, 1, 0, 0, 0}) {
-  Gltf gltf = square();
+  Gltf gltf = shown_square();
   Json& attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["JOINTS_0"] = gltf.accessor(joints, "VEC4", kUnsignedByte);
   attributes["WEIGHTS_0"] = gltf.accessor(weights, "VEC4", kFloat);
@@ -36,7 +36,7 @@ Gltf skinned(std::vector<std::uint8_t> joints = {0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0
 
 // Node 0 moves along X in a second.
 Gltf moving(const char* interpolation = "LINEAR") {
-  Gltf gltf = square();
+  Gltf gltf = shown_square();
   const std::size_t times = gltf.accessor(std::vector<float>{0, 1}, "SCALAR", kFloat, true);
   const std::size_t values =
       gltf.accessor(std::vector<float>(std::string(interpolation) == "CUBICSPLINE" ? 18 : 6, 0.5f), "VEC3", kFloat);
@@ -100,19 +100,19 @@ TEST(GltfRules, SoundFilesLoadAndBrokenOnesAreRefusedWithTheirPlace) {
          at(j, "/nodes").push_back({{"mesh", 0}, {"skin", 1}});
        },
        "/accessors/"},
-      {"an index of refraction of none", [] { return square(); },
+      {"an index of refraction of none", [] { return shown_square(); },
        [](Json& j) {
          j["materials"] = Json::array({{{"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}}});
          j["extensionsUsed"] = {"KHR_materials_ior"};
        },
        ""},
-      {"an index of refraction below that of nothing", [] { return square(); },
+      {"an index of refraction below that of nothing", [] { return shown_square(); },
        [](Json& j) {
          j["materials"] = Json::array({{{"extensions", {{"KHR_materials_ior", {{"ior", 0.5}}}}}}});
          j["extensionsUsed"] = {"KHR_materials_ior"};
        },
        "/materials/0/extensions/KHR_materials_ior/ior"},
-      {"a texture for WebP that names a PNG", [] { return square(); },
+      {"a texture for WebP that names a PNG", [] { return shown_square(); },
        [](Json& j) {
          j["images"] = Json::array({{{"uri", "a.png"}, {"mimeType", "image/png"}}});
          j["textures"] = Json::array({{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}});
@@ -144,7 +144,7 @@ TEST(GltfRules, TwoWeightsOfOneJointAreAddedUpWithANote) {
 // As written by exporters at degenerate triangles: the residue of cancelling normals.
 TEST(GltfRules, NormalsAndTangentsThatAreNearlyZeroAreMendedAsZeroOnesAre) {
   for (const float tiny : {0.0f, 1e-45f, 1e-41f, 1e-30f, 1e-10f, 5e-5f}) {
-    Gltf gltf = square();
+    Gltf gltf = shown_square();
     Json& attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"];
     attributes["NORMAL"] = gltf.accessor(std::vector<float>{0, 0, 1, tiny, 0, 0, 0, 0, 1, 0, -tiny, 0}, "VEC3", kFloat);
     attributes["TANGENT"] =
@@ -159,7 +159,7 @@ TEST(GltfRules, NormalsAndTangentsThatAreNearlyZeroAreMendedAsZeroOnesAre) {
   }
   for (const float wrong :
        {1e-2f, 0.5f, 2.0f, 1e20f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
-    Gltf gltf = square();
+    Gltf gltf = shown_square();
     gltf.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
         gltf.accessor(std::vector<float>{0, 0, 1, wrong, 0, 0, 0, 0, 1, 0, 0, 1}, "VEC3", kFloat);
     EXPECT_NE(gltf.refusal().find("/accessors/2"), std::string::npos) << wrong << ": " << gltf.refusal();

@@ -9,7 +9,7 @@
 namespace pliant::test {
 namespace {
 
-using Triangles = std::vector<std::uint32_t>;
+using Corners = std::vector<std::uint32_t>;
 
 Primitive only_primitive(const Gltf& gltf) {
   Result<Level> level = gltf.load();
@@ -19,8 +19,8 @@ Primitive only_primitive(const Gltf& gltf) {
 }
 
 TEST(Gltf, StripsAndFansBecomeTrianglesOfTheSameOrientation) {
-  for (const auto& [mode, expected] : {std::pair{5, Triangles{0, 1, 2, 1, 3, 2}},
-                                       std::pair{6, Triangles{1, 2, 0, 2, 3, 0}}, std::pair{4, Triangles{0, 1, 2}}}) {
+  for (const auto& [mode, expected] : {std::pair{5, Corners{0, 1, 2, 1, 3, 2}}, std::pair{6, Corners{1, 2, 0, 2, 3, 0}},
+                                       std::pair{4, Corners{0, 1, 2}}}) {
     Gltf gltf;
     gltf.primitive({{"POSITION", gltf.positions(kSquare)}})["mode"] = mode;
     EXPECT_EQ(only_primitive(gltf).index, expected) << mode;
@@ -28,7 +28,7 @@ TEST(Gltf, StripsAndFansBecomeTrianglesOfTheSameOrientation) {
 }
 
 TEST(Gltf, IndicesOfEveryWidthAreTheSameTriangles) {
-  const Triangles expected = {2, 1, 0, 1, 2, 3};
+  const Corners expected = {2, 1, 0, 1, 2, 3};
   Gltf bytes, shorts, ints;
   bytes.primitive({{"POSITION", bytes.positions(kSquare)}})["indices"] =
       bytes.accessor(std::vector<std::uint8_t>{2, 1, 0, 1, 2, 3}, "SCALAR", kUnsignedByte);

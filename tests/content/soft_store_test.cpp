@@ -55,11 +55,7 @@ TEST_F(SoftStoreTest, WhatWasKeptComesBackWholeOrNotAtAll) {
   EXPECT_EQ(found->tets.nodes, parts.tets.nodes);
   EXPECT_EQ(found->tets.tets, parts.tets.tets);
   EXPECT_EQ(found->tets.report.findings, parts.tets.report.findings);
-  ASSERT_EQ(found->tets.report.notes.size(), parts.tets.report.notes.size());
-  for (std::size_t i = 0; i < parts.tets.report.notes.size(); ++i) {
-    EXPECT_EQ(found->tets.report.notes[i].message(), parts.tets.report.notes[i].message());
-    EXPECT_EQ(found->tets.report.notes[i].code, parts.tets.report.notes[i].code);
-  }
+  EXPECT_EQ(found->tets.report.notes, parts.tets.report.notes);
   EXPECT_EQ(found->surface.mesh.triangles, parts.surface.mesh.triangles);
   EXPECT_EQ(found->surface.mesh.tree.levels.size(), parts.surface.mesh.tree.levels.size());
   EXPECT_EQ(found->surface.draw.indices, parts.surface.draw.indices);

@@ -1,18 +1,15 @@
 // The panel of error budgets, operated in an invisible window.
 #include "content/level_file.h"
 #include "scenes/scenes.h"
-#include "tests/editor/small_level.h"
-#include "tests/player/command.h"
+#include "tests/editor/shell_window.h"
 
 namespace pliant::testing {
 namespace {
 
-class BudgetWindowTest : public CommandTest {
+class BudgetWindowTest : public EditorWindow {
  protected:
   void SetUp() override {
-    CommandTest::SetUp();
-    if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
-      GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
+    EditorWindow::SetUp();
     Level level = sheet_and_finger();
     level.nodes[0].deformable->reach = 0.03;
     level.meshes.push_back({"slab", {scenes::slab(6, 0.1, 0.05)}});
@@ -27,14 +24,7 @@ class BudgetWindowTest : public CommandTest {
     level.nodes.push_back(slab);
     for (const char* name : {"small.glb", "other.glb"}) ASSERT_TRUE(save_level(level, folder / name).ok());
   }
-  Said edited(const std::string& script) const {
-    write_text(folder / "script.txt", script);
-    return pliant(
-        {"edit", "small.glb", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
-        // Leak sanitizers report leaks of display drivers.
-        "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
-            " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
-  }
+  Said edited(const std::string& script) const { return edit("small.glb", script); }
   Level saved() const {
     Result<Level> level = load_level(folder / "small.glb");
     EXPECT_TRUE(level.ok()) << level.error().message();

@@ -1,19 +1,16 @@
 // The panel of devices in the editor, pressed by a script: a level that asks for a device is played with it, it arms
 // itself, is stopped by the key and armed by the button; the inspector picks which.
-#include "tests/player/command.h"
+#include "tests/editor/shell_window.h"
 
 namespace pliant::testing {
 namespace {
 
-class DeviceWindowTest : public CommandTest {
+class DeviceWindowTest : public EditorWindow {
  protected:
   void SetUp() override {
-    CommandTest::SetUp();
-    if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
-      GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
+    EditorWindow::SetUp();
     for (const char* name : {"minimal.gltf", "minimal.bin"})
       fs::copy_file(fs::path(PLIANT_SOURCE_DIR) / "content/levels" / name, folder / name);
-    fs::create_directories(folder / "state");
   }
   void level_wants(const std::string& id) const {
     Json level = Json::parse(read_text(folder / "minimal.gltf"));
@@ -22,13 +19,7 @@ class DeviceWindowTest : public CommandTest {
         node["extensions"]["PLIANT_haptic_device"] = {{"driver", "external"}, {"id", id}};
     write_text(folder / "minimal.gltf", level.dump(2));
   }
-  Said edited(const std::string& script) const {
-    write_text(folder / "script.txt", script);
-    return pliant(
-        {"edit", "minimal.gltf", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
-        "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
-            " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
-  }
+  Said edited(const std::string& script) const { return edit("minimal.gltf", script); }
 };
 
 TEST_F(DeviceWindowTest, ALevelsDeviceIsPlayedStoppedByTheKeyAndArmedByThePanel) {

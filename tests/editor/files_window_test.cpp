@@ -5,40 +5,12 @@
 #include "content/files/image.h"
 #include "content/level_file.h"
 #include "editor/document/recovery.h"
-#include "tests/editor/small_level.h"
-#include "tests/player/command.h"
+#include "tests/editor/shell_window.h"
 
 namespace pliant::testing {
 namespace {
 
-class FilesWindowTest : public CommandTest {
- protected:
-  void SetUp() override {
-    CommandTest::SetUp();
-    if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
-      GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
-    ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
-    fs::create_directories(folder / "state");
-  }
-  // Leak sanitizers report leaks of display drivers. The user's files are neither read nor written.
-  std::string around() const {
-    return "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
-           " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'";
-  }
-  Said edit(const std::string& file, const std::string& script) const {
-    write_text(folder / "script.txt", script);
-    std::vector<std::string> words{"edit"};
-    if (!file.empty()) words.push_back(file);
-    for (const char* more : {"--size", "1280x720", "--config", "config", "--out", "shots", "--input", "script.txt"})
-      words.push_back(more);
-    return pliant(words, around());
-  }
-  Document document(const std::string& file) const {
-    Result<Document> read = Document::open(folder / file);
-    EXPECT_TRUE(read.ok()) << read.error().message();
-    return read ? *std::move(read) : Document();
-  }
-};
+class FilesWindowTest : public ShellWindow {};
 
 TEST_F(FilesWindowTest, TheEditorSavesUnderAnotherNameAndAsksBeforeItReplacesAFile) {
   write_text(folder / "taken.glb", "what somebody else wrote");

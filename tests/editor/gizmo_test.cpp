@@ -263,11 +263,11 @@ TEST(Gizmo, WhatIsTypedIsAnAxisANumberAndAUnit) {
 }
 
 TEST(Gizmo, LengthsHaveTheUnitOfTheirSize) {
-  EXPECT_EQ(length_text(0.01), "1 cm");
-  EXPECT_EQ(length_text(0.001), "1 mm");
-  EXPECT_EQ(length_text(1e-7), "100 nm");
-  EXPECT_EQ(length_text(-0.25), "-25 cm");
-  EXPECT_EQ(length_text(10), "10 m");
+  EXPECT_EQ(metres_text(0.01), "1 cm");
+  EXPECT_EQ(metres_text(0.001), "1 mm");
+  EXPECT_EQ(metres_text(1e-7), "100 nm");
+  EXPECT_EQ(metres_text(-0.25), "-25 cm");
+  EXPECT_EQ(metres_text(10), "10 m");
 }
 
 // --- The tools as the viewport drives them

@@ -1,21 +1,13 @@
 // The paint tool and panel, operated in an invisible window.
 #include "content/level_file.h"
 #include "tests/content/mesh_shapes.h"
-#include "tests/player/command.h"
+#include "tests/editor/shell_window.h"
 
 namespace pliant::testing {
 namespace {
 
-// Under the leak sanitizer: display drivers do not free their memory, and are unloaded when it checks.
-constexpr const char* kDriversLeak = "ASAN_OPTIONS=detect_leaks=0 ";
-
-class PaintWindowTest : public CommandTest {
+class PaintWindowTest : public EditorWindow {
  protected:
-  void SetUp() override {
-    CommandTest::SetUp();
-    if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
-      GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
-  }
   // An organ of the corpus, else a ball; with a probe, so that it is a level with a file.
   void write_level() const {
     Level level;
@@ -41,12 +33,7 @@ class PaintWindowTest : public CommandTest {
     const Status saved = save_level(level, folder / "organ.glb");
     ASSERT_TRUE(saved.ok()) << saved.error().message();
   }
-  Said edited(const std::string& script) const {
-    write_text(folder / "script.txt", script);
-    return pliant(
-        {"edit", "organ.glb", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
-        std::string(kDriversLeak) + "timeout 200 xvfb-run -a -s '-screen 0 1600x900x24'");
-  }
+  Said edited(const std::string& script) const { return edit("organ.glb", script); }
 };
 
 TEST_F(PaintWindowTest, ALumpIsPaintedUndoneDoneAgainAndSaved) {

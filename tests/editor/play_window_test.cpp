@@ -4,7 +4,7 @@
 #include "content/files/image.h"
 #include "content/level_file.h"
 #include "tests/content/mesh_shapes.h"
-#include "tests/player/command.h"
+#include "tests/editor/shell_window.h"
 
 namespace pliant::testing {
 namespace {
@@ -23,22 +23,15 @@ double contrast(const Image& image, double left, double top, double right, doubl
   return std::sqrt(std::max(0.0, squares / count - sum / count * (sum / count)));
 }
 
-class PlayWindowTest : public CommandTest {
+class PlayWindowTest : public EditorWindow {
  protected:
   void SetUp() override {
-    CommandTest::SetUp();
-    if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
-      GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
+    EditorWindow::SetUp();
     for (const char* name : {"minimal.gltf", "minimal.bin", "minimal.csv"})
       fs::copy_file(fs::path(PLIANT_SOURCE_DIR) / "content/levels" / name, folder / name);
-    fs::create_directories(folder / "state");
   }
   Said edited(const std::string& script, const std::string& level = "minimal.gltf") const {
-    write_text(folder / "script.txt", script);
-    return pliant(
-        {"edit", level, "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
-        "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
-            " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
+    return edit(level, script);
   }
   Image shot(const std::string& name) const {
     auto image = load_image(folder / "shots" / name);

@@ -7,13 +7,12 @@
 
 namespace pliant::testing {
 
-class ShellWindow : public CommandTest {
+class EditorWindow : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
     if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
       GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
-    ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
     fs::create_directories(folder / "state");
   }
   // Leak sanitizers report leaks of display drivers. The user's files are neither read nor written.
@@ -32,6 +31,20 @@ class ShellWindow : public CommandTest {
       words.push_back(more);
     return pliant(words, around(size == "1280x720" ? "1300x800" : size));
   }
+  Document document(const std::string& file) const {
+    Result<Document> read = Document::open(folder / file);
+    EXPECT_TRUE(read.ok()) << read.error().message();
+    return read ? *std::move(read) : Document();
+  }
+};
+
+// With a level of a sheet and a finger, small.glb.
+class ShellWindow : public EditorWindow {
+ protected:
+  void SetUp() override {
+    EditorWindow::SetUp();
+    ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
+  }
   void expect_done(const std::string& file, const std::string& script, const std::string& size = "1280x720") const {
     const Said said = edit(file, script, size);
     EXPECT_EQ(said.status, 0) << said.err;
@@ -40,11 +53,6 @@ class ShellWindow : public CommandTest {
     const Said said = edit(file, script);
     EXPECT_NE(said.status, 0) << script;
     EXPECT_NE(said.err.find(word), std::string::npos) << said.err;
-  }
-  Document document(const std::string& file) const {
-    Result<Document> read = Document::open(folder / file);
-    EXPECT_TRUE(read.ok()) << read.error().message();
-    return read ? *std::move(read) : Document();
   }
 };
 

@@ -1,28 +1,14 @@
 // Gizmos and overlays, operated in an invisible window.
 #include "content/files/image.h"
 #include "editor/document/document.h"
-#include "tests/editor/small_level.h"
-#include "tests/player/command.h"
+#include "tests/editor/shell_window.h"
 
 namespace pliant::testing {
 namespace {
 
-class ViewWindowTest : public CommandTest {
+class ViewWindowTest : public ShellWindow {
  protected:
-  void SetUp() override {
-    CommandTest::SetUp();
-    if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
-      GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
-    ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
-  }
-  Said edited(const std::string& script) const {
-    write_text(folder / "script.txt", script);
-    return pliant(
-        {"edit", "small.glb", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
-        // Leak sanitizers report leaks of display drivers.
-        "ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" + quoted((folder / "state").string()) +
-            " timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
-  }
+  Said edited(const std::string& script) const { return edit("small.glb", script); }
   LocalTransform saved(const std::string& name) const {
     const Result<Document> read = Document::open(folder / "small.glb");
     EXPECT_TRUE(read.ok()) << read.error().message();

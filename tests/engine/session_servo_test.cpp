@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "devices/servo/local_force.h"
-#include "engine/session/session_inside.h"
+#include "engine/session/session_run.h"
 #include "systems/device/device_model.h"
 #include "tests/engine/session_rig.h"
 
@@ -66,9 +66,9 @@ void go(Session& session, Served& served, dvec3 to) {
 }
 
 DeviceModel model_of(Session& session) {
-  Session::Parts& parts = SessionInside::of(session);
-  const SessionEffector& effector = parts.effectors.front();
-  return device_model(parts.world, effector.entity, effector.device, parts.last);
+  SessionRun& run = SessionRun::of(session);
+  const SessionEffector& effector = run.effectors.front();
+  return device_model(run.world, effector.entity, effector.device, run.last);
 }
 
 // The next tick's force at a displacement `dx`, and the prediction of this tick's model.

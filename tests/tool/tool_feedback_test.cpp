@@ -473,9 +473,8 @@ TEST(ToolFeedback, ADeviceThatMovesAProbeAlreadyIsRefused) {
   for (auto [entity, handle] : stage.world.registry.view<Handle6>()) handle.device = odd;
   const Status status = prepare_tools(stage.world);
   ASSERT_FALSE(status);
-  EXPECT_NE(status.error().what.find("its device `" + odd + "` already moves `tip" + odd + "`; give each its own"),
-            std::string::npos)
-      << status.error().what;
+  EXPECT_EQ(status.error().what, "its device `" + odd + "` already moves `tip" + odd + "`");
+  EXPECT_EQ(status.error().cure, "give each its own");
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST(Viewpoint, TheLevelsCameraIsTakenWhereItStandsAndLooks) {
   EXPECT_EQ(view.yfov, 0.5f);
 }
 
-Panorama panorama_of(std::uint32_t width, vec3 (*radiance)(vec3)) {
+Panorama panorama_lit_by(std::uint32_t width, vec3 (*radiance)(vec3)) {
   Panorama p{.name = "made", .width = width, .height = width / 2, .rgb = {}};
   for (std::uint32_t y = 0; y < p.height; ++y)
     for (std::uint32_t x = 0; x < p.width; ++x) {
@@ -72,7 +72,7 @@ TEST(Environment, IrradianceHasItsClosedFormForEveryDegreeOfTheHarmonics) {
   // Radiance 1, d.x, d.y^2 give irradiance pi, 2 pi/3 n.x, pi/4 (1 + n.y^2): the cosine lobe's factors pi, 2 pi/3,
   // pi/4.
   const std::array<vec4, 9> c =
-      irradiance_of(panorama_of(256, [](vec3 d) { return vec3(1, 1 + 0.5f * d.x, d.y * d.y); }));
+      irradiance_of(panorama_lit_by(256, [](vec3 d) { return vec3(1, 1 + 0.5f * d.x, d.y * d.y); }));
   for (const vec3 n : {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1), normalize(vec3(1, -2, 3))}) {
     const vec3 e = irradiance_on(c, n);
     EXPECT_NEAR(e.r, kHalfTurn, 1e-3);
@@ -82,7 +82,7 @@ TEST(Environment, IrradianceHasItsClosedFormForEveryDegreeOfTheHarmonics) {
 }
 
 TEST(Environment, TheMiddleColumnLightsWhatFacesMinusZ) {
-  const std::array<vec4, 9> c = irradiance_of(panorama_of(64, [](vec3 d) { return vec3(d.z < -0.9f ? 1 : 0); }));
+  const std::array<vec4, 9> c = irradiance_of(panorama_lit_by(64, [](vec3 d) { return vec3(d.z < -0.9f ? 1 : 0); }));
   EXPECT_GT(irradiance_on(c, {0, 0, -1}).r, 10 * std::abs(irradiance_on(c, {0, 0, 1}).r));
 }
 

@@ -3,8 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "components/soft_body.h"
 #include "components/tet_mesh.h"
-#include "engine/session/session_inside.h"
+#include "engine/session/session_world.h"
 #include "lab/study/fidelity/study_fidelity.h"
 #include "lab/study/pareto.h"
 #include "lab/study/processor_time.h"
@@ -162,7 +163,7 @@ Result<Indentation> press_tissue(const Indented& what, PressRun& wish) {
   if (const Status added = scene.add_handle("punch", held, any_force()); !added) return added.error();
   auto session = Session::open(scene);
   if (!session) return session.error();
-  const World& world = SessionInside::of(*session).world;
+  const World& world = world_of(*session);
   for (auto [entity, its] : world.registry.view<const SoftBody>()) wish.tets = world.tet_meshes[its.tets].tets.size();
   Indentation out;
   const Status done =

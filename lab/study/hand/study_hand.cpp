@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "content/level_file.h"
 #include "devices/guard/guard.h"
 #include "devices/wrappers/wrapper.h"
 #include "engine/run/driver_link.h"
@@ -88,11 +87,7 @@ double fast_part(const Held& held, std::size_t from) {
 }
 
 Result<World> open_level(const std::string& name, double stiffness) {
-  const auto file = find_level(name);
-  if (!file) return file.error();
-  auto level = load_level(*file);
-  if (!level) return level.error();
-  auto world = spawn(*level);
+  auto world = world_of_level(name);
   if (!world) return world.error();
   if (stiffness > 0.0)
     for (auto [entity, surface] : world->registry.view<Deformable>()) surface.stiffness = stiffness;

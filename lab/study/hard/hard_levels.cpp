@@ -7,9 +7,10 @@
 #include "content/level_file.h"
 #include "engine/run/limits.h"
 #include "engine/run/sources.h"
-#include "engine/session/session_inside.h"
+#include "engine/session/session_world.h"
 #include "lab/files/content_folder.h"
 #include "lab/study/hard/hard_case.h"
+#include "systems/device/hands.h"
 #include "systems/device/reading.h"
 
 namespace pliant {
@@ -71,7 +72,7 @@ void orbit(Judged& judged, const Level& level, const std::string& where) {
   auto session = Session::open(Scene(level));
   worst.need(session.ok(), where + (session ? "" : ": " + session.error().message()));
   if (!session) return;
-  const World& world = SessionInside::of(*session).world;
+  const World& world = world_of(*session);
   const auto ticks = static_cast<std::uint64_t>(kOrbit * world.simulation.touch_rate);
   std::uint64_t touching = 0;
   for (std::uint64_t i = 0; i < ticks; ++i) {
@@ -80,16 +81,15 @@ void orbit(Judged& judged, const Level& level, const std::string& where) {
       return;
     }
     bool any = false;
-    for (const SessionEffector& effector : SessionInside::of(*session).effectors)
-      any = any || reading(world, effector.entity).in_contact;
+    for (const Entity held : hands(world)) any = any || reading(world, held).in_contact;
     touching += any;
   }
   const double contact = static_cast<double>(touching) / static_cast<double>(ticks);
   judged.least_contact = std::min(judged.least_contact, contact);
   worst.need(contact >= kLeastContact, fmt::format("{}: in contact in {:.1f} % of the ticks", where, 100 * contact));
   double withheld = 0;
-  for (const SessionEffector& effector : SessionInside::of(*session).effectors) {
-    const HandSafety safety = find_safety(world, effector.entity);
+  for (const Entity held : hands(world)) {
+    const HandSafety safety = find_safety(world, held);
     for (const SafetyState* state : {safety.force, safety.torque})
       if (state) withheld += static_cast<double>(state->tally.of(SafetyLimit::kWithheld).ticks);
   }

@@ -8,8 +8,9 @@
 #include <set>
 
 #include "content/keys/extension_table.h"
-#include "engine/session/session_parts.h"
+#include "engine/session/live_keys.h"
 #include "lab/study/hard/hard_case.h"
+#include "pliant/session.h"
 #include "scenes/touch_laws.h"
 #include "scenes/touch_raw.h"
 #include "systems/touch/model/local_model.h"

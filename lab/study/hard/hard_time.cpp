@@ -8,7 +8,7 @@
 #include <random>
 #include <thread>
 
-#include "engine/session/session_inside.h"
+#include "engine/session/session_world.h"
 #include "lab/study/hard/hard_case.h"
 #include "runtime/clock.h"
 #include "scenes/touch_laws.h"
@@ -217,14 +217,14 @@ Status play_stall(Session& session, RealHand& hand, double stiffness, bool servo
   std::atomic<bool> stall{false};
   std::atomic<std::uint64_t> stalled{0};  // [tick]
   std::uint64_t before = 0;
-  SessionInside::of(session).noted = [&](Tick tick) {
+  on_tick(session, [&](Tick tick) {
     if (before > 0 && 1e3 * static_cast<double>(tick.index - before) * tick.dt > kLate && stalled != before)
       ++seen.late;
     before = tick.index;
     if (!stall.exchange(false)) return;
     stalled = tick.index;
     std::this_thread::sleep_for(std::chrono::duration<double>(kStall));
-  };
+  });
   const auto force_is = [&](double depth) {
     return within(3.0, [&] { return std::abs(hand.force - stiffness * depth) < 1e-3; });
   };

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "content/level_file.h"
 #include "lab/console/progress.h"
 #include "lab/files/content_folder.h"
 #include "lab/study/driven_tool.h"
@@ -36,11 +35,7 @@ constexpr double kSeconds = 6.0, kQuickSeconds = 2.0, kSmallSeconds = 0.2;
 
 // Opens a level whose scripts play `pace` times as fast.
 Result<World> open_paced(const std::string& name, double pace) {
-  const auto file = find_level(name);
-  if (!file) return file.error();
-  auto level = load_level(*file);
-  if (!level) return level.error();
-  auto world = spawn(*level);
+  auto world = world_of_level(name);
   if (!world) return world.error();
   if (const Status status = prepare_touch(*world); !status) return status.error();
   if (const Status status = prepare_tools(*world); !status) return status.error();

@@ -185,27 +185,32 @@ Unloaded find_unloaded(const TetMesh& tets, const SoftBody& body, dvec3 gravity,
   return out;
 }
 
-std::string sag_doubt(const SoftBody& body, const Equilibrium& now, const Unloaded* unloaded) {
-  if (!now.held) return "";
+std::optional<Note> sag_doubt(const SoftBody& body, const Equilibrium& now, const Unloaded* unloaded) {
+  if (!now.held) return {};
   const std::string cure = "pin more of it, where it hangs or stands, or give it a higher `young`";
+  const auto doubt = [](std::string what, std::string how) {
+    return Note{std::move(what), std::move(how), "tissue.gravity", {}};
+  };
   if (body.under_gravity == UnderGravity::kModelled) {
-    if (!unloaded || unloaded->found) return "";
-    return "cannot keep its shape under gravity (`under_gravity` `modelled`): tissue so soft does not hold it on what "
-           "is pinned; " +
-           cure;
+    if (!unloaded || unloaded->found) return {};
+    return doubt(
+        "cannot keep its shape under gravity (`under_gravity` `modelled`): tissue so soft does not hold it on what is "
+        "pinned",
+        cure);
   }
   if (now.turned > kMuchTurn)
-    return fmt::format("turns over under gravity, by {:.0f} degrees: what is pinned does not hold it; {}",
-                       now.turned * 180.0 / 3.14159265358979, cure);
+    return doubt(fmt::format("turns over under gravity, by {:.0f} degrees: what is pinned does not hold it",
+                             now.turned * 180.0 / 3.14159265358979),
+                 cure);
   if (!now.converged)
-    return fmt::format("finds no rest under gravity, and has sagged {} when it is looked for no longer; {}",
-                       millimetres(now.most), cure);
+    return doubt(fmt::format("finds no rest under gravity, and has sagged {} when it is looked for no longer",
+                             millimetres(now.most)),
+                 cure);
   if (now.most > kMuchSag * now.size)
-    return fmt::format(
-        "sags {} under gravity, {:.0f} % of its size: what is pinned holds too little of it; {}, or "
-        "let it keep its shape (`under_gravity` `modelled`)",
-        millimetres(now.most), 100.0 * now.most / now.size, cure);
-  return "";
+    return doubt(fmt::format("sags {} under gravity, {:.0f} % of its size: what is pinned holds too little of it",
+                             millimetres(now.most), 100.0 * now.most / now.size),
+                 cure + ", or let it keep its shape (`under_gravity` `modelled`)");
+  return {};
 }
 
 }  // namespace pliant

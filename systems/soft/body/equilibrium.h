@@ -7,8 +7,8 @@
 // Long steps are Newton steps; short ones follow the gradient, so that it converges to a stable state or not at all.
 #pragma once
 
+#include <optional>
 #include <stop_token>
-#include <string>
 #include <vector>
 
 #include "components/soft_body.h"
@@ -43,8 +43,8 @@ double size_of(const std::vector<dvec3>& nodes);  // [m] diagonal of their box
 
 inline constexpr double kMuchSag = 0.05;  // [1] of a body's size: larger sag gives a warning
 inline constexpr double kMuchTurn = 0.5;  // [rad] as does a larger rotation
-// A warning about the pins of a body, without its name; "": the pins are sufficient. `now`: equilibrium of the shape
+// A warning about the pins of a body, without its name; none: the pins are sufficient. `now`: equilibrium of the shape
 // without weight; `unloaded`: if the body keeps its modelled shape, else null.
-std::string sag_doubt(const SoftBody& body, const Equilibrium& now, const Unloaded* unloaded);
+std::optional<Note> sag_doubt(const SoftBody& body, const Equilibrium& now, const Unloaded* unloaded);
 
 }  // namespace pliant

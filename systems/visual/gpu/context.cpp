@@ -50,9 +50,8 @@ EGLContext make_current_on(EGLDisplay display) {
 Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create() {
   const std::vector<EGLDisplay> candidates = displays();
   if (candidates.empty())
-    return Error{"EGL",
-                 "offers neither a GPU nor Mesa's surfaceless platform; install libegl-mesa0 and "
-                 "libgl1-mesa-dri"};
+    return Error{"EGL", "offers neither a GPU nor Mesa's surfaceless platform",
+                 "install libegl-mesa0 and libgl1-mesa-dri"};
   for (const EGLDisplay display : candidates) {
     const EGLContext context = make_current_on(display);
     if (context == EGL_NO_CONTEXT) continue;
@@ -62,9 +61,8 @@ Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create() {
     made->renderer_name_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     return made;
   }
-  return Error{"EGL",
-               "no driver gives an OpenGL 4.5 core context; install libgl1-mesa-dri (22 or later) or the "
-               "GPU's own driver"};
+  return Error{"EGL", "no driver gives an OpenGL 4.5 core context",
+               "install libgl1-mesa-dri (22 or later) or the GPU's own driver"};
 }
 
 // The display stays initialised: EGL returns the same one to all users in the process.

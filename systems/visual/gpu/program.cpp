@@ -23,7 +23,7 @@ GLenum stage_of(const std::string& name) {
 
 Result<Shader> compile(const ShaderSource& source) {
   const GLenum stage = stage_of(source.name);
-  if (stage == GL_NONE) return Error{source.name, "a shader's name must end in .vert, .frag or .comp; rename it"};
+  if (stage == GL_NONE) return Error{source.name, "a shader's name must end in .vert, .frag or .comp", "rename it"};
   Shader shader(glCreateShader(stage));
   const char* text = source.text.c_str();
   glShaderSource(shader.id(), 1, &text, nullptr);

@@ -100,9 +100,8 @@ Status append(ShaderSource& source, const std::string& name, const std::string& 
     if (std::find(source.files.begin(), source.files.end(), *wanted) == source.files.end()) {
       const std::optional<std::string> included = read_text(*wanted);
       if (!included)
-        return Error{fmt::format("{}:{}", name, n),
-                     fmt::format("there is no shader file '{}' {}; correct the include, or set PLIANT_SHADERS", *wanted,
-                                 place())};
+        return Error{fmt::format("{}:{}", name, n), fmt::format("there is no shader file '{}' {}", *wanted, place()),
+                     "correct the include, or set PLIANT_SHADERS"};
       if (Status done = append(source, *wanted, *included); !done) return done;
     }
     source.text += fmt::format("#line {} {}\n", n + 1, number);
@@ -120,7 +119,7 @@ std::filesystem::path shader_folder() {
 Result<ShaderSource> load_shader(const std::string& name) {
   const std::optional<std::string> text = read_text(name);
   if (!text)
-    return Error{name, "there is no such shader " + place() + "; unset PLIANT_SHADERS, or set it to their folder"};
+    return Error{name, "there is no such shader " + place(), "unset PLIANT_SHADERS, or set it to their folder"};
   return expand_shader(name, *text);
 }
 

@@ -35,8 +35,9 @@ Result<Texture> Texture::from_image(const Image& image, Meaning meaning) {
     return Error{image.name, fmt::format("a picture of {}x{} pixels with {} bytes; it must have four to a pixel",
                                          image.width, image.height, image.rgba.size())};
   if (image.width > static_cast<std::uint32_t>(limit) || image.height > static_cast<std::uint32_t>(limit))
-    return Error{image.name, fmt::format("{}x{} pixels are more than the GPU holds ({}); scale it down", image.width,
-                                         image.height, limit)};
+    return Error{image.name,
+                 fmt::format("{}x{} pixels are more than the GPU holds ({})", image.width, image.height, limit),
+                 "scale it down"};
   const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
   Texture texture(GL_TEXTURE_2D, meaning == Meaning::kColor ? GL_SRGB8_ALPHA8 : GL_RGBA8, width, height,
                   all_levels(width, height));

@@ -1,4 +1,4 @@
-#include "engine/session/session_parts.h"
+#include "engine/session/session_run.h"
 
 #include <fmt/format.h>
 
@@ -55,16 +55,24 @@ Error work_stopped() {
   return {"Session::open", "it was stopped by its progress function", "nothing is wrong with the scene"};
 }
 
-Session::Parts::~Parts() {
+const World& world_of(const Session& session) {
+  return SessionRun::of(session).world;
+}
+
+void on_tick(Session& session, std::function<void(Tick)> does) {
+  SessionRun::of(session).noted = std::move(does);
+}
+
+SessionRun::~SessionRun() {
   if (runner) runner->stop();
   for (SessionEffector& effector : effectors) effector.link.close();
   if (recorder) static_cast<void>(recorder->finish());
 }
 
-Status Session::Parts::prepare() {
+Status SessionRun::prepare() {
   std::vector<SessionEffector> before = std::move(effectors);
   effectors.clear();
-  run.reset();
+  alive.reset();
   ended = "its restart failed";
   Status made = Done{};
   try {
@@ -85,7 +93,7 @@ Status Session::Parts::prepare() {
   return made;
 }
 
-Status Session::Parts::remake(std::vector<SessionEffector>& before) {
+Status SessionRun::remake(std::vector<SessionEffector>& before) {
   if (Status s = spawn_world(); !s) return s;
   ticks = overruns = 0;
   history = {};
@@ -98,12 +106,12 @@ Status Session::Parts::remake(std::vector<SessionEffector>& before) {
   keep_parameters();
   attach_runner();
   size_views();
-  run = std::make_shared<int>();
+  alive = std::make_shared<int>();
   if (Status s = give_back_sources(before); !s) return s;
   return send_standing();
 }
 
-Status Session::Parts::spawn_world() {
+Status SessionRun::spawn_world() {
   if (Status s = check_scene(scene.level()); !s) return s;
   if (!chosen) {
     begin_part(0.0, 0.4);
@@ -121,7 +129,7 @@ Status Session::Parts::spawn_world() {
   return Done{};
 }
 
-Status Session::Parts::list_named() {
+Status SessionRun::list_named() {
   for (const Entity held : pliant::hands(world)) {
     SessionEffector made;
     made.name = name_of(world, held);
@@ -143,7 +151,7 @@ Status Session::Parts::list_named() {
   return check_names(objects, "object");
 }
 
-void Session::Parts::restore_parameters() {
+void SessionRun::restore_parameters() {
   for (const auto& [name, surface] : surfaces)
     static_cast<DeformableParameters&>(world.registry.get<Deformable>(*find_object(name))) = surface;
   for (const auto& [name, device] : devices)
@@ -151,17 +159,17 @@ void Session::Parts::restore_parameters() {
   restore_bodies();
 }
 
-Status Session::Parts::prepare_spawned() {
+Status SessionRun::prepare_spawned() {
   begin_part(0.7, 1.0);
-  const std::vector<std::string> found = tissue_findings(world);
+  const std::vector<Note> found = tissue_findings(world);
   if (Status s = prepare_world(world); !s) return s;
-  for (std::string& sentence : tissue_findings(world))
-    if (std::find(found.begin(), found.end(), sentence) == found.end()) notes.push_back(std::move(sentence));
+  for (const Note& note : tissue_findings(world))
+    if (std::find(found.begin(), found.end(), note) == found.end()) notes.push_back(note.message());
   for (std::string& sentence : make_orbits(world)) notes.push_back(std::move(sentence));
   return Done{};
 }
 
-void Session::Parts::keep_parameters() {
+void SessionRun::keep_parameters() {
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (const Deformable* surface = world.registry.find<Deformable>(object_entities[i]))
       surfaces[objects[i]] = *surface;
@@ -170,7 +178,7 @@ void Session::Parts::keep_parameters() {
     devices.emplace(effector.name, world.registry.get<HapticDevice>(effector.device));
 }
 
-void Session::Parts::attach_runner() {
+void SessionRun::attach_runner() {
   runner = std::make_unique<Runner>(world);
   TickPart own;
   own.before = [this](Tick tick) { this->before(tick); };
@@ -183,7 +191,7 @@ void Session::Parts::attach_runner() {
   time = 0.0;
 }
 
-void Session::Parts::size_views() {
+void SessionRun::size_views() {
   for (std::vector<EffectorRow>& slot : rows.slots()) slot.assign(effectors.size(), {});
   view.reset(world);
   shapes.clear();
@@ -193,7 +201,7 @@ void Session::Parts::size_views() {
   taken_out.assign(objects.size(), 0);
 }
 
-Status Session::Parts::give_back_sources(std::vector<SessionEffector>& before) {
+Status SessionRun::give_back_sources(std::vector<SessionEffector>& before) {
   for (SessionEffector& old : before) {
     SessionEffector* const effector = find_effector(old.name);
     if (!effector || old.source == EffectorSource::kLevel || old.source == EffectorSource::kNone) continue;
@@ -210,23 +218,23 @@ Status Session::Parts::give_back_sources(std::vector<SessionEffector>& before) {
   return Done{};
 }
 
-SessionEffector* Session::Parts::find_effector(const std::string& name) {
+SessionEffector* SessionRun::find_effector(const std::string& name) {
   for (SessionEffector& effector : effectors)
     if (effector.name == name) return &effector;
   return nullptr;
 }
-const SessionEffector* Session::Parts::find_effector(const std::string& name) const {
-  return const_cast<Parts*>(this)->find_effector(name);
+const SessionEffector* SessionRun::find_effector(const std::string& name) const {
+  return const_cast<SessionRun*>(this)->find_effector(name);
 }
 
-Error Session::Parts::unknown_effector(const std::string& name) const {
+Error SessionRun::unknown_effector(const std::string& name) const {
   std::string names;
   for (const SessionEffector& effector : effectors) names += (names.empty() ? "" : ", ") + effector.name;
   return {"`" + name + "`", names.empty() ? "the scene has no probe and no tool" : "is no probe or tool",
           names.empty() ? "add one with Scene::add_probe" : "they are: " + names, "name.unknown"};
 }
 
-Result<Entity> Session::Parts::find_object(const std::string& name) const {
+Result<Entity> SessionRun::find_object(const std::string& name) const {
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (objects[i] == name) return object_entities[i];
   std::string names;
@@ -235,12 +243,12 @@ Result<Entity> Session::Parts::find_object(const std::string& name) const {
                names.empty() ? "add one with Scene::add_surface" : "they are: " + names, "name.unknown"};
 }
 
-Status Session::Parts::stand_still(const char* what) const {
+Status SessionRun::stand_still(const char* what) const {
   if (clock()) return Error{what, "the clocks are running", "call Session::stop() first"};
   return Done{};
 }
 
-Status Session::Parts::may_give(const SessionEffector& effector) const {
+Status SessionRun::may_give(const SessionEffector& effector) const {
   if (replayed) return Error{"`" + effector.name + "`", "is moved by a recording", "call Session::restart() first"};
   if (effector.source == EffectorSource::kNone || effector.source == EffectorSource::kReleased ||
       effector.source == EffectorSource::kLevel)
@@ -248,7 +256,7 @@ Status Session::Parts::may_give(const SessionEffector& effector) const {
   return Error{"`" + effector.name + "`", "has a source already", "call Session::release() first"};
 }
 
-Status Session::Parts::give(SessionEffector& effector, EffectorSource source) {
+Status SessionRun::give(SessionEffector& effector, EffectorSource source) {
   if (effector.source == source && source == EffectorSource::kPose) return Done{};
   if (Status s = may_give(effector); !s) return s;
   HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
@@ -265,8 +273,8 @@ Status Session::Parts::give(SessionEffector& effector, EffectorSource source) {
   return Done{};
 }
 
-Status Session::Parts::connect(const std::string& name, std::unique_ptr<Driver> driver, const std::string& id,
-                               const std::string& claimed) {
+Status SessionRun::connect(const std::string& name, std::unique_ptr<Driver> driver, const std::string& id,
+                           const std::string& claimed) {
   SessionEffector* const effector = find_effector(name);
   if (!effector) return unknown_effector(name);
   if (Status s = stand_still("Session::connect"); !s) return s;
@@ -277,7 +285,7 @@ Status Session::Parts::connect(const std::string& name, std::unique_ptr<Driver> 
   return give(*effector, EffectorSource::kDriver);
 }
 
-void Session::Parts::take_away(SessionEffector& effector, EffectorSource source) {
+void SessionRun::take_away(SessionEffector& effector, EffectorSource source) {
   effector.link.close();
   HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
   device.driver = DriverKind::kNull;
@@ -288,7 +296,7 @@ void Session::Parts::take_away(SessionEffector& effector, EffectorSource source)
   begin(effector);
 }
 
-void Session::Parts::begin(SessionEffector& effector) {
+void SessionRun::begin(SessionEffector& effector) {
   HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
   effector.link.begin(device, effector.placed_rotation, effector.placed_position);
   begin_anew(world, effector.entity);
@@ -298,11 +306,11 @@ void Session::Parts::begin(SessionEffector& effector) {
   note_new_source(effector.entity, {0, EventKind::kNewSource, effector.name, limits, 0, {}});
 }
 
-void Session::Parts::zero_drivers() noexcept {
+void SessionRun::zero_drivers() noexcept {
   for (SessionEffector& effector : effectors) effector.link.zero();
 }
 
-Status Session::Parts::start_drivers() {
+Status SessionRun::start_drivers() {
   for (SessionEffector& effector : effectors)
     if (Status started = effector.link.start(); !started) {
       halt_drivers();
@@ -311,18 +319,18 @@ Status Session::Parts::start_drivers() {
   return Done{};
 }
 
-void Session::Parts::halt_drivers() noexcept {
+void SessionRun::halt_drivers() noexcept {
   for (SessionEffector& effector : effectors) effector.link.halt();
 }
 
-void Session::Parts::end(const char* why) noexcept {
+void SessionRun::end(const char* why) noexcept {
   ended = why;
   let_go(world, {ticks, 1.0 / world.simulation.touch_rate, time});
   zero_drivers();
   show_let_go();
 }
 
-void Session::Parts::show_let_go() noexcept {
+void SessionRun::show_let_go() noexcept {
   for (EffectorRow& row : rows.write()) {
     row = {};
     row.reading.tick = last.index;
@@ -332,12 +340,12 @@ void Session::Parts::show_let_go() noexcept {
   rows.publish();
 }
 
-void Session::Parts::clock_ended() noexcept {
+void SessionRun::clock_ended() noexcept {
   zero_drivers();
   if (!shown) show_let_go();
 }
 
-void Session::Parts::read_prescribed(SessionEffector& effector, Tick tick) {
+void SessionRun::read_prescribed(SessionEffector& effector, Tick tick) {
   HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
   if (effector.prescribed->acquire()) {
     const PrescribedPose& to = effector.prescribed->read();
@@ -360,7 +368,7 @@ void Session::Parts::read_prescribed(SessionEffector& effector, Tick tick) {
   device.status = DeviceStatus::kReady;
 }
 
-void Session::Parts::before(Tick tick) {
+void SessionRun::before(Tick tick) {
   last = tick;
   shown = false;
   Edit edit;
@@ -380,14 +388,14 @@ void Session::Parts::before(Tick tick) {
 }
 
 // After a pause the previous pose is old, although little simulated time has passed: the gate would open on it.
-void Session::Parts::forget(SessionEffector& effector) {
+void SessionRun::forget(SessionEffector& effector) {
   if (effector.source != EffectorSource::kPose && effector.source != EffectorSource::kDriver) return;
   effector.placed = false;
   effector.link.forget();
   world.registry.get<HapticDevice>(effector.device).status = DeviceStatus::kLost;
 }
 
-void Session::Parts::idle() {
+void SessionRun::idle() {
   after_pause = true;
   for (SessionEffector& effector : effectors)
     if (effector.link) effector.link.idle();

@@ -23,6 +23,7 @@
 #include "engine/session/object_shape.h"
 #include "engine/session/session_history.h"
 #include "engine/session/session_view.h"
+#include "engine/session/session_world.h"
 #include "engine/session/source_place.h"
 #include "pliant/session.h"
 #include "runtime/exchange.h"
@@ -100,7 +101,7 @@ struct Edit {
 
 Error work_stopped();
 
-struct Session::Parts {
+struct SessionRun {
   Scene scene;
   bool chosen = false;  // the models of objects with an error budget are chosen, once, in `scene`
   World world;
@@ -120,7 +121,7 @@ struct Session::Parts {
   std::unique_ptr<Ring<Edit>> edits;                    // owner -> touch clock
   mutable TripleBuffer<std::vector<EffectorRow>> rows;  // touch clock -> owner
   SessionView view;                                     // owner's
-  std::shared_ptr<int> run;                             // lifetime token of this world for its observers
+  std::shared_ptr<int> alive;                           // lifetime token of this world for its observers
   std::unique_ptr<PoseRecorder> recorder;               // null: not recording
   std::optional<Recording> replayed;
   std::optional<PoseReplay> replay;             // of `replayed`
@@ -146,8 +147,10 @@ struct Session::Parts {
   SessionHistory history;               // since time 0 (session_state.cpp)
   bool restoring = false;               // the history is being replayed: no driver is written
 
-  explicit Parts(const Scene& from) : scene(from) {}
-  ~Parts();
+  static SessionRun& of(Session& session) { return *session.run_; }
+  static const SessionRun& of(const Session& session) { return *session.run_; }
+  explicit SessionRun(const Scene& from) : scene(from) {}
+  ~SessionRun();
 
   Status prepare();  // scene -> world, all buffers sized
   // The steps of prepare(); `before`: the effectors of the world before a restart.
@@ -228,13 +231,6 @@ struct Session::Parts {
   void idle();
 };
 
-// Keys that set() changes and that are a single number: of surfaces, and of the devices of probes and tools.
-struct LiveKey {
-  const char* key;
-  double DeformableParameters::*surface = nullptr;
-  double DeviceParameters::*device = nullptr;
-};
-const std::vector<LiveKey>& live_keys();
 // Does not allocate.
 void apply_edit(World& world, const Edit& edit);
 
