@@ -150,13 +150,13 @@ Foot follow_foot(const Search& s, Foot foot, dvec3 from, dvec3 to) {
 
 // Whether p is on a wall through which this tip was pressed. Such a tip is beyond the wall but still in contact with
 // its entry side. A wall is ignored if the contact's foot is behind it; otherwise it would catch the tip on its way
-// back.
+// back. So is one that faces against the contact: the tip was pressed through it elsewhere.
 bool pressed_through(const Search& s, const ProbeTip& tip, dvec3 p, dvec3 outward) {
   const double flush = s.early() * length(outward);
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
     const HeldFoot& held = s.object.sources[i].held;
     if (held.tick == s.tick.index + 1 && held.probe == tip.probe && held.tip == tip.index &&
-        dot(p - held.p, outward) >= -flush)
+        (dot(p - held.p, outward) >= -flush || dot(held.normal, outward) < 0))
       return true;
   }
   return false;
@@ -217,7 +217,7 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
   const double radius = source.tip.radius;
   const Foot before = source.place.main();
   const double last = source.place.height;
-  if (last < s.early()) source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p};
+  if (last < s.early()) source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal};
   const double moved = length(x - source.x);
   const Foot foot = follow_foot(s, before, source.x, x);
   contact.older_height = contact.previous_height;
@@ -316,39 +316,31 @@ EntryPlace entry_place(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 t
   return {};
 }
 
-// The curved surface is slightly in front of or behind its triangles. Returns the foot at `to` of a point that was
-// outside the curved surface but behind a triangle; invalid if it was not.
-Foot entry_behind_triangle(const Search& s, dvec3 from, dvec3 to) {
-  const FlatPoint near = closest_flat(s.mesh, from, 1.5 * static_cast<double>(s.mesh.tree.bulge));
-  if (!near.valid()) return {};
-  const uvec3 t = s.mesh.triangles[near.triangle];
-  const dvec3 a(s.mesh.position(t.x)), b(s.mesh.position(t.y)), c(s.mesh.position(t.z));
-  const dvec3 outward = cross(b - a, c - a);
-  if (dot(from - a, outward) > s.early() * length(outward)) return {};
-  const Foot outside = s.downhill(near.triangle, near.barycentric, from);
-  return outside.height < -s.early() ? Foot{} : follow_foot(s, outside, from, to);
-}
-
 // Begins a contact where a point passed through the surface.
 void find_entry(const Search& s, const ProbeTip& tip, dvec3 from, dvec3 to) {
   const dvec3 d = to - from;
   if (!(dot(d, d) > 0) || inside_neighbour(s, tip)) return;
-  Foot foot;
+  const auto enter = [&](const Foot& foot) {
+    if (foot.valid() && foot.height < 0 && !beyond_border(s.mesh, foot, to) && !is_known(s, tip, foot))
+      begin(s, tip, foot, from, to);
+  };
   const auto bulge = static_cast<double>(s.mesh.tree.bulge);
   const dvec3 early = s.early() / length(d) * d;
   if (const EntryPlace entry = entry_place(s, tip, from - early, to, early); entry.triangle != Foot::kNone) {
-    foot = s.downhill(entry.triangle, entry.barycentric, dot(entry.x - from, d) > 0 ? entry.x : from);
-    foot = follow_foot(s, foot, foot.p, to);
+    const Foot foot = s.downhill(entry.triangle, entry.barycentric, dot(entry.x - from, d) > 0 ? entry.x : from);
+    enter(follow_foot(s, foot, foot.p, to));
   } else if (bulge > 0 && tip.tip.radius == 0) {
-    const FlatPoint near = closest_flat(s.mesh, to, 1.5 * bulge);
-    if (near.valid() && s.downhill(near.triangle, near.barycentric, from).height >= 0)
-      foot = s.downhill(near.triangle, near.barycentric, to);
-    // A short way from behind a triangle ends near it: the search above covers it.
-    if (!(foot.height < 0) && length(d) > 0.5 * bulge) foot = entry_behind_triangle(s, from, to);
-    if (foot.valid() && pressed_through(s, tip, foot.p, foot.normal)) return;
+    // The curved surface is slightly in front of or behind its triangles: walls that were in front of the point.
+    std::array<Foot, kMostFootSeeds> feet;
+    std::size_t count = 0;
+    find_walls(s, from, 1.5 * bulge + length(d), feet, count);
+    for (std::size_t f = 0; f < count; ++f) {
+      const Foot foot = follow_foot(s, feet[f], from, to);
+      // Deeper than the way: that minimum ended, and the foot is on another wall.
+      if (foot.height < feet[f].height - length(d) - s.early()) continue;
+      if (foot.height < 0 && !pressed_through(s, tip, foot.p, foot.normal)) enter(foot);
+    }
   }
-  if (!foot.valid() || !(foot.height < 0) || beyond_border(s.mesh, foot, to) || is_known(s, tip, foot)) return;
-  begin(s, tip, foot, from, to);
 }
 
 // The first pose may be inside a body; only a closed one has an inside.

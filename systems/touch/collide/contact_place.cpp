@@ -40,16 +40,17 @@ struct NearCrease {
 constexpr std::size_t kMostCreases = 8;
 
 // The nearest creases within `within` of x that have x behind their side by less than `farthest`. Returns the number of
-// creases visited.
-std::size_t nearest_creases(const ObjectState& object, const Mesh& mesh, dvec3 x, double within, double farthest,
-                            std::array<NearCrease, kMostCreases>& found, std::size_t& count) {
+// creases that are not on the far sheet of a thin part.
+std::size_t nearest_creases(const ObjectState& object, const Mesh& mesh, const Foot& own, dvec3 x, double within,
+                            double farthest, std::array<NearCrease, kMostCreases>& found, std::size_t& count) {
   const double bulge = static_cast<double>(mesh.tree.bulge), flat = 1e-5 * static_cast<double>(mesh.mean_edge);
   std::size_t met = 0;
   visit_creases(object, x, within, [&](std::uint32_t t, int edge) {
-    ++met;
     const uvec3 corner = mesh.triangles[t];
     const dvec3 a(mesh.position(corner[edge])), e = dvec3(mesh.position(corner[(edge + 1) % 3])) - a;
     const dvec3 n = normalize(cross(e, dvec3(mesh.position(corner[(edge + 2) % 3])) - a));
+    if (dot(n, own.normal) < kThin) return;  // another sheet's
+    ++met;
     const double below = -dot(x - a, n), offset = dot(n, a);
     if (below > farthest + bulge || below < -bulge) return;
     const double s = std::clamp(dot(x - a, e) / dot(e, e), 0.0, 1.0), distance = length(x - a - s * e);
@@ -158,9 +159,9 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
   std::array<NearCrease, kMostCreases> creases;
   std::size_t near = 0;
   // Around the point first. Then farther out, for sharp wedges, unless the surface is rough.
-  if (nearest_creases(object, mesh, x, farthest, farthest, creases, near) <= 4 * kMostCreases) {
+  if (nearest_creases(object, mesh, own, x, farthest, farthest, creases, near) <= 4 * kMostCreases) {
     near = 0;
-    nearest_creases(object, mesh, x, kCreaseReach * -own.height, farthest, creases, near);
+    nearest_creases(object, mesh, own, x, kCreaseReach * -own.height, farthest, creases, near);
   }
   std::uint32_t count = 1;
   const double same = kSameContact * static_cast<double>(mesh.mean_edge);

@@ -42,7 +42,8 @@ struct HeldFoot {
   std::uint64_t tick = 0;  // number of the tick that wrote it, plus 1
   Entity probe;
   std::uint8_t tip = 0;
-  dvec3 p{0};  // [m] object frame
+  dvec3 p{0};       // [m] object frame
+  dvec3 normal{0};  // [1] of the contact
 };
 
 // One entry of an object's pool: a contact, its place, and its part in the object's field.
