@@ -149,14 +149,19 @@ Foot follow_foot(const Search& s, Foot foot, dvec3 from, dvec3 to) {
 }
 
 // Whether p is on a wall through which this tip was pressed. Such a tip is beyond the wall but still in contact with
-// its entry side. A wall is ignored if the contact's foot is behind it; otherwise it would catch the tip on its way
-// back. So is one that faces against the contact: the tip was pressed through it elsewhere.
+// its entry side. On its way back the wall must not catch it: it is ignored if the contact's foot is behind it, if it
+// faces against the contact, or if nothing but tissue is between the two.
 bool pressed_through(const Search& s, const ProbeTip& tip, dvec3 p, dvec3 outward) {
-  const double flush = s.early() * length(outward);
+  const double size = length(outward), bulge = static_cast<double>(s.mesh.tree.bulge);
+  const auto joined = [&](const HeldFoot& held) {
+    const dvec3 behind = p - (s.early() + 1.5 * bulge) * outward / size, way = behind - held.p;
+    const double far = length(way), from = 2 * (s.early() + bulge);
+    return from < far && !first_entry(s.mesh, held.p + from / far * way, behind).valid();
+  };
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
     const HeldFoot& held = s.object.sources[i].held;
     if (held.tick == s.tick.index + 1 && held.probe == tip.probe && held.tip == tip.index &&
-        (dot(p - held.p, outward) >= -flush || dot(held.normal, outward) < 0))
+        (dot(p - held.p, outward) >= -s.early() * size || dot(held.normal, outward) < 0 || joined(held)))
       return true;
   }
   return false;
@@ -217,7 +222,8 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
   const double radius = source.tip.radius;
   const Foot before = source.place.main();
   const double last = source.place.height;
-  if (last < s.early()) source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal};
+  if (last < s.early())
+    source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal};
   const double moved = length(x - source.x);
   const Foot foot = follow_foot(s, before, source.x, x);
   contact.older_height = contact.previous_height;

@@ -37,7 +37,7 @@ struct NearCrease {
   double offset;      // [m] of its plane: normal . p
 };
 // Number of creases considered in a tick, one per flat side; on a rough surface the nearest ones.
-constexpr std::size_t kMostCreases = 8;
+constexpr std::size_t kMostCreases = 24;
 
 // The nearest creases within `within` of x that have x behind their side by less than `farthest`. Returns the number of
 // creases that are not on the far sheet of a thin part.
@@ -121,8 +121,8 @@ Start start_on_side(const ObjectState& object, const Mesh& mesh, const NearCreas
   return {triangle, corner, at_crease ? kBorder : vertex};
 }
 
-// Whether the surface connects two feet of x near it: along its section by the plane of both feet and x, no farther from
-// x than `within`. Another sheet of a thin part is not connected, however near it is.
+// Whether the surface connects two feet of x near it: along its section by the plane of both feet and x, no farther
+// from x than `within`. Another sheet of a thin part is not connected, however near it is.
 bool connected(const Mesh& mesh, const Foot& from, const Foot& to, dvec3 x, double within) {
   if (from.triangle == to.triangle) return true;
   const auto inside = [&](const Foot& foot) {  // a little off edges and corners: the section crosses the triangle
