@@ -107,6 +107,7 @@ void begin(const Search& s, const ProbeTip& tip, const Foot& foot, dvec3 from, d
   contact.free_height = std::min(0.0, surface.height);
   contact.free_velocity = contact.free_height < 0 ? surface.velocity : 0.0;
   contact.unpushed = unpushed > 1e-9 * static_cast<double>(s.mesh.box.diagonal()) ? unpushed : 0.0;
+  source->settled = contact.unpushed == 0.0;
   contact.previous_height = contact.older_height = std::max(contact.height, std::min(0.0, surface.height));
   if (!s.object.listed) {
     s.object.listed = true;
@@ -206,7 +207,8 @@ AtSeam carry_over(const Search& s, const Seam& seam, SourceState& source, Contac
     after.free_velocity = before.free_velocity;
     const dvec3 own = s.world.registry.get<Pose>(s.object.entity).to_local(world);
     const double deeper = before.height - after.height - length(own - source.x);
-    after.unpushed = before.unpushed + (deeper > 1e-9 * static_cast<double>(there.mesh.box.diagonal()) ? deeper : 0.0);
+    to->settled = !(deeper > 1e-9 * static_cast<double>(there.mesh.box.diagonal()));
+    after.unpushed = before.unpushed + (to->settled ? 0.0 : deeper);
     after.previous_height = before.previous_height;
     after.older_height = before.older_height;
     after.bristle = turn * before.bristle;
@@ -247,6 +249,7 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
   const double deeper = last - source.place.height - moved;
   if (deeper > 1e-9 * static_cast<double>(s.mesh.box.diagonal())) {
     contact.unpushed += deeper;
+    source.settled = false;
   }
   // The unpushed depth is at most the depth that is left.
   contact.unpushed = std::clamp(contact.unpushed, 0.0, std::max(0.0, -contact.height));
@@ -389,18 +392,25 @@ void find(const Search& s, const ProbeTip& tip, dvec3& searched, bool fresh, dve
   }
 }
 
-// If contacts of one tip have reached the same foot, the older one stays.
+// Of contacts of one tip that have reached the same foot, the one stays whose depth was pushed.
 void merge(const Search& s) {
   const double same = kSameFoot * static_cast<double>(s.mesh.mean_edge);
+  const auto pushed = [&](const SourceState& source) {
+    return source.settled ? -s.world.registry.get<Contact>(source.contact).unpushed : -source.tip.radius - same;
+  };
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
-    if (!s.object.sources[i].tracked) continue;
-    const Contact& a = s.world.registry.get<Contact>(s.object.sources[i].contact);
-    for (std::uint32_t j = i + 1; j < s.object.probe_sources; ++j) {
-      if (!s.object.sources[j].tracked) continue;
-      Contact& b = s.world.registry.get<Contact>(s.object.sources[j].contact);
-      if (a.probe == b.probe && a.tip == b.tip &&
-          length(s.object.sources[i].place.p - s.object.sources[j].place.p) < same)
-        drop_contact(s.object.sources[j], b);
+    SourceState& first = s.object.sources[i];
+    if (!first.tracked) continue;
+    Contact& a = s.world.registry.get<Contact>(first.contact);
+    for (std::uint32_t j = i + 1; j < s.object.probe_sources && first.tracked; ++j) {
+      SourceState& second = s.object.sources[j];
+      if (!second.tracked) continue;
+      Contact& b = s.world.registry.get<Contact>(second.contact);
+      if (a.probe != b.probe || a.tip != b.tip || !(length(first.place.p - second.place.p) < same)) continue;
+      if (pushed(first) >= pushed(second))
+        drop_contact(second, b);
+      else
+        drop_contact(first, a);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/touch/collide/around_vertex.h"
+#include "systems/touch/collide/section.h"
 
 namespace pliant {
 namespace {
@@ -78,8 +79,7 @@ struct Start {
   dvec3 barycentric;
   std::uint32_t vertex = kBorder;  // the start, if it is not on a crease: then it identifies this side
 };
-constexpr int kMostVertices = 512;   // on the way
-constexpr int kMostOnSection = 512;  // triangles
+constexpr int kMostVertices = 512;  // on the way
 
 // Walks from vertex to vertex, each nearer to x than the last, without crossing an edge that the foot may not cross.
 // This is a hundred times faster than walking over patches. If it does not leave the crease, the crease's nearest point
@@ -124,29 +124,10 @@ Start start_on_side(const ObjectState& object, const Mesh& mesh, const NearCreas
 // Whether the surface connects two feet of x near it: along its section by the plane of both feet and x, no farther
 // from x than `within`. Another sheet of a thin part is not connected, however near it is.
 bool connected(const Mesh& mesh, const Foot& from, const Foot& to, dvec3 x, double within) {
-  if (from.triangle == to.triangle) return true;
-  const auto inside = [&](const Foot& foot) {  // a little off edges and corners: the section crosses the triangle
-    const uvec3 t = mesh.triangles[foot.triangle];
-    const dvec3 b = foot.barycentric + 1e-3 * (dvec3(1.0 / 3) - foot.barycentric);
-    return b.x * dvec3(mesh.position(t.x)) + b.y * dvec3(mesh.position(t.y)) + b.z * dvec3(mesh.position(t.z));
-  };
-  const dvec3 p = inside(from), across = cross(p - x, inside(to) - x);
-  std::uint32_t triangle = from.triangle;
-  for (int step = 0; step < kMostOnSection; ++step) {
-    const uvec3 t = mesh.triangles[triangle];
-    double side[3];
-    for (int i = 0; i < 3; ++i) side[i] = dot(dvec3(mesh.position(t[i])) - p, across);
-    int edge = 0;  // by which the section, seen from x in the sense from one foot to the other, leaves
-    while (edge < 3 && !(side[edge] < 0 && side[(edge + 1) % 3] >= 0)) ++edge;
-    if (edge == 3) return false;
-    const double share = side[edge] / (side[edge] - side[(edge + 1) % 3]);
-    const dvec3 a(mesh.position(t[edge])), b(mesh.position(t[(edge + 1) % 3]));
-    if (length(a + share * (b - a) - x) > within) return false;
-    triangle = mesh.across[triangle][edge];
-    if (triangle == to.triangle) return true;
-    if (triangle == kBorder) return false;
-  }
-  return false;
+  const dvec3 p = inside_triangle(mesh, from.triangle, from.barycentric),
+              q = inside_triangle(mesh, to.triangle, to.barycentric);
+  return walk_section(mesh, from.triangle, to.triangle, p, cross(p - x, q - x),
+                      [&](const SectionEdge& at) { return length(at.p - x) <= within; });
 }
 
 }  // namespace

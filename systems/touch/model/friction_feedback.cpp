@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "systems/touch/collide/collision.h"
+#include "systems/touch/collide/ridge.h"
 #include "systems/touch/model/contact_law.h"
 #include "systems/touch/model/field_kernels.h"
 #include "systems/touch/model/friction.h"
@@ -26,6 +27,7 @@ struct Pressing {
   StoredEnergy stored;
   Painted stiffness;
   double slope = 0.0;  // [N/m] of the stored energy's force
+  ContactLaw law;
 };
 
 // y: free recovery of the surface towards rest.
@@ -78,6 +80,7 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
     if (relaxed.value < 0) relaxed = {0.0, dvec3(0)};  // no tensile force
     law.relaxed_depth = relaxed.value;
   }
+  pressing.law = law;
   pressing.stored = law.stored(depth);
   pressing.slope = law.slope(depth);
   const double least = kLeastDepth * deformable.reach;
@@ -93,6 +96,75 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
   out.turns = place.turns;
   out.load = contact.load;
   return true;
+}
+
+// Pairs of contacts of one sphere in one dent, of the contacts up to `pressing`'s last.
+class SharedDents {
+ public:
+  void add(const Mesh& mesh, std::span<const Pressing> pressing) {
+    const std::size_t last = pressing.size() - 1;
+    for (std::size_t i = 0; i < last && count_ < dents_.size(); ++i)
+      if (const SharedDent dent = between(mesh, pressing, i, last); dent.part > 0) dents_[count_++] = dent;
+  }
+  void remove(std::size_t contact) {
+    while (count_ > 0 && dents_[count_ - 1].b == contact) --count_;
+  }
+  std::span<const SharedDent> all() const { return {dents_.data(), count_}; }
+
+ private:
+  static SharedDent between(const Mesh& mesh, std::span<const Pressing> pressing, std::size_t i, std::size_t j) {
+    const Pressing &a = pressing[i], &b = pressing[j];
+    SharedDent dent{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), 0.0, dvec3(0)};
+    const double radius = a.source->tip.radius;
+    if (radius == 0.0 || a.contact->probe != b.contact->probe || a.contact->tip != b.contact->tip) return dent;
+    const Ridge ridge = ridge_between(mesh, a.source->place, b.source->place, b.source->x, radius);
+    const StoredEnergy at_a = a.law.stored(ridge.depth), at_b = b.law.stored(ridge.depth);
+    if (!(at_a.energy > 0 && at_b.energy > 0)) return dent;
+    dent.part = std::sqrt(at_a.energy / a.stored.energy * (at_b.energy / b.stored.energy));
+    dent.slope = 0.5 * dent.part *
+                 ((at_a.force / at_a.energy + at_b.force / at_b.energy) * ridge.slope +
+                  a.stored.force / a.stored.energy * a.source->place.gradient +
+                  b.stored.force / b.stored.energy * b.source->place.gradient);
+    return dent;
+  }
+
+  std::array<SharedDent, 4 * kMaxContactsPerObject> dents_;
+  std::size_t count_ = 0;
+};
+
+// One object's contacts of a tick.
+struct Pressed {
+  std::array<Pressing, kMaxContactsPerObject> pressing;
+  std::size_t count = 0;
+  SharedDents dents;
+};
+
+// Depth without a hand's motion stores no energy that was not there: a contact that begins beside others, or goes over
+// to a deeper place, takes over their load, and only what is beyond counts as unpushed. It is the next of `pressed`.
+bool settle(const ObjectState& object, const Deformable& deformable, const Mesh& mesh, const HeightField& field,
+            Pressed& pressed, std::span<LoadedContact> loaded) {
+  constexpr int kHalvings = 24;
+  Pressing& pressing = pressed.pressing[pressed.count];
+  Contact& contact = *pressing.contact;
+  const auto energy = [&](double unpushed) {
+    contact.unpushed = unpushed;
+    std::size_t count = pressed.count;
+    if (store(object, deformable, mesh, field, pressing, loaded[count]))
+      pressed.dents.add(mesh, std::span(pressed.pressing).first(++count));
+    const double sum = count > 0 ? share_load(loaded.first(count), object.kernel, pressed.dents.all()) : 0.0;
+    pressed.dents.remove(pressed.count);
+    return sum;
+  };
+  double none = 0.0, enough = contact.unpushed;
+  const double had = energy(enough), others = energy(-contact.height), allowed = std::max(had, others) * (1 + 1e-12);
+  if (energy(none) <= allowed) enough = none;
+  for (int i = 0; i < kHalvings && enough > none; ++i) {
+    const double middle = 0.5 * (none + enough);
+    (energy(middle) <= allowed ? enough : none) = middle;
+  }
+  contact.unpushed = enough;
+  pressing.source->settled = true;
+  return store(object, deformable, mesh, field, pressing, loaded[pressed.count]);
 }
 
 // Rate term and friction on top of the elastic force; world frame.
@@ -158,23 +230,28 @@ void friction_feedback(World& world, Tick tick) {
     const Deformable& deformable = registry.get<Deformable>(object.entity);
     const Mesh& mesh = world.meshes[deformable.mesh];
     const HeightField& field = world.fields[deformable.field];
-    std::array<Pressing, kMaxContactsPerObject> pressing;
     std::vector<LoadedContact>& loaded = world.touch->loaded;
-    std::size_t count = 0;
-    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
-      SourceState& source = object.sources[i];
-      if (!source.tracked) continue;
-      Contact& contact = registry.get<Contact>(source.contact);
-      advance_free_surface(contact, source.place, mesh, object.motion);
-      pressing[count] = {&source, &contact, {}, {}, 0.0};
-      if (contact.height < 0 && store(object, deformable, mesh, field, pressing[count], loaded[count])) {
-        ++count;
-      } else {
-        if (contact.height < 0 && !std::isfinite(pressing[count].stored.energy)) world.dropped |= kDroppedNonFinite;
-        release(contact);
+    Pressed pressed;
+    auto& [pressing, count, dents] = pressed;
+    for (const bool settled : {true, false}) {
+      for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
+        SourceState& source = object.sources[i];
+        if (!source.tracked || source.settled != settled) continue;
+        Contact& contact = registry.get<Contact>(source.contact);
+        advance_free_surface(contact, source.place, mesh, object.motion);
+        pressing[count] = {&source, &contact, {}, {}, 0.0, {}};
+        const bool stores =
+            contact.height < 0 && (settled ? store(object, deformable, mesh, field, pressing[count], loaded[count])
+                                           : settle(object, deformable, mesh, field, pressed, loaded));
+        if (stores) {
+          dents.add(mesh, std::span(pressing).first(++count));
+        } else {
+          if (contact.height < 0 && !std::isfinite(pressing[count].stored.energy)) world.dropped |= kDroppedNonFinite;
+          release(contact);
+        }
       }
     }
-    object.stored = count > 0 ? share_load({loaded.data(), count}, object.kernel) : 0.0;
+    object.stored = count > 0 ? share_load({loaded.data(), count}, object.kernel, dents.all()) : 0.0;
     if (count == 0) continue;
     if (!std::isfinite(object.stored)) {  // from a registered law or shape
       world.dropped |= kDroppedNonFinite;

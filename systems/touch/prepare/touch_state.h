@@ -51,6 +51,7 @@ struct SourceState {
   Entity contact;                    // has a Contact
   std::uint64_t born = 0;            // number of the tick of its first contact, plus 1
   bool tracked = false;              // tracked by collision: a probe's contact, near the surface or behind it
+  bool settled = true;               // false: it has depth of which friction_feedback tells how much counts as unpushed
   dvec3 x{0};                        // [m] the tip's centre last tick, object frame
   Tip tip;                           // the tip in contact
   FootBlend place;                   // of the tip's centre
