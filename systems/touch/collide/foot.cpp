@@ -14,6 +14,7 @@ constexpr int kMostPatches = 512;    // on the way downhill
 constexpr double kOnEdge = 1e-12;    // [1] a barycentric below this is zero
 constexpr double kBetter = 1e-13;    // [1] relative decrease of the distance squared required for the foot to move on
 constexpr double kFree = 1e-7;       // [1] x - p deviates less than this from the normal: no constraint at the foot
+constexpr double kMostMoves = 20.0;  // [1] most of dp/dx
 constexpr double kOnSurface = 1e-9;  // [1] of the triangle's edge: closer than this, x is on the surface
 
 struct Place {
@@ -180,6 +181,17 @@ double corner_angle(const CurvedPatch::Point& at, int corner) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
+// Where a minimum is about to end, its place moves infinitely fast; nothing may follow from that.
+void bound_motion(Foot& foot) {
+  double size = 0.0;
+  for (int i = 0; i < 3; ++i) size += dot(foot.moves[i], foot.moves[i]);
+  size = std::sqrt(size);
+  if (!(size > kMostMoves)) return;
+  foot.moves *= kMostMoves / size;
+  foot.turns *= kMostMoves / size;
+  for (dvec3& shift : foot.shifts) shift *= kMostMoves / size;
+}
+
 // Completes a foot at the found place. `sides`: sum of the normals of the patches that meet there.
 Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, dvec3 sides) {
   const auto [u, v] = local.at;
@@ -208,6 +220,7 @@ Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, dvec3 sides)
                   nv = tangent(cross(at.puv, at.pv) + cross(at.pu, at.pvv));
       foot.turns = glm::outerProduct(nu, du) + glm::outerProduct(nv, dv);
     }
+    bound_motion(foot);
     return foot;
   }
   foot.place = (on & (on - 1)) == 0 ? FootPlace::kEdge : FootPlace::kVertex;
@@ -233,6 +246,7 @@ Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, dvec3 sides)
     const dmat3 across = dmat3(1.0) - glm::outerProduct(foot.normal, foot.normal);
     foot.turns = across * (dmat3(1.0) - foot.moves) / foot.height;
   }
+  bound_motion(foot);
   return foot;
 }
 

@@ -75,7 +75,8 @@ class Loads {
       pressing_ ^= wrong;
       if (pressing_ == 0) pressing_ = std::bit_floor(wrong);
     }
-    for (std::size_t i = 0; i < n_; ++i) contacts_[i].load = l_[i] < 0.0 ? 0.0 : l_[i];  // NaN stays NaN
+    // A load is at most e, since no entry of A is negative; where a pivot was clamped it would be more. NaN stays NaN.
+    for (std::size_t i = 0; i < n_; ++i) contacts_[i].load = l_[i] < 0.0 ? 0.0 : l_[i] > e_[i] ? e_[i] : l_[i];
   }
 
   double overlap(std::size_t i, std::size_t j) const { return A_[i][j]; }

@@ -98,37 +98,79 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
   return true;
 }
 
-// Pairs of contacts of one sphere in one dent, of the contacts up to `pressing`'s last.
+// Pairs of contacts of one sphere in one dent.
 class SharedDents {
  public:
+  // The last contact, which may be in one dent with those before.
   void add(const Mesh& mesh, std::span<const Pressing> pressing) {
     const std::size_t last = pressing.size() - 1;
-    for (std::size_t i = 0; i < last && count_ < dents_.size(); ++i)
-      if (const SharedDent dent = between(mesh, pressing, i, last); dent.part > 0) dents_[count_++] = dent;
+    const Pressing& b = pressing[last];
+    const double radius = b.source->tip.radius;
+    for (std::size_t i = 0; i < last; ++i) {
+      const Pressing& a = pressing[i];
+      pair_[i][last] = kNone;
+      if (radius == 0.0 || count_ == pairs_.size() || a.contact->probe != b.contact->probe ||
+          a.contact->tip != b.contact->tip)
+        continue;
+      const Ridge ridge = ridge_between(mesh, a.source->place, b.source->place, b.source->x, radius);
+      pair_[i][last] = static_cast<std::uint16_t>(count_);
+      pairs_[count_++] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(last), ridge};
+    }
   }
+
+  // A contact that stores nothing after all.
   void remove(std::size_t contact) {
-    while (count_ > 0 && dents_[count_ - 1].b == contact) --count_;
+    while (count_ > 0 && pairs_[count_ - 1].b == contact) --count_;
   }
-  std::span<const SharedDent> all() const { return {dents_.data(), count_}; }
+
+  std::span<const SharedDent> of(std::span<const Pressing> pressing) {
+    if (count_ == 0) return {};
+    // The way over a third contact may be the deeper one. The depths of all ridges are then those of a tree, and the
+    // matrix of their energies has no negative eigenvalue.
+    std::array<Ridge, kMostPairs> deepest;
+    for (std::size_t k = 0; k < count_; ++k) deepest[k] = pairs_[k].ridge;
+    for (std::size_t over = 0; over < pressing.size(); ++over)
+      for (std::size_t k = 0; k < count_; ++k) {
+        const std::uint32_t a = pairs_[k].a, b = pairs_[k].b;
+        if (over == a || over == b || b >= pressing.size()) continue;
+        const std::uint16_t to = between(a, over), on = between(over, b);
+        if (to == kNone || on == kNone) continue;
+        const Ridge& lower = deepest[to].depth < deepest[on].depth ? deepest[to] : deepest[on];
+        if (lower.depth > deepest[k].depth) deepest[k] = lower;
+      }
+    std::size_t dents = 0;
+    for (std::size_t k = 0; k < count_; ++k)
+      if (pairs_[k].b < pressing.size() && shared(pressing, pairs_[k], deepest[k], dents_[dents])) ++dents;
+    return {dents_.data(), dents};
+  }
 
  private:
-  static SharedDent between(const Mesh& mesh, std::span<const Pressing> pressing, std::size_t i, std::size_t j) {
-    const Pressing &a = pressing[i], &b = pressing[j];
-    SharedDent dent{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), 0.0, dvec3(0)};
-    const double radius = a.source->tip.radius;
-    if (radius == 0.0 || a.contact->probe != b.contact->probe || a.contact->tip != b.contact->tip) return dent;
-    const Ridge ridge = ridge_between(mesh, a.source->place, b.source->place, b.source->x, radius);
+  static constexpr std::uint16_t kNone = 0xffff;
+  static constexpr std::size_t kMostPairs = 256;
+  struct Pair {
+    std::uint32_t a, b;
+    Ridge ridge;
+  };
+
+  std::uint16_t between(std::size_t a, std::size_t b) const { return a < b ? pair_[a][b] : pair_[b][a]; }
+
+  static bool shared(std::span<const Pressing> pressing, const Pair& pair, const Ridge& ridge, SharedDent& dent) {
+    const Pressing &a = pressing[pair.a], &b = pressing[pair.b];
     const StoredEnergy at_a = a.law.stored(ridge.depth), at_b = b.law.stored(ridge.depth);
-    if (!(at_a.energy > 0 && at_b.energy > 0)) return dent;
+    if (!(at_a.energy > 0 && at_b.energy > 0)) return false;
+    dent.a = pair.a;
+    dent.b = pair.b;
     dent.part = std::sqrt(at_a.energy / a.stored.energy * (at_b.energy / b.stored.energy));
     dent.slope = 0.5 * dent.part *
                  ((at_a.force / at_a.energy + at_b.force / at_b.energy) * ridge.slope +
                   a.stored.force / a.stored.energy * a.source->place.gradient +
                   b.stored.force / b.stored.energy * b.source->place.gradient);
-    return dent;
+    return true;
   }
 
-  std::array<SharedDent, 4 * kMaxContactsPerObject> dents_;
+  std::array<std::array<std::uint16_t, kMaxContactsPerObject>, kMaxContactsPerObject> pair_;
+  std::array<Pair, kMostPairs> pairs_;
+  std::array<SharedDent, kMostPairs> dents_;
   std::size_t count_ = 0;
 };
 
@@ -148,13 +190,12 @@ bool settle(const ObjectState& object, const Deformable& deformable, const Mesh&
   Contact& contact = *pressing.contact;
   const auto energy = [&](double unpushed) {
     contact.unpushed = unpushed;
-    std::size_t count = pressed.count;
-    if (store(object, deformable, mesh, field, pressing, loaded[count]))
-      pressed.dents.add(mesh, std::span(pressed.pressing).first(++count));
-    const double sum = count > 0 ? share_load(loaded.first(count), object.kernel, pressed.dents.all()) : 0.0;
-    pressed.dents.remove(pressed.count);
-    return sum;
+    const bool stores = store(object, deformable, mesh, field, pressing, loaded[pressed.count]);
+    const std::size_t count = pressed.count + (stores ? 1 : 0);
+    if (count == 0) return 0.0;
+    return share_load(loaded.first(count), object.kernel, pressed.dents.of(std::span(pressed.pressing).first(count)));
   };
+  pressed.dents.add(mesh, std::span(pressed.pressing).first(pressed.count + 1));
   double none = 0.0, enough = contact.unpushed;
   const double had = energy(enough), others = energy(-contact.height), allowed = std::max(had, others) * (1 + 1e-12);
   if (energy(none) <= allowed) enough = none;
@@ -244,14 +285,17 @@ void friction_feedback(World& world, Tick tick) {
             contact.height < 0 && (settled ? store(object, deformable, mesh, field, pressing[count], loaded[count])
                                            : settle(object, deformable, mesh, field, pressed, loaded));
         if (stores) {
-          dents.add(mesh, std::span(pressing).first(++count));
+          ++count;
+          if (settled) dents.add(mesh, std::span(pressing).first(count));
         } else {
+          dents.remove(count);
           if (contact.height < 0 && !std::isfinite(pressing[count].stored.energy)) world.dropped |= kDroppedNonFinite;
           release(contact);
         }
       }
     }
-    object.stored = count > 0 ? share_load({loaded.data(), count}, object.kernel, dents.all()) : 0.0;
+    object.stored =
+        count > 0 ? share_load({loaded.data(), count}, object.kernel, dents.of({pressing.data(), count})) : 0.0;
     if (count == 0) continue;
     if (!std::isfinite(object.stored)) {  // from a registered law or shape
       world.dropped |= kDroppedNonFinite;
