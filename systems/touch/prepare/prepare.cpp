@@ -274,6 +274,7 @@ Status prepare_touch(World& world) {
     if (deformable.reach == 0.0) deformable.reach = default_reach(mesh);
     if (Status status = check(deformable, name_of(world, entity)); !status) return status.error();
     ObjectState object = make_object(world, entity, pose, touch->dt, tips.all);
+    object.accounts.resize(touch->probes.size());
     snapshot.objects.push_back(snapshot_of(object, mesh));
     extent.add(object.world_box);
     touch->objects.push_back(std::move(object));

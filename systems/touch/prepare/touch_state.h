@@ -98,6 +98,13 @@ struct SeamZones {
   auto operator<=>(const SeamZones&) const = default;
 };
 
+// Energy between one hand and one object (systems/device/tissue_account.h). [J] of the world
+struct TissueAccount {
+  double given = 0.0;   // by the hand so far, beside what it got back
+  double stored = 0.0;  // in its contacts now
+  dvec3 force{0};       // [N] of the object on the probe in the last tick
+};
+
 // Touch state of one Deformable.
 struct ObjectState {
   Entity entity;
@@ -115,6 +122,7 @@ struct ObjectState {
   Box world_box;                            // of the rest surface, for the broad phase
   std::uint32_t probe_sources = 0;          // number of `sources` for probes; presses follow
   double stored = 0.0;                      // [J] U: elastic energy of all its contacts (contact_energy.h)
+  std::vector<TissueAccount> accounts;      // per probe
   bool listed = false;                      // it is in TouchState::awake
   std::vector<dvec3> searched;              // [m] per tip of every probe: place of the last search for walls
   bool on_gpu = false;                      // the field is `terms`, drawn by the GPU; there is no HeightField
