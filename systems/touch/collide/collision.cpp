@@ -102,7 +102,16 @@ void begin(const Search& s, const ProbeTip& tip, const Foot& foot, dvec3 from, d
   contact.bristle = dvec3(0);
   contact.sliding = false;
   put(*source, contact, contact_place(s.object, s.mesh, foot, x), x);
-  const HeightState surface = recovering(s, foot);
+  HeightState surface = recovering(s, foot);
+  // Beside others of its tip the surface does not recover: the tip is on it, and has left that dent itself.
+  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
+    const SourceState& beside = s.object.sources[i];
+    if (!beside.tracked || &beside == source || tip.tip.radius == 0) continue;
+    const Contact& other = s.world.registry.get<Contact>(beside.contact);
+    if (other.probe != tip.probe || other.tip != tip.index || other.height >= 0 || contact.height >= 0) continue;
+    surface = {other.free_height, other.free_velocity};
+    break;
+  }
   const double pushed = length(x - from), unpushed = -contact.height - pushed;
   contact.free_height = std::min(0.0, surface.height);
   contact.free_velocity = contact.free_height < 0 ? surface.velocity : 0.0;
@@ -246,8 +255,8 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
   put(source, contact, contact_place(s.object, s.mesh, foot, x), x);
   // A depth changes no faster than the tip moves, unless the tracked minimum vanished and the foot moved downhill to
   // another one. The additional depth was not pushed.
-  const double deeper = last - source.place.height - moved;
-  if (deeper > 1e-9 * static_cast<double>(s.mesh.box.diagonal())) {
+  const double deeper = last - source.place.height;
+  if (deeper - moved > 1e-9 * static_cast<double>(s.mesh.box.diagonal())) {
     contact.unpushed += deeper;
     source.settled = false;
   }

@@ -13,7 +13,8 @@ struct Ridge {
   dvec3 slope{0};      // [1] d depth / dx
 };
 
-// The way is the section by the plane through both feet and x, over the flat triangles. x [m], object frame.
+// The way is the section of the flat triangles by the plane through both feet and x, and a better one beside it, if there
+// is one. x [m], object frame.
 Ridge ridge_between(const Mesh& mesh, const FootBlend& a, const FootBlend& b, dvec3 x, double radius);
 
 }  // namespace pliant

@@ -86,7 +86,7 @@ std::size_t most_contacts(const ObjectState& object) {
   return kMaxContactsPerObject - (object.seam_zones.empty() ? 0 : kLeastEchoes);
 }
 // Largest number of simultaneous contacts of a tip with one object: the walls of a corner, and one more.
-constexpr std::size_t kContactsOfASphere = 4, kContactsOfAPoint = 2;
+constexpr std::size_t kContactsOfASphere = 8, kContactsOfAPoint = 2;
 
 // A capsule is a row of spheres half a radius apart, up to kMostTips.
 std::vector<Tip> tips_of(const Probe& probe) {
