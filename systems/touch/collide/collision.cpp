@@ -23,6 +23,8 @@ namespace {
 // Walls are searched within this share of a sphere's radius beyond it, and again once it has moved half as far. A
 // contact is therefore known before it presses, and begins at zero depth.
 constexpr double kAhead = 0.1;
+// A foot that moves farther than this many times its tip's way has gone over to another minimum. [1]
+constexpr double kJump = 10.0;
 // Two feet of a tip closer than this are the same. [1] of the mean edge
 constexpr double kSameFoot = 1e-6;
 constexpr std::size_t kMostFootSeeds = 32;
@@ -235,7 +237,8 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
   const double last = source.place.height;
   if (last < s.early())
     source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal};
-  const double moved = length(x - source.x);
+  const dvec3 step = x - source.x, slope = source.place.gradient, place = source.place.p;
+  const double moved = length(step);
   const Foot foot = follow_foot(s, before, source.x, x);
   contact.older_height = contact.previous_height;
   contact.previous_height = contact.height;
@@ -254,10 +257,12 @@ void follow(const Search& s, SourceState& source, Contact& contact, dvec3 x) {
     return drop_contact(source, contact);
   put(source, contact, contact_place(s.object, s.mesh, foot, x), x);
   // A depth changes no faster than the tip moves, unless the tracked minimum vanished and the foot moved downhill to
-  // another one. The additional depth was not pushed.
-  const double deeper = last - source.place.height;
-  if (deeper - moved > 1e-9 * static_cast<double>(s.mesh.box.diagonal())) {
-    contact.unpushed += deeper;
+  // another one. The additional depth was not pushed. Over a short way, that is what the gradients do not explain.
+  const double deeper = last - source.place.height, least = 1e-9 * static_cast<double>(s.mesh.box.diagonal());
+  const double pushed = -0.5 * dot(slope + source.place.gradient, step);
+  const bool jumped = length(source.place.p - place) > kJump * moved && deeper - pushed > least;
+  if (jumped || deeper - moved > least) {
+    contact.unpushed += jumped ? deeper - pushed : deeper;
     source.settled = false;
   }
   // The unpushed depth is at most the depth that is left.
