@@ -7,6 +7,7 @@
 #include "systems/device/mouse.h"
 #include "systems/device/path.h"
 #include "systems/device/softening.h"
+#include "systems/device/tissue_account.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/feed/contacts_of.h"
 
@@ -115,6 +116,7 @@ void read_devices(World& world, Tick tick) {
 }
 
 void write_devices(World& world, Tick tick) {
+  share_accounts(world, tick);
   for (ProbeState& state : world.touch->probes) {
     const Probe& probe = world.registry.get<Probe>(state.entity);
     HapticDevice& device = world.registry.get<HapticDevice>(probe.device);

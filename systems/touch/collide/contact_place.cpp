@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/touch/collide/around_vertex.h"
+#include "systems/touch/collide/section.h"
 
 namespace pliant {
 namespace {
@@ -40,19 +41,20 @@ struct NearCrease {
   double offset;      // [m] of its plane: normal . p
 };
 // Number of creases considered in a tick, one per flat side; on a rough surface the nearest ones.
-constexpr std::size_t kMostCreases = 8;
+constexpr std::size_t kMostCreases = 24;
 
 // The nearest creases within `within` of x that have x behind their side by less than `farthest`. Returns the number of
-// creases visited.
-std::size_t nearest_creases(const ObjectState& object, const Mesh& mesh, dvec3 x, double within, double farthest,
-                            std::array<NearCrease, kMostCreases>& found, std::size_t& count) {
+// creases that are not on the far sheet of a thin part.
+std::size_t nearest_creases(const ObjectState& object, const Mesh& mesh, const Foot& own, dvec3 x, double within,
+                            double farthest, std::array<NearCrease, kMostCreases>& found, std::size_t& count) {
   const double bulge = static_cast<double>(mesh.tree.bulge), flat = 1e-5 * static_cast<double>(mesh.mean_edge);
   std::size_t met = 0;
   visit_creases(object, x, within, [&](std::uint32_t t, int edge) {
-    ++met;
     const uvec3 corner = mesh.triangles[t];
     const dvec3 a(mesh.position(corner[edge])), e = dvec3(mesh.position(corner[(edge + 1) % 3])) - a;
     const dvec3 n = normalize(cross(e, dvec3(mesh.position(corner[(edge + 2) % 3])) - a));
+    if (dot(n, own.normal) < kThin) return;  // another sheet's
+    ++met;
     const double below = -dot(x - a, n), offset = dot(n, a);
     if (below > farthest + bulge || below < -bulge) return;
     const double s = std::clamp(dot(x - a, e) / dot(e, e), 0.0, 1.0), distance = length(x - a - s * e);
@@ -122,6 +124,15 @@ Start start_on_side(const ObjectState& object, const Mesh& mesh, const NearCreas
   return {triangle, corner, at_crease ? kBorder : vertex};
 }
 
+// Whether the surface connects two feet of x near it: along its section by the plane of both feet and x, no farther
+// from x than `within`. Another sheet of a thin part is not connected, however near it is.
+bool connected(const Mesh& mesh, const Foot& from, const Foot& to, dvec3 x, double within) {
+  const dvec3 p = inside_triangle(mesh, from.triangle, from.barycentric),
+              q = inside_triangle(mesh, to.triangle, to.barycentric);
+  return walk_section(mesh, from.triangle, to.triangle, p, cross(p - x, q - x),
+                      [&](const SectionEdge& at) { return length(at.p - x) <= within; });
+}
+
 }  // namespace
 
 FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot& own, dvec3 x) {
@@ -132,9 +143,9 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
   std::array<NearCrease, kMostCreases> creases;
   std::size_t near = 0;
   // Around the point first. Then farther out, for sharp wedges, unless the surface is rough.
-  if (nearest_creases(object, mesh, x, farthest, farthest, creases, near) <= 4 * kMostCreases) {
+  if (nearest_creases(object, mesh, own, x, farthest, farthest, creases, near) <= 4 * kMostCreases) {
     near = 0;
-    nearest_creases(object, mesh, x, kCreaseReach * -own.height, farthest, creases, near);
+    nearest_creases(object, mesh, own, x, kCreaseReach * -own.height, farthest, creases, near);
   }
   std::uint32_t count = 1;
   const double same = kSameContact * static_cast<double>(mesh.mean_edge);
@@ -159,6 +170,7 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
       return length(f.p - foot.p) < same + 1e-9 * length(f.p) && dot(f.normal, foot.normal) > 0.999;
     };
     if (std::any_of(feet.begin(), feet.begin() + count, is_same)) continue;
+    if (!connected(mesh, foot, own, x, kCreaseReach * std::max(-own.height, -foot.height))) continue;
     if (count < kMostFeet) {
       feet[count++] = foot;
     } else {  // replaces the farthest of the others

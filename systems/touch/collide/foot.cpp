@@ -14,6 +14,7 @@ constexpr int kMostPatches = 512;    // on the way downhill
 constexpr double kOnEdge = 1e-12;    // [1] a barycentric below this is zero
 constexpr double kBetter = 1e-13;    // [1] relative decrease of the distance squared required for the foot to move on
 constexpr double kFree = 5e-7;       // [1] x - p deviates less than this from the normal: no constraint at the foot. Above sqrt(kBetter)
+constexpr double kMostMoves = 20.0;  // [1] most of dp/dx
 constexpr double kOnSurface = 1e-9;  // [1] of the triangle's edge: closer than this, x is on the surface
 
 struct Place {
@@ -172,6 +173,25 @@ dvec3 patch_normal(const CurvedPatch::Point& at) {
   return size > 0 ? n / size : dvec3(0);
 }
 
+// [rad] Angle of a patch at one of its corners. The sum of normals around a vertex is weighted by it: it tells inside
+// from outside where a sum without weights does not (Baerentzen & Aanaes 2005).
+double corner_angle(const CurvedPatch::Point& at, int corner) {
+  const dvec3 a = corner == 0 ? at.pu : corner == 1 ? at.pv - at.pu : -at.pv;
+  const dvec3 b = corner == 0 ? at.pv : corner == 1 ? -at.pu : at.pu - at.pv;
+  return std::atan2(length(cross(a, b)), dot(a, b));
+}
+
+// Where a minimum is about to end, its place moves infinitely fast; nothing may follow from that.
+void bound_motion(Foot& foot) {
+  double size = 0.0;
+  for (int i = 0; i < 3; ++i) size += dot(foot.moves[i], foot.moves[i]);
+  size = std::sqrt(size);
+  if (!(size > kMostMoves)) return;
+  foot.moves *= kMostMoves / size;
+  foot.turns *= kMostMoves / size;
+  for (dvec3& shift : foot.shifts) shift *= kMostMoves / size;
+}
+
 // Completes a foot at the found place. `sides`: sum of the normals of the patches that meet there.
 Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, dvec3 sides) {
   const auto [u, v] = local.at;
@@ -200,6 +220,7 @@ Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, dvec3 sides)
                   nv = tangent(cross(at.puv, at.pv) + cross(at.pu, at.pvv));
       foot.turns = glm::outerProduct(nu, du) + glm::outerProduct(nv, dv);
     }
+    bound_motion(foot);
     return foot;
   }
   foot.place = (on & (on - 1)) == 0 ? FootPlace::kEdge : FootPlace::kVertex;
@@ -225,6 +246,7 @@ Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, dvec3 sides)
     const dmat3 across = dmat3(1.0) - glm::outerProduct(foot.normal, foot.normal);
     foot.turns = across * (dmat3(1.0) - foot.moves) / foot.height;
   }
+  bound_motion(foot);
   return foot;
 }
 
@@ -247,20 +269,24 @@ Foot descend(const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric, dvec3 
   for (int patches = 0; patches < kMostPatches; ++patches) {
     const unsigned on = zeros(local.at);
     if (on == 0) break;
-    sides = patch_normal(local.patch.at(local.at.u, local.at.v));
+    const int corner = (on & (on - 1)) == 0 ? -1 : on == 6 ? 0 : on == 5 ? 1 : 2;
+    const auto side = [&](const CurvedPatch::Point& at, int of) {
+      return (corner < 0 ? 1.0 : corner_angle(at, of)) * patch_normal(at);
+    };
+    sides = side(local.patch.at(local.at.u, local.at.v), corner);
     at_border = false;
     Local best = local;
     std::uint32_t best_triangle = triangle;
     const double enough = local.f * (1 - kBetter);
-    const auto offer = [&](std::uint32_t t, Place start) {
+    const auto offer = [&](std::uint32_t t, Place start, int of = -1) {
       const Local other = local_minimum(mesh, t, start, x);
-      sides += patch_normal(other.patch.at(start.u, start.v));
+      sides += side(other.patch.at(start.u, start.v), of);
       if (other.f < enough && other.f < best.f) {
         best = other;
         best_triangle = t;
       }
     };
-    if ((on & (on - 1)) == 0) {
+    if (corner < 0) {
       const int zero = on == 1 ? 0 : on == 2 ? 1 : 2, edge = (zero + 1) % 3;
       const std::uint32_t next = mesh.across[triangle][edge];
       at_border = next == kBorder || !crosses(triangle, edge);
@@ -269,10 +295,10 @@ Foot descend(const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric, dvec3 
         offer(next, across_edge(mesh, triangle, edge, next, b[(edge + 1) % 3]));
       }
     } else {
-      const int corner = on == 6 ? 0 : on == 5 ? 1 : 2;
       const std::uint32_t vertex = mesh.triangles[triangle][corner];
       around_vertex(mesh, vertex, triangle, crosses, [&](std::uint32_t t) {
-        if (t != triangle) offer(t, at_corner(corner_of(mesh.triangles[t], vertex)));
+        const int of = corner_of(mesh.triangles[t], vertex);
+        if (t != triangle) offer(t, at_corner(of), of);
         for (const int edge : {corner_of(mesh.triangles[t], vertex), (corner_of(mesh.triangles[t], vertex) + 2) % 3})
           at_border = at_border || mesh.across[t][edge] == kBorder || !crosses(t, edge);
       });

@@ -33,7 +33,8 @@ constexpr int kMostPivots = 60;
 // one factorisation if the active set is the last tick's. Falls back to single pivots, which always terminate.
 class Loads {
  public:
-  Loads(std::span<LoadedContact> contacts, const ShareKernel& kernel) : contacts_(contacts), n_(contacts.size()) {
+  Loads(std::span<LoadedContact> contacts, const ShareKernel& kernel, std::span<const SharedDent> dents)
+      : contacts_(contacts), n_(contacts.size()) {
     for (std::size_t i = 0; i < n_; ++i) {
       e_[i] = std::sqrt(2 * contacts[i].energy);
       if (contacts[i].load > 0) pressing_ |= bit(i);
@@ -42,11 +43,14 @@ class Loads {
         const double facing = dot(contacts[i].normal, contacts[j].normal);
         const double a = facing > 0 ? kernel.at(dot(d, d)) * facing : 0.0;
         A_[i][j] = A_[j][i] = a;
-        even_[i] = std::max(even_[i], kEven * a * a);
-        even_[j] = std::max(even_[j], kEven * a * a);
       }
       A_[i][i] = 1.0;
     }
+    for (const SharedDent& dent : dents)
+      A_[dent.a][dent.b] = A_[dent.b][dent.a] += dent.part * (1 - A_[dent.a][dent.b]);
+    for (std::size_t i = 0; i < n_; ++i)
+      for (std::size_t j = 0; j < n_; ++j)
+        if (j != i) even_[i] = std::max(even_[i], kEven * A_[i][j] * A_[i][j]);
     if (pressing_ == 0) pressing_ = n_ == 64 ? ~std::uint64_t{0} : bit(n_) - 1;
   }
 
@@ -71,7 +75,8 @@ class Loads {
       pressing_ ^= wrong;
       if (pressing_ == 0) pressing_ = std::bit_floor(wrong);
     }
-    for (std::size_t i = 0; i < n_; ++i) contacts_[i].load = l_[i] < 0.0 ? 0.0 : l_[i];  // NaN stays NaN
+    // A load is at most e, since no entry of A is negative; where a pivot was clamped it would be more. NaN stays NaN.
+    for (std::size_t i = 0; i < n_; ++i) contacts_[i].load = l_[i] < 0.0 ? 0.0 : l_[i] > e_[i] ? e_[i] : l_[i];
   }
 
   double overlap(std::size_t i, std::size_t j) const { return A_[i][j]; }
@@ -184,7 +189,7 @@ ShareKernel share_kernel(Shape shape, double reach, double volume, double contac
   return {weight + weight_by * volume, (inner + inner_by * volume) * reach, (outer + outer_by * volume) * reach};
 }
 
-double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel) {
+double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel, std::span<const SharedDent> dents) {
   if (contacts.size() == 1) {
     LoadedContact& only = contacts[0];
     only.load = std::sqrt(2 * only.energy);
@@ -192,8 +197,13 @@ double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel) 
     only.force = only.pull;
     return only.energy;
   }
-  Loads loads(contacts, kernel);
+  Loads loads(contacts, kernel, dents);
   loads.solve();
+  const auto apart = [&](std::size_t i, std::size_t j) {
+    for (const SharedDent& dent : dents)
+      if ((dent.a == i && dent.b == j) || (dent.a == j && dent.b == i)) return 1 - dent.part;
+    return 1.0;
+  };
   double energy = 0.0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     LoadedContact& a = contacts[i];
@@ -211,11 +221,20 @@ double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel) 
       const double facing = dot(a.normal, b.normal);
       const dvec3 d = a.p - b.p;
       const double r2 = dot(d, d), phi = kernel.at(r2);
-      if (j < i) energy -= a.load * b.load * phi * facing;
-      a.force +=
-          a.load * b.load *
-          (facing * kernel.slope(r2) * (glm::transpose(a.moves) * d) + phi * (glm::transpose(a.turns) * b.normal));
+      if (j < i) energy -= a.load * b.load * loads.overlap(i, j);
+      if (facing > 0)
+        a.force +=
+            a.load * b.load * apart(i, j) *
+            (facing * kernel.slope(r2) * (glm::transpose(a.moves) * d) + phi * (glm::transpose(a.turns) * b.normal));
     }
+  }
+  for (const SharedDent& dent : dents) {
+    LoadedContact &a = contacts[dent.a], &b = contacts[dent.b];
+    const dvec3 d = a.p - b.p;
+    const double kernel_part = std::max(0.0, dot(a.normal, b.normal)) * kernel.at(dot(d, d));
+    const dvec3 force = 0.5 * a.load * b.load * (1 - kernel_part) * dent.slope;
+    a.force += force;
+    b.force += force;
   }
   return energy;
 }

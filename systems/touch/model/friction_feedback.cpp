@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "systems/touch/collide/collision.h"
+#include "systems/touch/collide/ridge.h"
 #include "systems/touch/model/contact_law.h"
 #include "systems/touch/model/field_kernels.h"
 #include "systems/touch/model/friction.h"
@@ -27,6 +28,7 @@ struct Pressing {
   StoredEnergy stored;
   Painted stiffness;
   double slope = 0.0;  // [N/m] of the stored energy's force
+  ContactLaw law;
 };
 
 // y: free recovery of the surface towards rest.
@@ -80,6 +82,7 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
     if (relaxed.value < 0) relaxed = {0.0, dvec3(0)};  // no tensile force
     law.relaxed_depth = relaxed.value;
   }
+  pressing.law = law;
   pressing.stored = law.stored(depth);
   pressing.slope = law.slope(depth);
   const double least = kLeastDepth * deformable.reach;
@@ -97,6 +100,116 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
   out.turns = place.turns;
   out.load = contact.load;
   return true;
+}
+
+// Pairs of contacts of one sphere in one dent.
+class SharedDents {
+ public:
+  // The last contact, which may be in one dent with those before.
+  void add(const Mesh& mesh, std::span<const Pressing> pressing) {
+    const std::size_t last = pressing.size() - 1;
+    const Pressing& b = pressing[last];
+    const double radius = b.source->tip.radius;
+    for (std::size_t i = 0; i < last; ++i) {
+      const Pressing& a = pressing[i];
+      pair_[i][last] = kNone;
+      if (radius == 0.0 || count_ == pairs_.size() || a.contact->probe != b.contact->probe ||
+          a.contact->tip != b.contact->tip)
+        continue;
+      const Ridge ridge = ridge_between(mesh, a.source->place, b.source->place, b.source->x, radius);
+      pair_[i][last] = static_cast<std::uint16_t>(count_);
+      pairs_[count_++] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(last), ridge};
+    }
+  }
+
+  // A contact that stores nothing after all.
+  void remove(std::size_t contact) {
+    while (count_ > 0 && pairs_[count_ - 1].b == contact) --count_;
+  }
+
+  std::span<const SharedDent> of(std::span<const Pressing> pressing) {
+    if (count_ == 0) return {};
+    // The way over a third contact may be the deeper one. The depths of all ridges are then those of a tree, and the
+    // matrix of their energies has no negative eigenvalue.
+    std::array<Ridge, kMostPairs> deepest;
+    for (std::size_t k = 0; k < count_; ++k) deepest[k] = pairs_[k].ridge;
+    for (std::size_t over = 0; over < pressing.size(); ++over)
+      for (std::size_t k = 0; k < count_; ++k) {
+        const std::uint32_t a = pairs_[k].a, b = pairs_[k].b;
+        if (over == a || over == b || b >= pressing.size()) continue;
+        const std::uint16_t to = between(a, over), on = between(over, b);
+        if (to == kNone || on == kNone) continue;
+        const Ridge& lower = deepest[to].depth < deepest[on].depth ? deepest[to] : deepest[on];
+        if (lower.depth > deepest[k].depth) deepest[k] = lower;
+      }
+    std::size_t dents = 0;
+    for (std::size_t k = 0; k < count_; ++k)
+      if (pairs_[k].b < pressing.size() && shared(pressing, pairs_[k], deepest[k], dents_[dents])) ++dents;
+    return {dents_.data(), dents};
+  }
+
+ private:
+  static constexpr std::uint16_t kNone = 0xffff;
+  static constexpr std::size_t kMostPairs = 256;
+  struct Pair {
+    std::uint32_t a, b;
+    Ridge ridge;
+  };
+
+  std::uint16_t between(std::size_t a, std::size_t b) const { return a < b ? pair_[a][b] : pair_[b][a]; }
+
+  static bool shared(std::span<const Pressing> pressing, const Pair& pair, const Ridge& ridge, SharedDent& dent) {
+    const Pressing &a = pressing[pair.a], &b = pressing[pair.b];
+    const StoredEnergy at_a = a.law.stored(ridge.depth), at_b = b.law.stored(ridge.depth);
+    if (!(at_a.energy > 0 && at_b.energy > 0)) return false;
+    dent.a = pair.a;
+    dent.b = pair.b;
+    dent.part = std::sqrt(at_a.energy / a.stored.energy * (at_b.energy / b.stored.energy));
+    dent.slope = 0.5 * dent.part *
+                 ((at_a.force / at_a.energy + at_b.force / at_b.energy) * ridge.slope +
+                  a.stored.force / a.stored.energy * a.source->place.gradient +
+                  b.stored.force / b.stored.energy * b.source->place.gradient);
+    return true;
+  }
+
+  std::array<std::array<std::uint16_t, kMaxContactsPerObject>, kMaxContactsPerObject> pair_;
+  std::array<Pair, kMostPairs> pairs_;
+  std::array<SharedDent, kMostPairs> dents_;
+  std::size_t count_ = 0;
+};
+
+// One object's contacts of a tick.
+struct Pressed {
+  std::array<Pressing, kMaxContactsPerObject> pressing;
+  std::size_t count = 0;
+  SharedDents dents;
+};
+
+// Depth without a hand's motion stores no energy that was not there: a contact that begins beside others, or goes over
+// to a deeper place, takes over their load, and only what is beyond counts as unpushed. It is the next of `pressed`.
+bool settle(const ObjectState& object, const Deformable& deformable, const Mesh& mesh, const HeightField& field,
+            Pressed& pressed, std::span<LoadedContact> loaded) {
+  constexpr int kHalvings = 24;
+  Pressing& pressing = pressed.pressing[pressed.count];
+  Contact& contact = *pressing.contact;
+  const auto energy = [&](double unpushed) {
+    contact.unpushed = unpushed;
+    const bool stores = store(object, deformable, mesh, field, pressing, loaded[pressed.count]);
+    const std::size_t count = pressed.count + (stores ? 1 : 0);
+    if (count == 0) return 0.0;
+    return share_load(loaded.first(count), object.kernel, pressed.dents.of(std::span(pressed.pressing).first(count)));
+  };
+  pressed.dents.add(mesh, std::span(pressed.pressing).first(pressed.count + 1));
+  double none = 0.0, enough = contact.unpushed;
+  const double had = energy(enough), others = energy(-contact.height), allowed = std::max(had, others) * (1 + 1e-12);
+  if (energy(none) <= allowed) enough = none;
+  for (int i = 0; i < kHalvings && enough > none; ++i) {
+    const double middle = 0.5 * (none + enough);
+    (energy(middle) <= allowed ? enough : none) = middle;
+  }
+  contact.unpushed = enough;
+  pressing.source->settled = true;
+  return store(object, deformable, mesh, field, pressing, loaded[pressed.count]);
 }
 
 // Rate term and friction on top of the elastic force; world frame.
@@ -162,23 +275,31 @@ void friction_feedback(World& world, Tick tick) {
     const Deformable& deformable = registry.get<Deformable>(object.entity);
     const Mesh& mesh = world.meshes[deformable.mesh];
     const HeightField& field = world.fields[deformable.field];
-    std::array<Pressing, kMaxContactsPerObject> pressing;
     std::vector<LoadedContact>& loaded = world.touch->loaded;
-    std::size_t count = 0;
-    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
-      SourceState& source = object.sources[i];
-      if (!source.tracked) continue;
-      Contact& contact = registry.get<Contact>(source.contact);
-      advance_free_surface(contact, source.place, mesh, object.motion);
-      pressing[count] = {&source, &contact, {}, {}, 0.0};
-      if (contact.height < 0 && store(object, deformable, mesh, field, pressing[count], loaded[count])) {
-        ++count;
-      } else {
-        if (contact.height < 0 && !std::isfinite(pressing[count].stored.energy)) world.dropped |= kDroppedNonFinite;
-        release(contact);
+    Pressed pressed;
+    auto& [pressing, count, dents] = pressed;
+    for (const bool settled : {true, false}) {
+      for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
+        SourceState& source = object.sources[i];
+        if (!source.tracked || source.settled != settled) continue;
+        Contact& contact = registry.get<Contact>(source.contact);
+        advance_free_surface(contact, source.place, mesh, object.motion);
+        pressing[count] = {&source, &contact, {}, {}, 0.0, {}};
+        const bool stores =
+            contact.height < 0 && (settled ? store(object, deformable, mesh, field, pressing[count], loaded[count])
+                                           : settle(object, deformable, mesh, field, pressed, loaded));
+        if (stores) {
+          ++count;
+          if (settled) dents.add(mesh, std::span(pressing).first(count));
+        } else {
+          dents.remove(count);
+          if (contact.height < 0 && !std::isfinite(pressing[count].stored.energy)) world.dropped |= kDroppedNonFinite;
+          release(contact);
+        }
       }
     }
-    object.stored = count > 0 ? share_load({loaded.data(), count}, object.kernel) : 0.0;
+    object.stored =
+        count > 0 ? share_load({loaded.data(), count}, object.kernel, dents.of({pressing.data(), count})) : 0.0;
     if (count == 0) continue;
     if (!std::isfinite(object.stored)) {  // from a registered law or shape
       world.dropped |= kDroppedNonFinite;

@@ -86,7 +86,7 @@ std::size_t most_contacts(const ObjectState& object) {
   return kMaxContactsPerObject - (object.seam_zones.empty() ? 0 : kLeastEchoes);
 }
 // Largest number of simultaneous contacts of a tip with one object: the walls of a corner, and one more.
-constexpr std::size_t kContactsOfASphere = 4, kContactsOfAPoint = 2;
+constexpr std::size_t kContactsOfASphere = 8, kContactsOfAPoint = 2;
 
 // A capsule is a row of spheres half a radius apart, up to kMostTips.
 std::vector<Tip> tips_of(const Probe& probe) {
@@ -303,6 +303,7 @@ Status prepare_touch(World& world) {
     if (deformable.reach == 0.0) deformable.reach = default_reach(mesh);
     if (Status status = check(deformable, name_of(world, entity)); !status) return status.error();
     ObjectState object = make_object(world, entity, pose, touch->dt, tips.all);
+    object.accounts.resize(touch->probes.size());
     snapshot.objects.push_back(snapshot_of(object, mesh));
     extent.add(object.world_box);
     touch->objects.push_back(std::move(object));

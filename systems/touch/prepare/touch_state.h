@@ -42,7 +42,8 @@ struct HeldFoot {
   std::uint64_t tick = 0;  // number of the tick that wrote it, plus 1
   Entity probe;
   std::uint8_t tip = 0;
-  dvec3 p{0};  // [m] object frame
+  dvec3 p{0};       // [m] object frame
+  dvec3 normal{0};  // [1] of the contact
 };
 
 // One entry of an object's pool: a contact, its place, and its part in the object's field.
@@ -50,6 +51,7 @@ struct SourceState {
   Entity contact;                    // has a Contact
   std::uint64_t born = 0;            // number of the tick of its first contact, plus 1
   bool tracked = false;              // tracked by collision: a probe's contact, near the surface or behind it
+  bool settled = true;               // false: it has depth of which friction_feedback tells how much counts as unpushed
   dvec3 x{0};                        // [m] the tip's centre last tick, object frame
   Tip tip;                           // the tip in contact
   FootBlend place;                   // of the tip's centre
@@ -123,6 +125,13 @@ struct SeamsFound {
   std::vector<std::uint32_t> bonds;
 };
 
+// Energy between one hand and one object (systems/device/tissue_account.h). [J] of the world
+struct TissueAccount {
+  double given = 0.0;   // by the hand so far, beside what it got back
+  double stored = 0.0;  // in its contacts now
+  dvec3 force{0};       // [N] of the object on the probe in the last tick
+};
+
 // Touch state of one Deformable.
 struct ObjectState {
   Entity entity;
@@ -144,6 +153,7 @@ struct ObjectState {
   Box world_box;                            // of the rest surface, for the broad phase
   std::uint32_t probe_sources = 0;          // number of `sources` for probes; presses follow
   double stored = 0.0;                      // [J] U: elastic energy of all its contacts (contact_energy.h)
+  std::vector<TissueAccount> accounts;      // per probe
   bool listed = false;                      // it is in TouchState::awake
   std::vector<dvec3> searched;              // [m] per tip of every probe: place of the last search for walls
   bool on_gpu = false;                      // the field is `terms`, drawn by the GPU; there is no HeightField

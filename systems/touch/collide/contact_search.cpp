@@ -1,0 +1,129 @@
+#include "systems/touch/collide/contact_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/touch/collide/around_vertex.h"
+#include "systems/touch/collide/contact_place.h"
+#include "systems/touch/model/field.h"
+
+namespace pliant {
+namespace {
+
+// Height and rate of the recovering surface under a foot, without the contacts' targets. The depth sustained by the arm
+// (standard linear solid) is excluded: the contact's law includes it already.
+HeightState recovering(const ContactSearch& s, const Foot& foot) {
+  const uvec3 t = s.mesh.triangles[foot.triangle];
+  HeightState mean;
+  for (int i = 0; i < 3; ++i) {
+    const HeightState corner = residual_before(s.object, s.mesh, s.field, t[i], s.tick);
+    const double held = s.field.arm.empty() ? 0.0 : static_cast<double>(s.field.arm[t[i]].w);
+    mean.height += foot.barycentric[i] * (corner.height + held);
+    mean.velocity += foot.barycentric[i] * corner.velocity;
+  }
+  return mean;
+}
+
+}  // namespace
+
+void put_contact(SourceState& source, Contact& contact, const FootBlend& place, dvec3 x) {
+  source.x = x;
+  source.place = place;
+  const Foot& main = place.main();
+  contact.triangle = main.triangle;
+  contact.barycentric = main.barycentric;
+  contact.foot = place.p;
+  contact.normal = place.normal;
+  contact.height = place.height - source.tip.radius;
+  if (contact.height >= 0) {
+    contact.state = ContactState::kFree;
+  } else if (contact.state == ContactState::kFree) {
+    contact.state = ContactState::kInside;  // friction_feedback decides whether it presses
+  }
+}
+
+void begin_contact(const ContactSearch& s, const ProbeTip& tip, const Foot& foot, dvec3 from, dvec3 x) {
+  SourceState* source = s.free_source();
+  if (!source) {
+    s.world.dropped |= kDroppedContacts;
+    return;
+  }
+  Contact& contact = s.world.registry.get<Contact>(source->contact);
+  source->tracked = true;
+  source->born = s.tick.index + 1;
+  source->tip = tip.tip;
+  contact.probe = tip.probe;
+  contact.tip = tip.index;
+  contact.state = ContactState::kFree;
+  contact.load = contact.share = contact.normal_force = 0.0;
+  contact.bristle = dvec3(0);
+  contact.sliding = false;
+  put_contact(*source, contact, contact_place(s.object, s.mesh, foot, x), x);
+  HeightState surface = recovering(s, foot);
+  // Beside others of its tip the surface does not recover: the tip is on it, and has left that dent itself.
+  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
+    const SourceState& beside = s.object.sources[i];
+    if (!beside.tracked || &beside == source || tip.tip.radius == 0) continue;
+    const Contact& other = s.world.registry.get<Contact>(beside.contact);
+    if (other.probe != tip.probe || other.tip != tip.index || other.height >= 0 || contact.height >= 0) continue;
+    surface = {other.free_height, other.free_velocity};
+    break;
+  }
+  const double pushed = length(x - from), unpushed = -contact.height - pushed;
+  contact.free_height = std::min(0.0, surface.height);
+  contact.free_velocity = contact.free_height < 0 ? surface.velocity : 0.0;
+  contact.unpushed = unpushed > 1e-9 * static_cast<double>(s.mesh.box.diagonal()) ? unpushed : 0.0;
+  source->settled = contact.unpushed == 0.0;
+  contact.previous_height = contact.older_height = std::max(contact.height, std::min(0.0, surface.height));
+  if (!s.object.listed) {
+    s.object.listed = true;
+    s.world.touch->awake.push_back(static_cast<std::uint32_t>(&s.object - s.world.touch->objects.data()));
+  }
+}
+
+bool beyond_border(const Mesh& mesh, const Foot& foot, dvec3 x, std::span<const std::uint32_t> but) {
+  if (!foot.at_border) return false;
+  bool beyond = false;
+  const auto check = [&](std::uint32_t t, int edge) {
+    if (mesh.across[t][edge] != kBorder) return;
+    if (std::binary_search(but.begin(), but.end(), 3 * t + static_cast<std::uint32_t>(edge))) return;
+    const uvec3 corner = mesh.triangles[t];
+    const dvec3 a(mesh.position(corner[edge])), b(mesh.position(corner[(edge + 1) % 3])),
+        c(mesh.position(corner[(edge + 2) % 3]));
+    const dvec3 outward = cross(b - a, cross(b - a, c - a));
+    const double size = length(outward);
+    beyond = beyond || dot(x - foot.p, outward) > 1e-9 * size * (1e-3 * length(b - a) + length(x - foot.p));
+  };
+  if (foot.place == FootPlace::kEdge) {
+    check(foot.triangle, foot.edge);
+  } else {
+    const int corner = foot.barycentric.x > 0.5 ? 0 : foot.barycentric.y > 0.5 ? 1 : 2;
+    around_vertex(mesh, mesh.triangles[foot.triangle][corner], foot.triangle, [&](std::uint32_t t) {
+      for (int edge = 0; edge < 3; ++edge) check(t, edge);
+    });
+  }
+  return beyond;
+}
+
+Foot follow_foot(const ContactSearch& s, Foot foot, dvec3 from, dvec3 to) {
+  const double step = std::max({std::abs(foot.height), static_cast<double>(s.mesh.mean_edge), 1e-12});
+  const int steps = std::clamp(static_cast<int>(std::ceil(length(to - from) / step)), 1, 8);
+  for (int i = 1; i <= steps; ++i)
+    foot = s.downhill(foot.triangle, foot.barycentric, from + (to - from) * (double(i) / steps));
+  return foot;
+}
+
+bool is_known(const ContactSearch& s, const ProbeTip& tip, const Foot& foot) {
+  const double same = 1e-3 * static_cast<double>(s.mesh.mean_edge);
+  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
+    const SourceState& source = s.object.sources[i];
+    if (!source.tracked) continue;
+    const Contact& contact = s.world.registry.get<Contact>(source.contact);
+    if (contact.probe != tip.probe || contact.tip != tip.index) continue;
+    for (std::uint32_t f = 0; f < source.place.count; ++f)
+      if (length(source.place.foot[f].p - foot.p) < same) return true;
+  }
+  return false;
+}
+
+}  // namespace pliant

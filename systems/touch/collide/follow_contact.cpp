@@ -1,0 +1,121 @@
+#include "systems/touch/collide/follow_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/touch/collide/collision.h"
+#include "systems/touch/collide/contact_place.h"
+#include "systems/touch/collide/seams.h"
+#include "systems/touch/collide/triangle_tree.h"
+#include "systems/touch/model/seam_dents.h"
+
+namespace pliant {
+namespace {
+
+// A foot that moves farther than this many times its tip's way has gone over to another minimum. [1]
+constexpr double kJump = 10.0;
+// Two feet of a tip closer than this are the same. [1] of the mean edge
+constexpr double kSameFoot = 1e-6;
+
+// A foot at a seam moves to the other surface, with the contact's whole state, or waits between both.
+enum class AtSeam { kStays, kBetween, kCarried };
+AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source, Contact& contact, dvec3 world) {
+  TouchState& touch = *s.world.touch;
+  ObjectState& object = touch.objects[seam.object];
+  if (object.world_box.empty()) return AtSeam::kStays;  // the object is removed
+  const ProbeTip tip{contact.probe, contact.tip, source.tip};
+  const Deformable& deformable = s.world.registry.get<Deformable>(object.entity);
+  const ContactSearch there{s.world, object, s.world.meshes[deformable.mesh], s.world.fields[deformable.field], s.tick};
+  const Pose& pose = s.world.registry.get<Pose>(object.entity);
+  const dvec3 x = pose.to_local(world);
+  Foot foot = there.downhill(seam.triangle, closest_on_triangle(there.mesh, seam.triangle, x).barycentric, x);
+  if (seam_at(object, foot) && &object != &s.object) return AtSeam::kBetween;
+  if (foot.height >= tip.tip.radius * (1 + kAhead) || (foot.height < 0) != (source.place.height < 0))
+    return AtSeam::kStays;
+  if (!is_known(there, tip, foot)) {
+    const Contact before = contact;
+    SourceState* to = there.free_source();
+    if (!to) return AtSeam::kStays;
+    begin_contact(there, tip, foot, x, x);
+    Contact& after = s.world.registry.get<Contact>(to->contact);
+    const dquat turn = glm::conjugate(pose.rotation) * s.world.registry.get<Pose>(s.object.entity).rotation;
+    after.free_height = before.free_height;
+    after.free_velocity = before.free_velocity;
+    const dvec3 own = s.world.registry.get<Pose>(s.object.entity).to_local(world);
+    const double deeper = before.height - after.height - length(own - source.x);
+    to->settled = !(deeper > 1e-9 * static_cast<double>(there.mesh.box.diagonal()));
+    after.unpushed = before.unpushed + (to->settled ? 0.0 : deeper);
+    after.previous_height = before.previous_height;
+    after.older_height = before.older_height;
+    after.bristle = turn * before.bristle;
+    after.sliding = before.sliding;
+    after.load = before.load;
+    hand_over_dents(touch, static_cast<std::uint32_t>(&s.object - touch.objects.data()), source, seam.object, *to);
+  }
+  drop_contact(source, contact);
+  return AtSeam::kCarried;
+}
+
+}  // namespace
+
+void follow_contact(const ContactSearch& s, SourceState& source, Contact& contact, dvec3 x) {
+  const double radius = source.tip.radius;
+  const Foot before = source.place.main();
+  const double last = source.place.height;
+  if (last < s.early())
+    source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal};
+  const dvec3 step = x - source.x, slope = source.place.gradient, place = source.place.p;
+  const double moved = length(step);
+  const Foot foot = follow_foot(s, before, source.x, x);
+  contact.older_height = contact.previous_height;
+  contact.previous_height = contact.height;
+  const bool front = foot.height >= 0;
+  AtSeam at_seam = AtSeam::kStays;
+  if (const Seam* seam = seam_at(s.object, foot))
+    at_seam = carry_over(s, *seam, source, contact, s.world.registry.get<Pose>(s.object.entity).to_world(x));
+  if (at_seam == AtSeam::kCarried) return;
+  // Past the rim of an open surface, or too far away for a meaningful foot.
+  const std::vector<std::uint32_t>& seams = s.object.closed;
+  const bool beyond =
+      at_seam == AtSeam::kBetween ? beyond_border(s.mesh, foot, x, seams) : beyond_border(s.mesh, foot, x);
+  if ((beyond && !(front && radius > 0)) ||
+      std::abs(foot.height) > static_cast<double>(s.mesh.box.diagonal()) + radius ||
+      foot.height > radius * (1 + 2 * kAhead))
+    return drop_contact(source, contact);
+  put_contact(source, contact, contact_place(s.object, s.mesh, foot, x), x);
+  // A depth changes no faster than the tip moves, unless the tracked minimum vanished and the foot moved downhill to
+  // another one. The additional depth was not pushed. Over a short way, that is what the gradients do not explain.
+  const double deeper = last - source.place.height, least = 1e-9 * static_cast<double>(s.mesh.box.diagonal());
+  const double pushed = -0.5 * dot(slope + source.place.gradient, step);
+  const bool jumped = length(source.place.p - place) > kJump * moved && deeper - pushed > least;
+  if (jumped || deeper - moved > least) {
+    contact.unpushed += jumped ? deeper - pushed : deeper;
+    source.settled = false;
+  }
+  // The unpushed depth is at most the depth that is left.
+  contact.unpushed = std::clamp(contact.unpushed, 0.0, std::max(0.0, -contact.height));
+}
+
+void merge_contacts(const ContactSearch& s) {
+  const double same = kSameFoot * static_cast<double>(s.mesh.mean_edge);
+  const auto pushed = [&](const SourceState& source) {
+    return source.settled ? -s.world.registry.get<Contact>(source.contact).unpushed : -source.tip.radius - same;
+  };
+  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
+    SourceState& first = s.object.sources[i];
+    if (!first.tracked) continue;
+    Contact& a = s.world.registry.get<Contact>(first.contact);
+    for (std::uint32_t j = i + 1; j < s.object.probe_sources && first.tracked; ++j) {
+      SourceState& second = s.object.sources[j];
+      if (!second.tracked) continue;
+      Contact& b = s.world.registry.get<Contact>(second.contact);
+      if (a.probe != b.probe || a.tip != b.tip || !(length(first.place.p - second.place.p) < same)) continue;
+      if (pushed(first) >= pushed(second))
+        drop_contact(second, b);
+      else
+        drop_contact(first, a);
+    }
+  }
+}
+
+}  // namespace pliant

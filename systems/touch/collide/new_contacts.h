@@ -1,0 +1,12 @@
+// Finds the contacts that begin in this tick.
+#pragma once
+
+#include "systems/touch/collide/contact_search.h"
+
+namespace pliant {
+
+// On the tip's way on the object. `fresh`: its first pose. `searched`: where this tip last searched for walls of the
+// object.
+void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, dvec3& searched, bool fresh, dvec3 from, dvec3 to);
+
+}  // namespace pliant
