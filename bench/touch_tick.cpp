@@ -47,30 +47,37 @@ void print_systems(const std::vector<std::pair<std::string, double>>& systems) {
   fmt::print("{}\n", line);
 }
 
-// The target of the volume-preserving shape in double precision, with its own sum for c.
+// The target of the volume-preserving shape on the sphere in double precision, with its own sum for c. Distances along
+// the surface are arcs.
 double field_error(Stage& stage, Entity surface, Entity probe) {
   const Mesh& mesh = stage.mesh(surface);
   const Contact& contact = stage.contact(probe);
   const Deformable& d = stage.world.registry.get<Deformable>(surface);
+  const bool along = d.distance == Distance::kSurface;
+  const double radius = length(contact.foot);
   const auto facing = [&](std::uint32_t v) {
-    return std::clamp(4 * dot(dvec3(mesh.normal(v)), contact.normal), 0.0, 1.0);
+    return along ? 1.0 : std::clamp(4 * dot(dvec3(mesh.normal(v)), contact.normal), 0.0, 1.0);
+  };
+  const auto distance2 = [&](std::uint32_t v) {
+    const dvec3 x = dvec3(mesh.position(v)) - contact.foot;
+    const double arc = 2 * radius * std::asin(std::min(1.0, length(x) / (2 * radius)));
+    return along ? arc * arc : dot(x, x);
   };
   double S0 = 0, S1 = 0, Q0 = 0, Q1 = 0, Q2 = 0, bend = 0, spread = 0;
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     const dvec3 x = dvec3(mesh.position(v)) - contact.foot;
-    const double u = dot(x, x) / (d.reach * d.reach);
+    const double r2 = distance2(v), u = r2 / (d.reach * d.reach);
     if (u >= 1) continue;
     const double w = std::pow(1 - u, 3) * facing(v), A = mesh.area[v];
     S0 += A * w, S1 += A * w * u, Q0 += A * w * w, Q1 += A * w * w * u, Q2 += A * w * w * u * u;
-    bend += A * w * dot(dvec3(mesh.normal(v)) - contact.normal, x), spread += A * w * dot(x, x);
+    bend += A * w * dot(dvec3(mesh.normal(v)) - contact.normal, x), spread += A * w * r2;
   }
   const double aH = -contact.height * bend / spread;
   double c = S0 / S1;
   for (int i = 0; i < 20; ++i)
     c -= (S0 - c * S1 - aH * (Q0 - 2 * c * Q1 + c * c * Q2)) / (-S1 + aH * (2 * Q1 - 2 * c * Q2));
   const auto f = [&](std::uint32_t v) {
-    const dvec3 x = dvec3(mesh.position(v)) - contact.foot;
-    const double u = std::min(1.0, dot(x, x) / (d.reach * d.reach));
+    const double u = std::min(1.0, distance2(v) / (d.reach * d.reach));
     return std::pow(1 - u, 3) * (1 - c * u) * facing(v);
   };
   const uvec3 t = mesh.triangles[contact.triangle];
@@ -83,10 +90,13 @@ double field_error(Stage& stage, Entity surface, Entity probe) {
   return worst / amplitude;
 }
 
-Row measure(int n, std::uint32_t wanted_awake) {
+constexpr double kPace = 0.33;  // [1] of an edge per tick
+
+Row measure(int n, std::uint32_t wanted_awake, Distance distance, double pace) {
   Row row;
   Stage stage;
   Deformable d;
+  d.distance = distance;
   const double radius = 0.1;
   const std::uint32_t vertices = 6u * static_cast<std::uint32_t>(n) * static_cast<std::uint32_t>(n) + 2;
   // Zones extend beyond the disc, so the disc itself contains fewer than the wanted awake vertices.
@@ -102,8 +112,8 @@ Row measure(int n, std::uint32_t wanted_awake) {
   double awake = 0;
   constexpr int kTicks = 20000;
   for (int i = 0; i < kTicks; ++i) {
-    // About a third of an edge per tick, along a curve that reaches new places.
-    const double a = 0.33 * edge / radius * i, b = 0.3 * std::sin(0.37 * a);
+    // Along a curve that reaches new places.
+    const double a = pace * edge / radius * i, b = 0.3 * std::sin(0.37 * a);
     const dvec3 direction = normalize(dvec3(std::sin(a), std::cos(a), b));
     stage.place(probe, direction * (radius - depth));
     for (auto [entity, device] : stage.world.registry.view<HapticDevice>()) device.sensed_at = stage.time();
@@ -216,7 +226,7 @@ int main(int argc, char** argv) {
   std::string json = "{\n  \"tick\": [";
   double first = 0, at_1e6 = 0;
   for (const int n : sizes) {
-    const Row r = measure(n, 2000);
+    const Row r = measure(n, 2000, Distance::kChord, kPace);
     if (first == 0) first = r.p50;
     if (n == 409) at_1e6 = r.p50;
     fmt::print("{:>10} {:>7} {:>9.2f} {:>9.2f} {:>9.1f} {:>10.0f} {:>10.2f} {:>12.1e}\n", r.vertices, r.awake, r.p50,
@@ -226,6 +236,29 @@ int main(int argc, char** argv) {
         "{}\n    {{\"vertices\": {}, \"awake\": {}, \"p50_us\": {:.3f}, \"p99_us\": {:.3f}, \"max_us\": {:.1f}, "
         "\"bytes_per_vertex\": {:.1f}, \"ready_s\": {:.3f}, \"error_of_amplitude\": {:.3e}}}",
         n == 41 ? "" : ",", r.vertices, r.awake, r.p50, r.p99, r.max, r.bytes, r.prepare_s, r.error);
+  }
+  fmt::print("\ndistance along the surface against the chord\n{:>10} {:>6} {:>9} {:>9} {:>9} {:>9} {:>12} {:>7}\n",
+             "vertices", "pace", "distance", "p50 us", "p99 us", "max us", "error/ampl.", "ratio");
+  json += "\n  ],\n  \"distance\": [";
+  const char* comma = "";
+  for (const int n : {41, 130, 409}) {
+    for (const double pace : {0.03, kPace}) {
+      double chord = 0;
+      for (const Distance distance : {Distance::kChord, Distance::kSurface}) {
+        const Row r = measure(n, 2000, distance, pace);
+        const bool along = distance == Distance::kSurface;
+        if (!along) chord = r.p50;
+        const char* word = along ? "surface" : "chord";
+        fmt::print("{:>10} {:>6} {:>9} {:>9.2f} {:>9.2f} {:>9.1f} {:>12.1e} {:>7.2f}\n", r.vertices, pace, word, r.p50,
+                   r.p99, r.max, r.error, r.p50 / chord);
+        print_systems(r.systems);
+        json += fmt::format(
+            "{}\n    {{\"vertices\": {}, \"edges_per_tick\": {}, \"distance\": \"{}\", \"p50_us\": {:.3f}, \"p99_us\": "
+            "{:.3f}, \"max_us\": {:.1f}, \"error_of_amplitude\": {:.3e}}}",
+            comma, r.vertices, pace, word, r.p50, r.p99, r.max, r.error);
+        comma = ",";
+      }
+    }
   }
   const AllAwake all = measure_all_awake(409);
   fmt::print(

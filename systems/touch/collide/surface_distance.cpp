@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "runtime/kernel.h"
 #include "systems/touch/collide/around_vertex.h"
 #include "systems/touch/collide/unfold.h"
 
@@ -13,59 +15,121 @@ bool later(const MarchItem& x, const MarchItem& y) {
   return x.distance != y.distance ? x.distance > y.distance : x.vertex > y.vertex;
 }
 
-}  // namespace
-
-void clear_offsets(const Mesh& mesh, const std::vector<std::uint32_t>& zones, std::vector<vec3>& offset) {
-  for (const std::uint32_t zone : zones)
-    std::fill(offset.begin() + mesh.zone_begin(zone), offset.begin() + mesh.zone_end(zone), vec3(kFar));
+// Arrival at a corner of a triangle from its other two; from the nearer one along its edge if the other is not reached.
+Arrival arrival_at(const Mesh& mesh, const std::vector<float>& distance, std::uint32_t triangle, int corner) {
+  const uvec3 c = mesh.triangles[triangle];
+  std::uint32_t a = c[(corner + 1) % 3], b = c[(corner + 2) % 3];
+  const vec3 v = mesh.position(c[corner]);
+  if (distance[b] < distance[a]) std::swap(a, b);
+  if (distance[b] < kFar) return arrive(mesh.position(a), mesh.position(b), v, distance[a], distance[b]);
+  const vec3 d = v - mesh.position(a);
+  const float l = length(d);
+  return {distance[a] + l, d / std::max(l, 1e-30f)};
 }
 
-void march_distance(const Mesh& mesh, const Contact& contact, const FieldSource& source, std::vector<vec3>& offset,
-                    std::vector<MarchItem>& heap) {
-  const float reach = 1 / std::sqrt(source.inv_reach2);
-  const auto distance = [&](std::uint32_t v) { return length(offset[v]); };
+// Shorter by more than rounding; otherwise two corners could improve each other forever.
+constexpr float kShorter = 1 - 1e-5f;
+
+// Cosine of the largest angle between the normals of an arc's ends.
+constexpr float kLeastCosine = 0.26f;
+
+}  // namespace
+
+void March::size(const Mesh& mesh) {
+  distance.assign(mesh.px.size(), kFar);
+  from.assign(mesh.px.size(), 0);
+  reached.reserve(mesh.vertex_count);
+  heap.reserve(std::size_t{8} * mesh.vertex_count);
+}
+
+void March::clear() {
+  for (const std::uint32_t v : reached) distance[v] = kFar;
+  reached.clear();
   heap.clear();
-  // Shorter by more than rounding; otherwise two corners could improve each other forever.
-  constexpr float kShorter = 1 - 1e-5f;
-  const auto reached = [&](std::uint32_t v, std::uint32_t triangle, float r, vec3 o) {
-    if (!(r < reach) || !(r < kShorter * distance(v)) || heap.size() == heap.capacity()) return;
-    offset[v] = o;
-    heap.push_back({r, v, triangle});
+}
+
+void clear_offsets(const Mesh& mesh, const std::vector<std::uint32_t>& zones, Offsets& offset) {
+  for (const std::uint32_t zone : zones) {
+    const std::uint32_t begin = mesh.zone_begin(zone);
+    for (std::vector<float>* axis : {&offset.x, &offset.y, &offset.z})
+      std::fill_n(axis->begin() + begin, kZoneSize, kFar);
+  }
+}
+
+void march_distance(const Mesh& mesh, std::uint32_t triangle, vec3 center, float reach, March& march) {
+  std::vector<float>& distance = march.distance;
+  std::vector<MarchItem>& heap = march.heap;
+  const auto arrived = [&](std::uint32_t v, std::uint32_t t, int corner, float r) {
+    if (!(r < reach) || !(r < kShorter * distance[v]) || heap.size() == heap.capacity()) return;
+    if (distance[v] == kFar) march.reached.push_back(v);
+    distance[v] = r;
+    march.from[v] = 3 * t + static_cast<std::uint32_t>(corner);
+    heap.push_back({r, v, t});
     std::push_heap(heap.begin(), heap.end(), later);
   };
-  const uvec3 start = mesh.triangles[contact.triangle];
-  for (int i = 0; i < 3; ++i) {
-    const vec3 d = mesh.position(start[i]) - source.center;
-    reached(start[i], contact.triangle, length(d), d);
-  }
+  const uvec3 start = mesh.triangles[triangle];
+  for (int i = 0; i < 3; ++i) arrived(start[i], triangle, i, length(mesh.position(start[i]) - center));
   while (!heap.empty()) {
     std::pop_heap(heap.begin(), heap.end(), later);
     const MarchItem item = heap.back();
     heap.pop_back();
-    if (kShorter * item.distance > distance(item.vertex)) continue;  // a shorter path was found meanwhile
+    if (kShorter * item.distance > distance[item.vertex]) continue;  // a shorter path was found meanwhile
     around_vertex(mesh, item.vertex, item.triangle, [&](std::uint32_t t) {
       const uvec3 c = mesh.triangles[t];
-      for (int i = 0; i < 3; ++i) {
-        const std::uint32_t v = c[i], a = c[(i + 1) % 3], b = c[(i + 2) % 3];
-        if (v == item.vertex) continue;
-        const std::uint32_t u = item.vertex, w = a == u ? b : a;
-        const float ru = item.distance, rw = distance(w);
-        Arrival arrival;
-        if (rw < kFar) {
-          arrival = arrive(mesh.position(u), mesh.position(w), mesh.position(v), ru, rw);
-        } else {
-          const vec3 d = mesh.position(v) - mesh.position(u);
-          const float l = length(d);
-          arrival = {ru + l, d / std::max(l, 1e-30f)};
-        }
-        // The offset is tangent at v: rotated into its plane with its length kept.
-        const vec3 n = mesh.normal(v);
-        vec3 o = arrival.direction - dot(arrival.direction, n) * n;
-        o *= arrival.distance / std::max(length(o), 1e-30f);
-        reached(v, t, arrival.distance, o);
-      }
+      for (int i = 0; i < 3; ++i)
+        if (c[i] != item.vertex) arrived(c[i], t, i, arrival_at(mesh, distance, t, i).distance);
     });
   }
+}
+
+void march_offsets(const Mesh& mesh, std::uint32_t triangle, const FieldSource& source, March& march, Offsets& offset) {
+  march.clear();
+  march_distance(mesh, triangle, source.center, 1 / std::sqrt(source.inv_reach2), march);
+  const uvec3 start = mesh.triangles[triangle];
+  for (const std::uint32_t v : march.reached) {
+    const std::uint32_t t = march.from[v] / 3;
+    const int corner = static_cast<int>(march.from[v] % 3);
+    const float r = march.distance[v];
+    const vec3 direct = mesh.position(v) - source.center;
+    const bool at_start = t == triangle && v == start[corner] && r == length(direct);
+    const vec3 way = at_start ? direct : arrival_at(mesh, march.distance, t, corner).direction;
+    // The offset is tangent at v: rotated into its plane with its length kept.
+    const vec3 n = mesh.normal(v), o = way - dot(way, n) * n;
+    offset.set(v, o * (r / std::max(length(o), 1e-30f)));
+  }
+}
+
+PLIANT_KERNEL void arc_offsets_of_zone(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, Offsets& offset) {
+  const float* __restrict px = mesh.px.data() + begin;
+  const float* __restrict py = mesh.py.data() + begin;
+  const float* __restrict pz = mesh.pz.data() + begin;
+  const float* __restrict nx = mesh.nx.data() + begin;
+  const float* __restrict ny = mesh.ny.data() + begin;
+  const float* __restrict nz = mesh.nz.data() + begin;
+  float* __restrict ox = offset.x.data() + begin;
+  float* __restrict oy = offset.y.data() + begin;
+  float* __restrict oz = offset.z.data() + begin;
+  const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
+  const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z;
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    const float dx = px[i] - cx, dy = py[i] - cy, dz = pz[i] - cz;
+    const float c2 = dx * dx + dy * dy + dz * dz;
+    const float a = dx * mx + dy * my + dz * mz;           // of the chord along the contact's normal
+    const float b = dx * nx[i] + dy * ny[i] + dz * nz[i];  // and along the vertex's
+    const float facing = mx * nx[i] + my * ny[i] + mz * nz[i];
+    const float q = (0.4f * (a * a + b * b) - 0.2f * a * b) / (c2 > 1e-30f ? c2 : 1e-30f);
+    const float arc2 = c2 * (1 + q * (1.0f / 3 + q * (8.0f / 45 + q * (4.0f / 35 + q * (128.0f / 1575)))));
+    const float t2 = c2 - b * b;
+    const float k = std::sqrt(arc2 / (t2 > 1e-30f ? t2 : 1e-30f));
+    const bool far = facing < kLeastCosine;
+    ox[i] = far ? kFar : k * (dx - b * nx[i]);
+    oy[i] = far ? kFar : k * (dy - b * ny[i]);
+    oz[i] = far ? kFar : k * (dz - b * nz[i]);
+  }
+}
+
+void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, Offsets& offset) {
+  arc_offsets_of_zone(mesh, mesh.zone_begin(zone), source, offset);
 }
 
 vec4 target_at_offset(const FieldSource& source, vec3 offset, vec3 normal) {
@@ -75,37 +139,6 @@ vec4 target_at_offset(const FieldSource& source, vec3 offset, vec3 normal) {
   local.center = vec3(0);
   local.normal = normal;
   return target_at(local, offset, normal);
-}
-
-void add_targets_at_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source,
-                            const std::vector<vec3>& offset, ZoneTargets& targets) {
-  const std::uint32_t begin = mesh.zone_begin(zone), count = mesh.zone_end(zone) - begin;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (offset[begin + i].x == kFar) continue;
-    const vec4 t = target_at_offset(source, offset[begin + i], mesh.normal(begin + i));
-    targets.nx[i] += t.x;
-    targets.ny[i] += t.y;
-    targets.nz[i] += t.z;
-    targets.h[i] += t.w;
-  }
-}
-
-void add_volume_sums_at_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source,
-                                const std::vector<vec3>& offset, VolumeSums& sums) {
-  for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
-    const vec3 o = offset[v];
-    if (o.x == kFar) continue;
-    const double r2 = dot(o, o), u = std::min(1.0, r2 * source.inv_reach2), w = std::pow(1 - u, 3),
-                 aw = mesh.area[v] * w;
-    const vec3 chord = mesh.position(v) - source.center;
-    sums.S0 += aw;
-    sums.S1 += aw * u;
-    sums.Q0 += aw * w;
-    sums.Q1 += aw * w * u;
-    sums.Q2 += aw * w * u * u;
-    sums.bend += aw * dot(mesh.normal(v) - source.normal, chord);
-    sums.spread += aw * r2;
-  }
 }
 
 }  // namespace pliant

@@ -1,39 +1,49 @@
 // Distance along the surface instead of the chord (Distance::kSurface; methods.md 1.3): correct where the surface folds
-// within reach, but more expensive. Each vertex within reach gets its offset from the contact: a tangent vector. Its
-// length is the distance along the surface, its direction that in which the shortest path arrives. The field is the
-// same shape, evaluated at that offset instead of the chord.
+// within reach. Each vertex within reach gets its offset from the contact: a tangent vector. Its length is the distance
+// along the surface, its direction that in which the shortest path arrives. The field is the same shape, evaluated at
+// that offset instead of the chord.
 //
-// Marching (Kimmel & Sethian 1998) with the source unfolded into each triangle's plane, so that a flat surface is
-// exact. Two corners' distances are radii of circles that intersect at S, the source's image in the triangle's plane.
-// The third corner's distance is |v - S| if that line passes between the two corners.
+// Two ways to the offsets, chosen by the place of the contact alone:
+// - Where the surface is smooth, the arc from the chord c and the two normals (arc_offsets). With p the contact's and s
+//   the vertex's share of the chord along its normal, q = (2 p^2 + 2 s^2 - p s) / 5 is the mean square of the slope of
+//   the cubic between the tangents, and (arc / chord)^2 = asin^2(sqrt q) / q: exact on spheres and planes, to the
+//   fourth order of the angle on cylinders and saddles. arc_reach.h tells where that agrees with the march.
+// - Elsewhere, marching (Kimmel & Sethian 1998) with the source unfolded into each triangle's plane, so that a flat
+//   surface is exact. Two corners' distances are radii of circles that intersect at S, the source's image in the
+//   triangle's plane. The third corner's distance is |v - S| if that line passes between the two corners.
 #pragma once
 
 #include <vector>
 
-#include "components/contact.h"
+#include "components/mesh.h"
 #include "systems/touch/model/field_kernels.h"
 
 namespace pliant {
 
-// Offset of a vertex that the march has not reached; the field is zero there.
-inline constexpr float kFar = 1e9f;  // [m]
-
-// Fills `offset` for vertices nearer than the source's reach; all entries must be kFar before (clear_offsets).
-// `heap` is working memory; nothing allocates within its capacity.
+// Working memory of a march; nothing allocates after size().
 struct MarchItem {
   float distance;
   std::uint32_t vertex;
   std::uint32_t triangle;  // one triangle at the vertex
 };
-void march_distance(const Mesh& mesh, const Contact& contact, const FieldSource& source, std::vector<vec3>& offset,
-                    std::vector<MarchItem>& heap);
-void clear_offsets(const Mesh& mesh, const std::vector<std::uint32_t>& zones, std::vector<vec3>& offset);
+struct March {
+  std::vector<float> distance;         // [m] per vertex; kFar: not reached
+  std::vector<std::uint32_t> from;     // per reached vertex: 3 * triangle + corner of its last arrival
+  std::vector<std::uint32_t> reached;  // vertices, each once
+  std::vector<MarchItem> heap;
+  void size(const Mesh& mesh);
+  void clear();
+};
 
-// The kernels of field_kernels.h with offsets in place of chords.
+// Distances of the vertices nearer than `reach` [m] to a place in a triangle. The march must be clear.
+void march_distance(const Mesh& mesh, std::uint32_t triangle, vec3 center, float reach, March& march);
+
+// Fills the offsets of the vertices nearer than the source's reach; all must be kFar before (clear_offsets).
+void march_offsets(const Mesh& mesh, std::uint32_t triangle, const FieldSource& source, March& march, Offsets& offset);
+// Fills the offsets of a zone's vertices by the closed form; kFar where the normals differ by more than 75 degrees.
+void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, Offsets& offset);
+void clear_offsets(const Mesh& mesh, const std::vector<std::uint32_t>& zones, Offsets& offset);
+
 vec4 target_at_offset(const FieldSource& source, vec3 offset, vec3 normal);
-void add_targets_at_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source,
-                            const std::vector<vec3>& offset, ZoneTargets& targets);
-void add_volume_sums_at_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source,
-                                const std::vector<vec3>& offset, VolumeSums& sums);
 
 }  // namespace pliant
