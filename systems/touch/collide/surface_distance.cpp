@@ -33,6 +33,33 @@ constexpr float kShorter = 1 - 1e-5f;
 // Cosine of the largest angle between the normals of an arc's ends.
 constexpr float kLeastCosine = 0.26f;
 
+PLIANT_KERNEL void arc_offsets(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, ZoneOffsets& out) {
+  const float* __restrict px = mesh.px.data() + begin;
+  const float* __restrict py = mesh.py.data() + begin;
+  const float* __restrict pz = mesh.pz.data() + begin;
+  const float* __restrict nx = mesh.nx.data() + begin;
+  const float* __restrict ny = mesh.ny.data() + begin;
+  const float* __restrict nz = mesh.nz.data() + begin;
+  const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
+  const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z;
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    const float dx = px[i] - cx, dy = py[i] - cy, dz = pz[i] - cz;
+    const float c2 = dx * dx + dy * dy + dz * dz;
+    const float a = dx * mx + dy * my + dz * mz;           // of the chord along the contact's normal
+    const float b = dx * nx[i] + dy * ny[i] + dz * nz[i];  // and along the vertex's
+    const float facing = mx * nx[i] + my * ny[i] + mz * nz[i];
+    const float q = (0.4f * (a * a + b * b) - 0.2f * a * b) / (c2 > 1e-30f ? c2 : 1e-30f);
+    const float arc2 = c2 * (1 + q * (1.0f / 3 + q * (8.0f / 45 + q * (4.0f / 35 + q * (128.0f / 1575)))));
+    const float t2 = c2 - b * b;
+    const float k = std::sqrt(arc2 / (t2 > 1e-30f ? t2 : 1e-30f));
+    const float x = k * (dx - b * nx[i]), y = k * (dy - b * ny[i]), z = k * (dz - b * nz[i]);
+    const bool far = facing < kLeastCosine;
+    out.x[i] = far ? kFar : x;
+    out.y[i] = far ? kFar : y;
+    out.z[i] = far ? kFar : z;
+  }
+}
+
 }  // namespace
 
 void March::size(const Mesh& mesh) {
@@ -48,12 +75,8 @@ void March::clear() {
   heap.clear();
 }
 
-void clear_offsets(const Mesh& mesh, const std::vector<std::uint32_t>& zones, Offsets& offset) {
-  for (const std::uint32_t zone : zones) {
-    const std::uint32_t begin = mesh.zone_begin(zone);
-    for (std::vector<float>* axis : {&offset.x, &offset.y, &offset.z})
-      std::fill_n(axis->begin() + begin, kZoneSize, kFar);
-  }
+void clear_offsets(const std::vector<std::uint32_t>& zones, Offsets& offset) {
+  for (const std::uint32_t zone : zones) offset.clear(zone);
 }
 
 void march_distance(const Mesh& mesh, std::uint32_t triangle, vec3 center, float reach, March& march) {
@@ -99,37 +122,8 @@ void march_offsets(const Mesh& mesh, std::uint32_t triangle, const FieldSource& 
   }
 }
 
-PLIANT_KERNEL void arc_offsets_of_zone(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, Offsets& offset) {
-  const float* __restrict px = mesh.px.data() + begin;
-  const float* __restrict py = mesh.py.data() + begin;
-  const float* __restrict pz = mesh.pz.data() + begin;
-  const float* __restrict nx = mesh.nx.data() + begin;
-  const float* __restrict ny = mesh.ny.data() + begin;
-  const float* __restrict nz = mesh.nz.data() + begin;
-  float* __restrict ox = offset.x.data() + begin;
-  float* __restrict oy = offset.y.data() + begin;
-  float* __restrict oz = offset.z.data() + begin;
-  const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
-  const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z;
-  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
-    const float dx = px[i] - cx, dy = py[i] - cy, dz = pz[i] - cz;
-    const float c2 = dx * dx + dy * dy + dz * dz;
-    const float a = dx * mx + dy * my + dz * mz;           // of the chord along the contact's normal
-    const float b = dx * nx[i] + dy * ny[i] + dz * nz[i];  // and along the vertex's
-    const float facing = mx * nx[i] + my * ny[i] + mz * nz[i];
-    const float q = (0.4f * (a * a + b * b) - 0.2f * a * b) / (c2 > 1e-30f ? c2 : 1e-30f);
-    const float arc2 = c2 * (1 + q * (1.0f / 3 + q * (8.0f / 45 + q * (4.0f / 35 + q * (128.0f / 1575)))));
-    const float t2 = c2 - b * b;
-    const float k = std::sqrt(arc2 / (t2 > 1e-30f ? t2 : 1e-30f));
-    const bool far = facing < kLeastCosine;
-    ox[i] = far ? kFar : k * (dx - b * nx[i]);
-    oy[i] = far ? kFar : k * (dy - b * ny[i]);
-    oz[i] = far ? kFar : k * (dz - b * nz[i]);
-  }
-}
-
 void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, Offsets& offset) {
-  arc_offsets_of_zone(mesh, mesh.zone_begin(zone), source, offset);
+  arc_offsets(mesh, mesh.zone_begin(zone), source, offset.zones[zone]);
 }
 
 vec4 target_at_offset(const FieldSource& source, vec3 offset, vec3 normal) {

@@ -42,7 +42,7 @@ void march_distance(const Mesh& mesh, std::uint32_t triangle, vec3 center, float
 void march_offsets(const Mesh& mesh, std::uint32_t triangle, const FieldSource& source, March& march, Offsets& offset);
 // Fills the offsets of a zone's vertices by the closed form; kFar where the normals differ by more than 75 degrees.
 void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, Offsets& offset);
-void clear_offsets(const Mesh& mesh, const std::vector<std::uint32_t>& zones, Offsets& offset);
+void clear_offsets(const std::vector<std::uint32_t>& zones, Offsets& offset);
 
 vec4 target_at_offset(const FieldSource& source, vec3 offset, vec3 normal);
 

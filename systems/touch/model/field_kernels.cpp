@@ -39,9 +39,9 @@ struct Along {
   const float* __restrict ox, * __restrict oy, * __restrict oz;
   const float* __restrict nx, * __restrict ny, * __restrict nz;
   Along(const Mesh& mesh, std::uint32_t begin, const Offsets& offset)
-      : ox(offset.x.data() + begin),
-        oy(offset.y.data() + begin),
-        oz(offset.z.data() + begin),
+      : ox(offset.zones[begin / kZoneSize].x.data()),
+        oy(offset.zones[begin / kZoneSize].y.data()),
+        oz(offset.zones[begin / kZoneSize].z.data()),
         nx(mesh.nx.data() + begin),
         ny(mesh.ny.data() + begin),
         nz(mesh.nz.data() + begin) {}

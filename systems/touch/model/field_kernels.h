@@ -20,15 +20,28 @@ struct alignas(32) ZoneTargets {
 // Offset of a vertex that lies beyond the reach; the field is zero there.
 inline constexpr float kFar = 1e9f;  // [m]
 
-// Tangent vectors from a contact to the vertices of a mesh, padded as the mesh (surface_distance.h). [m]
+// Tangent vectors from a contact to the vertices of a mesh, zone by zone (surface_distance.h). [m]
+struct alignas(32) ZoneOffsets {
+  std::array<float, kZoneSize> x, y, z;
+};
 struct Offsets {
-  std::vector<float> x, y, z;
-  bool empty() const { return x.empty(); }
+  std::vector<ZoneOffsets> zones;
+  bool empty() const { return zones.empty(); }
   void size(const Mesh& mesh) {
-    for (std::vector<float>* axis : {&x, &y, &z}) axis->assign(mesh.px.size(), kFar);
+    zones.resize(mesh.zone_count());
+    for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) clear(zone);
   }
-  void set(std::uint32_t v, vec3 o) { x[v] = o.x, y[v] = o.y, z[v] = o.z; }
-  vec3 operator[](std::uint32_t v) const { return {x[v], y[v], z[v]}; }
+  void clear(std::uint32_t zone) {
+    for (auto* axis : {&zones[zone].x, &zones[zone].y, &zones[zone].z}) axis->fill(kFar);
+  }
+  void set(std::uint32_t v, vec3 o) {
+    ZoneOffsets& zone = zones[v / kZoneSize];
+    zone.x[v % kZoneSize] = o.x, zone.y[v % kZoneSize] = o.y, zone.z[v % kZoneSize] = o.z;
+  }
+  vec3 operator[](std::uint32_t v) const {
+    const ZoneOffsets& zone = zones[v / kZoneSize];
+    return {zone.x[v % kZoneSize], zone.y[v % kZoneSize], zone.z[v % kZoneSize]};
+  }
 };
 
 // Adds the source's target on the zone's vertices; `fresh`: overwrites instead. Offsets, if any, take the chord's

@@ -148,7 +148,7 @@ void force_field(World& world, Tick tick) {
       const bool left_behind = touching && source.now.amplitude > 0 && leaves_behind(contact, mesh, object.motion);
       if (source.active && (!touching || left_behind)) fold(source, object, world, tick);
       if (!touching) {
-        if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
+        if (!source.offset.empty()) clear_offsets(source.zones, source.offset);
         source.zones.clear();
         contact.amplitude = 0.0;
         continue;
@@ -170,7 +170,7 @@ void force_field(World& world, Tick tick) {
         source.now.amplitude = 0.0f;
         source.active = true;
       }
-      if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
+      if (!source.offset.empty()) clear_offsets(source.zones, source.offset);
       const uvec3 corner = mesh.triangles[contact.triangle];
       const std::array<std::uint32_t, 3> own{corner.x / kZoneSize, corner.y / kZoneSize, corner.z / kZoneSize};
       flood(mesh, vec3(contact.foot), 1 / std::sqrt(double(source.now.inv_reach2)), own, object, source.zones);
