@@ -33,7 +33,7 @@ Entity add_probe(World& world, double radius, dvec3 at) {
 std::vector<float> distances(const Mesh& mesh, const Contact& contact, double reach) {
   March march;
   march.size(mesh);
-  march_distance(mesh, contact.triangle, vec3(contact.foot), static_cast<float>(reach), march);
+  march_distance(mesh, sides_of(mesh), contact.triangle, vec3(contact.foot), static_cast<float>(reach), march);
   return march.distance;
 }
 

@@ -1,6 +1,7 @@
 #include "systems/touch/collide/arc_reach.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "runtime/parallel.h"
@@ -10,11 +11,14 @@
 namespace pliant {
 namespace {
 
-// [1] of the reach: largest difference between closed form and march.
-constexpr float kAgrees = 2e-3f;
+// [1] of the reach: differences between closed form and march, in the mean over a ring (RMS) and at one vertex.
+constexpr float kAgrees = 6e-4f, kAgreesAtMost = 1e-2f;
+constexpr std::size_t kRings = 16;
 // [1] largest difference between the slopes of an edge against the tangent planes at its two ends: zero on a sphere.
 // Normals that differ more do not tell the slope at a distance.
 constexpr float kSmooth = 0.05f;
+// [1] of the reach: longest edge. Between distant vertices nothing is compared; a march over few is fast.
+constexpr float kLongest = 0.25f;
 // [1] of the reach: one comparison serves the places up to this distance.
 constexpr float kServes = 0.7f;
 // [1] of the reach: the least that a comparison decides.
@@ -23,7 +27,8 @@ constexpr std::size_t kLeastCompared = 64 * kZoneSize, kMostRuns = 16;  // verti
 
 class Comparison {
  public:
-  Comparison(const Mesh& mesh, const ObjectState& object, float reach) : mesh_(mesh), reach_(reach) {
+  Comparison(const Mesh& mesh, const std::vector<Side>& sides, const ObjectState& object, float reach)
+      : mesh_(mesh), sides_(sides), reach_(reach) {
     march_.size(mesh);
     offset_.size(mesh);
     object_.cracks = object.cracks;
@@ -37,23 +42,32 @@ class Comparison {
     source.normal = mesh_.normal(v);
     const std::uint32_t own[] = {v / kZoneSize};
     march_.clear();
-    march_distance(mesh_, triangle, source.center, limit, march_);
+    march_distance(mesh_, sides_, triangle, source.center, limit, march_);
     flood(mesh_, source.center, limit, own, object_, zones_);
+    std::array<double, kRings> squares{}, count{};
     float least = limit;
     for (const std::uint32_t zone : zones_) {
       arc_offsets(mesh_, zone, source, offset_);
       for (std::uint32_t w = mesh_.zone_begin(zone); w < mesh_.zone_end(zone); ++w) {
         if (mesh_.area[w] == 0.0f) continue;
         const float marched = std::min(march_.distance[w], limit), arc = std::min(length(offset_[w]), limit);
-        if (std::abs(marched - arc) > kAgrees * reach_) least = std::min({least, marched, arc});
+        const float nearer = std::min(marched, arc), apart = std::abs(marched - arc);
+        if (apart > kAgreesAtMost * reach_) least = std::min(least, nearer);
+        const auto ring = std::min(kRings - 1, static_cast<std::size_t>(kRings * nearer / limit));
+        squares[ring] += apart * apart;
+        count[ring] += nearer < limit;
       }
     }
+    for (std::size_t ring = 0; ring < kRings; ++ring)
+      if (squares[ring] > kAgrees * kAgrees * reach_ * reach_ * count[ring])
+        least = std::min(least, limit * static_cast<float>(ring) / kRings);
     return least;
   }
   const March& march() const { return march_; }
 
  private:
   const Mesh& mesh_;
+  const std::vector<Side>& sides_;
   float reach_;
   March march_;
   Offsets offset_;
@@ -61,13 +75,17 @@ class Comparison {
   std::vector<std::uint32_t> zones_;
 };
 
-std::vector<std::uint8_t> rough_vertices(const Mesh& mesh) {
+// Around edges that are long or whose normals do not tell the surface.
+std::vector<std::uint8_t> rough_vertices(const Mesh& mesh, float reach) {
   std::vector<std::uint8_t> rough(mesh.vertex_count, 0);
-  for (const uvec3& t : mesh.triangles) {
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (int i = 0; i < 3; ++i) {
-      const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+      const int j = (i + 1) % 3;
+      const std::uint32_t a = mesh.triangles[t][i], b = mesh.triangles[t][j];
       const vec3 d = mesh.position(b) - mesh.position(a);
-      if (std::abs(dot(mesh.normal(a) + mesh.normal(b), d)) > kSmooth * length(d)) rough[a] = rough[b] = 1;
+      const float l = length(d);
+      if (l > kLongest * reach || std::abs(dot(mesh.normal(t, i) + mesh.normal(t, j), d)) > kSmooth * l)
+        rough[a] = rough[b] = 1;
     }
   }
   return rough;
@@ -75,16 +93,16 @@ std::vector<std::uint8_t> rough_vertices(const Mesh& mesh) {
 
 }  // namespace
 
-std::vector<float> arc_reach(const Mesh& mesh, const ObjectState& object, double most) {
+std::vector<float> arc_reach(const Mesh& mesh, const std::vector<Side>& sides, const ObjectState& object, double most) {
   const float reach = static_cast<float>(most), limit = (1 + kServes) * reach;
   std::vector<float> out(mesh.px.size(), 0.0f);
   std::vector<std::uint32_t> around(mesh.vertex_count, kBorder);  // a triangle at the vertex
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (int i = 0; i < 3; ++i) around[mesh.triangles[t][i]] = t;
-  const std::vector<std::uint8_t> rough = rough_vertices(mesh);
+  const std::vector<std::uint8_t> rough = rough_vertices(mesh, reach);
   const std::size_t part = std::max<std::size_t>(kLeastCompared, mesh.vertex_count / kMostRuns);
   parallel_for(mesh.vertex_count, part, [&](std::size_t begin, std::size_t end) {
-    Comparison comparison(mesh, object, reach);
+    Comparison comparison(mesh, sides, object, reach);
     std::vector<std::uint8_t> decided(rough.begin() + static_cast<std::ptrdiff_t>(begin),
                                       rough.begin() + static_cast<std::ptrdiff_t>(end));
     for (std::size_t v = begin; v < end; ++v) {

@@ -27,6 +27,19 @@ Arrival arrival_at(const Mesh& mesh, const std::vector<float>& distance, std::ui
   return {distance[a] + l, d / std::max(l, 1e-30f)};
 }
 
+// Distance of a corner from those of the other two, ra and rb; la and lb are the lengths of the edges to them. As
+// arrive().
+float arrival(const Side& s, float ra, float rb, float la, float lb) {
+  const float bent = std::min(ra + la, rb + lb);
+  if (std::max(ra, rb) == kFar || !(s.length > 0) || !(s.height > 0)) return bent;
+  const float sx = 0.5f * (ra * ra - rb * rb + s.length * s.length) / s.length;
+  const float sy = std::sqrt(std::max(0.0f, ra * ra - sx * sx));
+  const float across = s.height + sy, crossing = sx * across + (s.foot - sx) * sy;  // times `across`
+  if (crossing < 0 || crossing > s.length * across) return bent;
+  const float dx = s.foot - sx;
+  return std::sqrt(dx * dx + across * across);
+}
+
 // Shorter by more than rounding; otherwise two corners could improve each other forever.
 constexpr float kShorter = 1 - 1e-5f;
 
@@ -48,8 +61,8 @@ PLIANT_KERNEL void arc_offsets(const Mesh& mesh, std::uint32_t begin, const Fiel
     const float a = dx * mx + dy * my + dz * mz;           // of the chord along the contact's normal
     const float b = dx * nx[i] + dy * ny[i] + dz * nz[i];  // and along the vertex's
     const float facing = mx * nx[i] + my * ny[i] + mz * nz[i];
-    const float q = (0.4f * (a * a + b * b) - 0.2f * a * b) / (c2 > 1e-30f ? c2 : 1e-30f);
-    const float arc2 = c2 * (1 + q * (1.0f / 3 + q * (8.0f / 45 + q * (4.0f / 35 + q * (128.0f / 1575)))));
+    const float q = 0.4f * (a * a + b * b) - 0.2f * a * b, w = 2 - 2 * facing;
+    const float arc2 = c2 + q * (1.0f / 3 + w * (2.0f / 45 + w * (1.0f / 140 + w * (2.0f / 1575))));
     const float t2 = c2 - b * b;
     const float k = std::sqrt(arc2 / (t2 > 1e-30f ? t2 : 1e-30f));
     const float x = k * (dx - b * nx[i]), y = k * (dy - b * ny[i]), z = k * (dz - b * nz[i]);
@@ -79,7 +92,22 @@ void clear_offsets(const std::vector<std::uint32_t>& zones, Offsets& offset) {
   for (const std::uint32_t zone : zones) offset.clear(zone);
 }
 
-void march_distance(const Mesh& mesh, std::uint32_t triangle, vec3 center, float reach, March& march) {
+std::vector<Side> sides_of(const Mesh& mesh) {
+  std::vector<Side> sides(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const uvec3 c = mesh.triangles[t];
+      const vec3 a = mesh.position(c[(i + 1) % 3]), ab = mesh.position(c[(i + 2) % 3]) - a;
+      const vec3 av = mesh.position(c[i]) - a;
+      const float L = length(ab), x = dot(av, ab) / std::max(L, 1e-30f);
+      sides[3 * t + static_cast<std::uint32_t>(i)] = {L, x, length(av - x / std::max(L, 1e-30f) * ab)};
+    }
+  }
+  return sides;
+}
+
+void march_distance(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, vec3 center, float reach,
+                    March& march) {
   std::vector<float>& distance = march.distance;
   std::vector<MarchItem>& heap = march.heap;
   const auto arrived = [&](std::uint32_t v, std::uint32_t t, int corner, float r) {
@@ -99,15 +127,24 @@ void march_distance(const Mesh& mesh, std::uint32_t triangle, vec3 center, float
     if (kShorter * item.distance > distance[item.vertex]) continue;  // a shorter path was found meanwhile
     around_vertex(mesh, item.vertex, item.triangle, [&](std::uint32_t t) {
       const uvec3 c = mesh.triangles[t];
-      for (int i = 0; i < 3; ++i)
-        if (c[i] != item.vertex) arrived(c[i], t, i, arrival_at(mesh, distance, t, i).distance);
+      const Side* side = &sides[3 * t];
+      for (int i = 0; i < 3; ++i) {
+        if (c[i] == item.vertex) continue;
+        const int a = (i + 1) % 3, b = (i + 2) % 3;
+        const float ra = distance[c[a]], rb = distance[c[b]];
+        const float known = kShorter * distance[c[i]];
+        // No path over the edge is shorter.
+        if (std::min({0.5f * (ra + rb - side[i].length), ra, rb}) + side[i].height > known) continue;
+        arrived(c[i], t, i, arrival(side[i], ra, rb, side[b].length, side[a].length));
+      }
     });
   }
 }
 
-void march_offsets(const Mesh& mesh, std::uint32_t triangle, const FieldSource& source, March& march, Offsets& offset) {
+void march_offsets(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, const FieldSource& source,
+                   March& march, Offsets& offset) {
   march.clear();
-  march_distance(mesh, triangle, source.center, 1 / std::sqrt(source.inv_reach2), march);
+  march_distance(mesh, sides, triangle, source.center, 1 / std::sqrt(source.inv_reach2), march);
   const uvec3 start = mesh.triangles[triangle];
   for (const std::uint32_t v : march.reached) {
     const std::uint32_t t = march.from[v] / 3;
@@ -124,6 +161,17 @@ void march_offsets(const Mesh& mesh, std::uint32_t triangle, const FieldSource& 
 
 void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, Offsets& offset) {
   arc_offsets(mesh, mesh.zone_begin(zone), source, offset.zones[zone]);
+}
+
+bool fill_offsets(const Mesh& mesh, const SurfaceWays& ways, std::uint32_t triangle, const FieldSource& source,
+                  const std::vector<std::uint32_t>& zones, March& march, Offsets& offset) {
+  float most = kFar;
+  for (int i = 0; i < 3; ++i) most = std::min(most, ways.arc_reach[mesh.triangles[triangle][i]]);
+  const bool arcs = most * most * source.inv_reach2 >= 1.0f;
+  if (!arcs) march_offsets(mesh, ways.sides, triangle, source, march, offset);
+  if (arcs)
+    for (const std::uint32_t zone : zones) arc_offsets(mesh, zone, source, offset);
+  return arcs;
 }
 
 vec4 target_at_offset(const FieldSource& source, vec3 offset, vec3 normal) {

@@ -4,10 +4,11 @@
 // that offset instead of the chord.
 //
 // Two ways to the offsets, chosen by the place of the contact alone:
-// - Where the surface is smooth, the arc from the chord c and the two normals (arc_offsets). With p the contact's and s
-//   the vertex's share of the chord along its normal, q = (2 p^2 + 2 s^2 - p s) / 5 is the mean square of the slope of
-//   the cubic between the tangents, and (arc / chord)^2 = asin^2(sqrt q) / q: exact on spheres and planes, to the
-//   fourth order of the angle on cylinders and saddles. arc_reach.h tells where that agrees with the march.
+// - Where the surface is smooth, the arc over the chord c between two tangent planes (arc_offsets). A shortest path of
+//   constant curvature and torsion is a helix. With a and b the chord's parts along the normals at its ends,
+//   q = (2 a^2 + 2 b^2 - a b) / 5 from the cubic between the tangents, and w the square of the normals' difference,
+//   arc^2 = c^2 + q (4 / w^2) (acos^2(1 - w / 2) - w) = c^2 + q (1/3 + 2 w / 45 + w^2 / 140 + 2 w^3 / 1575 + ...):
+//   exact on planes, spheres and cylinders. arc_reach.h tells where that agrees with the march.
 // - Elsewhere, marching (Kimmel & Sethian 1998) with the source unfolded into each triangle's plane, so that a flat
 //   surface is exact. Two corners' distances are radii of circles that intersect at S, the source's image in the
 //   triangle's plane. The third corner's distance is |v - S| if that line passes between the two corners.
@@ -19,6 +20,19 @@
 #include "systems/touch/model/field_kernels.h"
 
 namespace pliant {
+
+// The edge opposite to a corner of a triangle: its length, and the corner's place over it, from the next corner on. [m]
+struct Side {
+  float length, foot, height;
+};
+// Of each corner: 3 * triangle + corner.
+std::vector<Side> sides_of(const Mesh& mesh);
+
+// What the two ways know of a mesh; at preparation.
+struct SurfaceWays {
+  std::vector<Side> sides;
+  std::vector<float> arc_reach;  // [m] per vertex: arc_reach.h
+};
 
 // Working memory of a march; nothing allocates after size().
 struct MarchItem {
@@ -36,12 +50,17 @@ struct March {
 };
 
 // Distances of the vertices nearer than `reach` [m] to a place in a triangle. The march must be clear.
-void march_distance(const Mesh& mesh, std::uint32_t triangle, vec3 center, float reach, March& march);
+void march_distance(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, vec3 center, float reach,
+                    March& march);
 
 // Fills the offsets of the vertices nearer than the source's reach; all must be kFar before (clear_offsets).
-void march_offsets(const Mesh& mesh, std::uint32_t triangle, const FieldSource& source, March& march, Offsets& offset);
+void march_offsets(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, const FieldSource& source,
+                   March& march, Offsets& offset);
 // Fills the offsets of a zone's vertices by the closed form; kFar where the normals differ by more than 75 degrees.
 void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, Offsets& offset);
+// One or the other, as the triangle and the reach demand. `zones`: within reach. True: the closed form.
+bool fill_offsets(const Mesh& mesh, const SurfaceWays& ways, std::uint32_t triangle, const FieldSource& source,
+                  const std::vector<std::uint32_t>& zones, March& march, Offsets& offset);
 void clear_offsets(const std::vector<std::uint32_t>& zones, Offsets& offset);
 
 vec4 target_at_offset(const FieldSource& source, vec3 offset, vec3 normal);

@@ -50,15 +50,6 @@ bool leaves_behind(const Contact& contact, const Mesh& mesh, const Motion& motio
   return contact.height > step_free(motion, stiffness, damping, {h, v}).height;
 }
 
-// Distance::kSurface: of the vertices within reach. The way to them depends on the place and the reach alone.
-void fill_offsets(const Contact& contact, const Mesh& mesh, ObjectState& object, SourceState& source) {
-  float most = kFar;
-  for (int i = 0; i < 3; ++i) most = std::min(most, object.arc_reach[mesh.triangles[contact.triangle][i]]);
-  if (most * most * source.now.inv_reach2 < 1.0f)
-    return march_offsets(mesh, contact.triangle, source.now, object.march, source.offset);
-  for (const std::uint32_t zone : source.zones) arc_offsets(mesh, zone, source.now, source.offset);
-}
-
 struct Active {
   SourceState* source;
   Contact* contact;
@@ -174,7 +165,8 @@ void force_field(World& world, Tick tick) {
       const uvec3 corner = mesh.triangles[contact.triangle];
       const std::array<std::uint32_t, 3> own{corner.x / kZoneSize, corner.y / kZoneSize, corner.z / kZoneSize};
       flood(mesh, vec3(contact.foot), 1 / std::sqrt(double(source.now.inv_reach2)), own, object, source.zones);
-      if (!source.offset.empty()) fill_offsets(contact, mesh, object, source);
+      if (!source.offset.empty())
+        fill_offsets(mesh, object.ways, contact.triangle, source.now, source.zones, object.march, source.offset);
       if (row_of(source.now.shape).parameter == ShapeParameter::kVolume) {
         VolumeSums sums;
         for (const std::uint32_t zone : source.zones) add_volume_sums(mesh, zone, source.now, source.offset, sums);

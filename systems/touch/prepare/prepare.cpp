@@ -138,7 +138,9 @@ void prepare_distance(World& world, const TouchState& touch, ObjectState& object
   for (const ProbeState& probe : touch.probes)
     for (const Tip& tip : probe.tips) radius = std::max(radius, tip.radius);
   object.march.size(mesh);
-  object.arc_reach = arc_reach(mesh, object, std::max(deformable.reach, kLeastReach * mesh.mean_edge) + radius);
+  object.ways.sides = sides_of(mesh);
+  object.ways.arc_reach =
+      arc_reach(mesh, object.ways.sides, object, std::max(deformable.reach, kLeastReach * mesh.mean_edge) + radius);
 }
 
 bool something_presses(Registry& registry) {

@@ -119,8 +119,8 @@ struct ObjectState {
   std::vector<FieldSource> terms;           // GPU only: the whole field at `time`
   FeedWriter feed_writer;                   // feeds a GPU that steps a copy of the field
   double time = 0.0;                        // [s] end of the last tick
-  March march;                              // Distance::kSurface only
-  std::vector<float> arc_reach;             // the same; per vertex: see arc_reach.h
+  SurfaceWays ways;                         // Distance::kSurface only
+  March march;                              // the same: working memory
   std::vector<SourceState> sources;         // a pool for probes, one per press, echoes; at most kMaxContactsPerObject
   std::uint32_t first_echo = 0;             // index into `sources`
   std::vector<PressState> presses;          // empty unless the level has a moving soft or rigid body
