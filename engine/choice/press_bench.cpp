@@ -33,7 +33,10 @@ Entity add_probe(World& world, double radius, dvec3 at) {
 std::vector<float> distances(const Mesh& mesh, const Contact& contact, double reach) {
   March march;
   march.size(mesh);
-  march_distance(mesh, sides_of(mesh), contact.triangle, vec3(contact.foot), static_cast<float>(reach), march);
+  Chart start;
+  start.triangle = contact.triangle;
+  start.origin = vec3(contact.foot);
+  march_from(mesh, sides_of(mesh), start, static_cast<float>(reach), march);
   return march.distance;
 }
 

@@ -11,8 +11,9 @@
 namespace pliant {
 namespace {
 
-// [1] of the reach: differences between closed form and march, in the mean over a ring (RMS) and at one vertex.
-constexpr float kAgrees = 6e-4f, kAgreesAtMost = 1e-2f;
+// Differences between closed form and march: over a ring (RMS), as a share of its distance or half the reach, and at
+// one vertex, as a share of the reach. [1]
+constexpr float kAgrees = 8e-4f, kAgreesAtMost = 1e-2f;
 constexpr std::size_t kRings = 16;
 // [1] largest difference between the slopes of an edge against the tangent planes at its two ends: zero on a sphere.
 // Normals that differ more do not tell the slope at a distance.
@@ -24,6 +25,10 @@ constexpr float kServes = 0.7f;
 // [1] of the reach: the least that a comparison decides.
 constexpr float kLeastServed = 0.125f;
 constexpr std::size_t kLeastCompared = 64 * kZoneSize, kMostRuns = 16;  // vertices a thread takes; runs
+
+float square(float x) {
+  return x * x;
+}
 
 class Comparison {
  public:
@@ -42,7 +47,9 @@ class Comparison {
     source.normal = mesh_.normal(v);
     const std::uint32_t own[] = {v / kZoneSize};
     march_.clear();
-    march_distance(mesh_, sides_, triangle, source.center, limit, march_);
+    start_.triangle = triangle;
+    start_.origin = source.center;
+    march_from(mesh_, sides_, start_, limit, march_);
     flood(mesh_, source.center, limit, own, object_, zones_);
     std::array<double, kRings> squares{}, count{};
     float least = limit;
@@ -59,7 +66,8 @@ class Comparison {
       }
     }
     for (std::size_t ring = 0; ring < kRings; ++ring)
-      if (squares[ring] > kAgrees * kAgrees * reach_ * reach_ * count[ring])
+      if (squares[ring] >
+          square(kAgrees * std::max(0.5f * reach_, limit * static_cast<float>(ring) / kRings)) * count[ring])
         least = std::min(least, limit * static_cast<float>(ring) / kRings);
     return least;
   }
@@ -70,6 +78,7 @@ class Comparison {
   const std::vector<Side>& sides_;
   float reach_;
   March march_;
+  Chart start_;  // only its triangle and origin
   Offsets offset_;
   ObjectState object_;  // only for its flood
   std::vector<std::uint32_t> zones_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "runtime/kernel.h"
@@ -28,20 +29,27 @@ Arrival arrival_at(const Mesh& mesh, const std::vector<float>& distance, std::ui
 }
 
 // Distance of a corner from those of the other two, ra and rb; la and lb are the lengths of the edges to them. As
-// arrive().
-float arrival(const Side& s, float ra, float rb, float la, float lb) {
-  const float bent = std::min(ra + la, rb + lb);
+// arrive(). `share`: of the opposite edge, where the path crosses it.
+struct Crossing {
+  float distance, share;
+};
+Crossing arrival(const Side& s, float ra, float rb, float la, float lb) {
+  const Crossing bent = ra + la <= rb + lb ? Crossing{ra + la, 0} : Crossing{rb + lb, 1};
   if (std::max(ra, rb) == kFar || !(s.length > 0) || !(s.height > 0)) return bent;
   const float sx = 0.5f * (ra * ra - rb * rb + s.length * s.length) / s.length;
   const float sy = std::sqrt(std::max(0.0f, ra * ra - sx * sx));
-  const float across = s.height + sy, crossing = sx * across + (s.foot - sx) * sy;  // times `across`
-  if (crossing < 0 || crossing > s.length * across) return bent;
-  const float dx = s.foot - sx;
-  return std::sqrt(dx * dx + across * across);
+  const float dx = s.foot - sx, dy = s.height + sy, crossing = sx * dy + dx * sy;  // times dy
+  if (crossing < 0 || crossing > s.length * dy) return bent;
+  return {std::sqrt(dx * dx + dy * dy), crossing / (s.length * dy)};
 }
 
 // Shorter by more than rounding; otherwise two corners could improve each other forever.
 constexpr float kShorter = 1 - 1e-5f;
+
+// A chart serves triangles whose edges are at most this share of the reach, with corners whose angles miss a full turn
+// by less than this [rad]; it is marched this much farther than needed, for dents that get deeper.
+constexpr double kChartSize = 0.25, kNearlyFlat = 0.15;
+constexpr float kChartRoom = 1.05f;
 
 // Cosine of the largest angle between the normals of an arc's ends.
 constexpr float kLeastCosine = 0.26f;
@@ -73,10 +81,29 @@ PLIANT_KERNEL void arc_offsets(const Mesh& mesh, std::uint32_t begin, const Fiel
   }
 }
 
+PLIANT_KERNEL void unfold(const Mesh& mesh, std::uint32_t begin, const ZoneChart& chart, vec2 place, ZoneOffsets& out) {
+  const float* __restrict nx = mesh.nx.data() + begin;
+  const float* __restrict ny = mesh.ny.data() + begin;
+  const float* __restrict nz = mesh.nz.data() + begin;
+  const float px = place.x, py = place.y;
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    const float x = chart.ix[i] - px, y = chart.iy[i] - py;
+    const float ex = chart.ex[i], ey = chart.ey[i], ez = chart.ez[i];
+    const bool far = chart.ix[i] == kFar;
+    const float ox = x * ex + y * (ny[i] * ez - nz[i] * ey);
+    const float oy = x * ey + y * (nz[i] * ex - nx[i] * ez);
+    const float oz = x * ez + y * (nx[i] * ey - ny[i] * ex);
+    out.x[i] = far ? kFar : ox;
+    out.y[i] = far ? kFar : oy;
+    out.z[i] = far ? kFar : oz;
+  }
+}
+
 }  // namespace
 
 void March::size(const Mesh& mesh) {
   distance.assign(mesh.px.size(), kFar);
+  image.assign(mesh.px.size(), vec2(0));
   from.assign(mesh.px.size(), 0);
   reached.reserve(mesh.vertex_count);
   heap.reserve(std::size_t{8} * mesh.vertex_count);
@@ -106,20 +133,23 @@ std::vector<Side> sides_of(const Mesh& mesh) {
   return sides;
 }
 
-void march_distance(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, vec3 center, float reach,
-                    March& march) {
+void march_from(const Mesh& mesh, const std::vector<Side>& sides, const Chart& chart, float reach, March& march) {
   std::vector<float>& distance = march.distance;
   std::vector<MarchItem>& heap = march.heap;
-  const auto arrived = [&](std::uint32_t v, std::uint32_t t, int corner, float r) {
+  const auto arrived = [&](std::uint32_t v, std::uint32_t t, int corner, float r, vec2 way) {
     if (!(r < reach) || !(r < kShorter * distance[v]) || heap.size() == heap.capacity()) return;
     if (distance[v] == kFar) march.reached.push_back(v);
     distance[v] = r;
+    march.image[v] = way * (r / std::max(length(way), 1e-30f));
     march.from[v] = 3 * t + static_cast<std::uint32_t>(corner);
     heap.push_back({r, v, t});
     std::push_heap(heap.begin(), heap.end(), later);
   };
-  const uvec3 start = mesh.triangles[triangle];
-  for (int i = 0; i < 3; ++i) arrived(start[i], triangle, i, length(mesh.position(start[i]) - center));
+  const uvec3 start = mesh.triangles[chart.triangle];
+  for (int i = 0; i < 3; ++i) {
+    const vec3 d = mesh.position(start[i]) - chart.origin;
+    arrived(start[i], chart.triangle, i, length(d), {dot(d, chart.x), dot(d, chart.y)});
+  }
   while (!heap.empty()) {
     std::pop_heap(heap.begin(), heap.end(), later);
     const MarchItem item = heap.back();
@@ -135,27 +165,58 @@ void march_distance(const Mesh& mesh, const std::vector<Side>& sides, std::uint3
         const float known = kShorter * distance[c[i]];
         // No path over the edge is shorter.
         if (std::min({0.5f * (ra + rb - side[i].length), ra, rb}) + side[i].height > known) continue;
-        arrived(c[i], t, i, arrival(side[i], ra, rb, side[b].length, side[a].length));
+        const Crossing crossing = arrival(side[i], ra, rb, side[b].length, side[a].length);
+        if (!(crossing.distance < known)) continue;
+        const vec2 from_a = ra < kFar ? march.image[c[a]] : vec2(0), from_b = rb < kFar ? march.image[c[b]] : vec2(0);
+        arrived(c[i], t, i, crossing.distance, from_a + crossing.share * (from_b - from_a));
       }
     });
   }
 }
 
-void march_offsets(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, const FieldSource& source,
-                   March& march, Offsets& offset) {
-  march.clear();
-  march_distance(mesh, sides, triangle, source.center, 1 / std::sqrt(source.inv_reach2), march);
+void Chart::size(const Mesh& mesh) {
+  zones.resize(mesh.zone_count());
+  has.assign(mesh.zone_count(), 0);
+  filled.reserve(mesh.zone_count());
+  filled.clear();
+  for (ZoneChart& zone : zones) zone.ix.fill(kFar);
+  triangle = kBorder;
+}
+
+void march_chart(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, vec3 origin, float reach,
+                 March& march, Chart& chart) {
+  for (const std::uint32_t zone : chart.filled) {
+    chart.zones[zone].ix.fill(kFar);
+    chart.has[zone] = 0;
+  }
+  chart.filled.clear();
   const uvec3 start = mesh.triangles[triangle];
+  const vec3 ab = mesh.position(start.y) - mesh.position(start.x), ac = mesh.position(start.z) - mesh.position(start.x);
+  chart.triangle = triangle;
+  chart.reach = reach;
+  chart.origin = origin;
+  chart.x = ab / std::max(length(ab), 1e-30f);
+  const vec3 up = cross(ab, ac);
+  chart.y = cross(up / std::max(length(up), 1e-30f), chart.x);
+  march.clear();
+  march_from(mesh, sides, chart, reach, march);
   for (const std::uint32_t v : march.reached) {
-    const std::uint32_t t = march.from[v] / 3;
+    const std::uint32_t t = march.from[v] / 3, zone = v / kZoneSize, i = v % kZoneSize;
     const int corner = static_cast<int>(march.from[v] % 3);
     const float r = march.distance[v];
-    const vec3 direct = mesh.position(v) - source.center;
+    const vec2 image = march.image[v];
+    const vec3 direct = mesh.position(v) - origin;
     const bool at_start = t == triangle && v == start[corner] && r == length(direct);
     const vec3 way = at_start ? direct : arrival_at(mesh, march.distance, t, corner).direction;
-    // The offset is tangent at v: rotated into its plane with its length kept.
-    const vec3 n = mesh.normal(v), o = way - dot(way, n) * n;
-    offset.set(v, o * (r / std::max(length(o), 1e-30f)));
+    // The path arrives tangent to the surface, under the angle at which it left.
+    const vec3 n = mesh.normal(v), flat = way - dot(way, n) * n;
+    const vec3 o = flat / std::max(length(flat), 1e-30f);
+    const vec3 e = (image.x * o - image.y * cross(n, o)) / std::max(r, 1e-30f);
+    ZoneChart& out = chart.zones[zone];
+    if (!chart.has[zone]) chart.filled.push_back(zone);  // capacity: all
+    chart.has[zone] = 1;
+    out.ix[i] = image.x, out.iy[i] = image.y;
+    out.ex[i] = e.x, out.ey[i] = e.y, out.ez[i] = e.z;
   }
 }
 
@@ -163,15 +224,55 @@ void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source
   arc_offsets(mesh, mesh.zone_begin(zone), source, offset.zones[zone]);
 }
 
+void chart_offsets(const Mesh& mesh, std::uint32_t zone, vec3 center, const Chart& chart, Offsets& offset) {
+  const vec3 d = center - chart.origin;
+  unfold(mesh, mesh.zone_begin(zone), chart.zones[zone], {dot(d, chart.x), dot(d, chart.y)}, offset.zones[zone]);
+}
+
+std::vector<std::uint8_t> triangles_with_charts(const Mesh& mesh, double reach) {
+  std::vector<double> turn(mesh.vertex_count, 2 * std::numbers::pi);  // [rad] by which the triangles miss a full turn
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const uvec3 c = mesh.triangles[t];
+      const dvec3 a(mesh.position(c[i])), b = dvec3(mesh.position(c[(i + 1) % 3])) - a,
+                                          d = dvec3(mesh.position(c[(i + 2) % 3])) - a;
+      turn[c[i]] -= std::atan2(length(cross(b, d)), dot(b, d));
+    }
+  }
+  std::vector<std::uint8_t> out(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const uvec3 c = mesh.triangles[t];
+    bool has = true;
+    for (int i = 0; i < 3; ++i) {
+      const vec3 edge = mesh.position(c[(i + 1) % 3]) - mesh.position(c[i]);
+      has = has && std::abs(turn[c[i]]) < kNearlyFlat && double(length(edge)) < kChartSize * reach;
+    }
+    out[t] = has;
+  }
+  return out;
+}
+
 bool fill_offsets(const Mesh& mesh, const SurfaceWays& ways, std::uint32_t triangle, const FieldSource& source,
-                  const std::vector<std::uint32_t>& zones, March& march, Offsets& offset) {
+                  const std::vector<std::uint32_t>& zones, March& march, Chart& chart, Offsets& offset) {
   float most = kFar;
   for (int i = 0; i < 3; ++i) most = std::min(most, ways.arc_reach[mesh.triangles[triangle][i]]);
   const bool arcs = most * most * source.inv_reach2 >= 1.0f;
-  if (!arcs) march_offsets(mesh, ways.sides, triangle, source, march, offset);
-  if (arcs)
+  if (arcs) {
     for (const std::uint32_t zone : zones) arc_offsets(mesh, zone, source, offset);
-  return arcs;
+    return true;
+  }
+  const float reach = 1 / std::sqrt(source.inv_reach2);
+  if (!ways.charts[triangle]) {
+    march_chart(mesh, ways.sides, triangle, source.center, reach, march, chart);
+  } else {
+    const uvec3 c = mesh.triangles[triangle];
+    const vec3 middle = (mesh.position(c.x) + mesh.position(c.y) + mesh.position(c.z)) / 3.0f;
+    const float least = reach + length(source.center - middle);
+    if (chart.triangle != triangle || chart.origin != middle || chart.reach < least)
+      march_chart(mesh, ways.sides, triangle, middle, kChartRoom * least, march, chart);
+  }
+  for (const std::uint32_t zone : zones) chart_offsets(mesh, zone, source.center, chart, offset);
+  return false;
 }
 
 vec4 target_at_offset(const FieldSource& source, vec3 offset, vec3 normal) {

@@ -14,6 +14,7 @@
 //   triangle's plane. The third corner's distance is |v - S| if that line passes between the two corners.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "components/mesh.h"
@@ -31,8 +32,11 @@ std::vector<Side> sides_of(const Mesh& mesh);
 // What the two ways know of a mesh; at preparation.
 struct SurfaceWays {
   std::vector<Side> sides;
-  std::vector<float> arc_reach;  // [m] per vertex: arc_reach.h
+  std::vector<float> arc_reach;      // [m] per vertex: arc_reach.h
+  std::vector<std::uint8_t> charts;  // per triangle: one chart serves all its places
 };
+// Triangles smaller than a quarter of the reach whose corners are nearly flat.
+std::vector<std::uint8_t> triangles_with_charts(const Mesh& mesh, double reach);
 
 // Working memory of a march; nothing allocates after size().
 struct MarchItem {
@@ -42,6 +46,7 @@ struct MarchItem {
 };
 struct March {
   std::vector<float> distance;         // [m] per vertex; kFar: not reached
+  std::vector<vec2> image;             // [m] per reached vertex: unfolded into the plane of the start
   std::vector<std::uint32_t> from;     // per reached vertex: 3 * triangle + corner of its last arrival
   std::vector<std::uint32_t> reached;  // vertices, each once
   std::vector<MarchItem> heap;
@@ -49,18 +54,35 @@ struct March {
   void clear();
 };
 
-// Distances of the vertices nearer than `reach` [m] to a place in a triangle. The march must be clear.
-void march_distance(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, vec3 center, float reach,
-                    March& march);
+// A surface unfolded around a place in a triangle: where a vertex lies in the triangle's plane if the shortest path to
+// it is made straight, and that plane's first axis carried along the path. Seen from another place in the triangle the
+// vertex lies at the difference of the images.
+struct alignas(32) ZoneChart {
+  std::array<float, kZoneSize> ix, iy;  // [m] kFar: not reached
+  std::array<float, kZoneSize> ex, ey, ez;
+};
+struct Chart {
+  std::uint32_t triangle = kBorder;
+  float reach = 0;                    // [m]
+  vec3 origin{0}, x{1, 0, 0}, y{0};   // [m], [1] object frame
+  std::vector<ZoneChart> zones;       // all
+  std::vector<std::uint8_t> has;      // per zone: it has vertices
+  std::vector<std::uint32_t> filled;  // those zones; capacity: all
+  void size(const Mesh& mesh);
+};
 
-// Fills the offsets of the vertices nearer than the source's reach; all must be kFar before (clear_offsets).
-void march_offsets(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, const FieldSource& source,
-                   March& march, Offsets& offset);
+// Distances and images of the vertices nearer than `reach` to the chart's origin. The march must be clear.
+void march_from(const Mesh& mesh, const std::vector<Side>& sides, const Chart& chart, float reach, March& march);
+// The chart of a triangle around a place in it.
+void march_chart(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, vec3 origin, float reach,
+                 March& march, Chart& chart);
+// Fills the offsets of a zone's vertices from a place in the chart's triangle.
+void chart_offsets(const Mesh& mesh, std::uint32_t zone, vec3 center, const Chart& chart, Offsets& offset);
 // Fills the offsets of a zone's vertices by the closed form; kFar where the normals differ by more than 75 degrees.
 void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, Offsets& offset);
 // One or the other, as the triangle and the reach demand. `zones`: within reach. True: the closed form.
 bool fill_offsets(const Mesh& mesh, const SurfaceWays& ways, std::uint32_t triangle, const FieldSource& source,
-                  const std::vector<std::uint32_t>& zones, March& march, Offsets& offset);
+                  const std::vector<std::uint32_t>& zones, March& march, Chart& chart, Offsets& offset);
 void clear_offsets(const std::vector<std::uint32_t>& zones, Offsets& offset);
 
 vec4 target_at_offset(const FieldSource& source, vec3 offset, vec3 normal);

@@ -86,6 +86,7 @@ void swap_dents(SourceState& a, SourceState& b) {
   std::swap(a.feed_number, b.feed_number);
   a.zones.swap(b.zones);
   std::swap(a.offset, b.offset);
+  std::swap(a.chart, b.chart);
 }
 
 }  // namespace pliant

@@ -166,7 +166,8 @@ void force_field(World& world, Tick tick) {
       const std::array<std::uint32_t, 3> own{corner.x / kZoneSize, corner.y / kZoneSize, corner.z / kZoneSize};
       flood(mesh, vec3(contact.foot), 1 / std::sqrt(double(source.now.inv_reach2)), own, object, source.zones);
       if (!source.offset.empty())
-        fill_offsets(mesh, object.ways, contact.triangle, source.now, source.zones, object.march, source.offset);
+        fill_offsets(mesh, object.ways, contact.triangle, source.now, source.zones, object.march, source.chart,
+                     source.offset);
       if (row_of(source.now.shape).parameter == ShapeParameter::kVolume) {
         VolumeSums sums;
         for (const std::uint32_t zone : source.zones) add_volume_sums(mesh, zone, source.now, source.offset, sums);

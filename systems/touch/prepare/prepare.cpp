@@ -106,7 +106,10 @@ SourceState make_source(Entity contact, const Mesh& mesh, const Deformable& defo
   SourceState source;
   source.contact = contact;
   source.zones.reserve(mesh.zone_count());
-  if (deformable.distance == Distance::kSurface) source.offset.size(mesh);
+  if (deformable.distance == Distance::kSurface) {
+    source.offset.size(mesh);
+    source.chart.size(mesh);
+  }
   return source;
 }
 
@@ -139,8 +142,9 @@ void prepare_distance(World& world, const TouchState& touch, ObjectState& object
     for (const Tip& tip : probe.tips) radius = std::max(radius, tip.radius);
   object.march.size(mesh);
   object.ways.sides = sides_of(mesh);
-  object.ways.arc_reach =
-      arc_reach(mesh, object.ways.sides, object, std::max(deformable.reach, kLeastReach * mesh.mean_edge) + radius);
+  const double reach = std::max(deformable.reach, kLeastReach * mesh.mean_edge) + radius;
+  object.ways.charts = triangles_with_charts(mesh, reach);
+  object.ways.arc_reach = arc_reach(mesh, object.ways.sides, object, reach);
 }
 
 bool something_presses(Registry& registry) {

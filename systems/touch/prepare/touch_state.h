@@ -58,6 +58,7 @@ struct SourceState {
   FieldSource now, before;           // of this tick and of the last: their difference is the target's rate
   std::vector<std::uint32_t> zones;  // within reach; capacity: all zones
   Offsets offset;                    // Distance::kSurface only: see surface_distance.h
+  Chart chart;                       // the same; of the contact's triangle, or of an earlier one
   std::uint32_t feed_number = 0;     // index of the dent in the feed (feed_field.h)
   SourceLink of;                     // of an echo: its source in a neighbour (seam_dents.h)
   std::uint64_t echoed = 0;          // number of the last tick in which it was one, plus 1
