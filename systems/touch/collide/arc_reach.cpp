@@ -59,7 +59,7 @@ class Comparison {
         if (mesh_.area[w] == 0.0f) continue;
         const float marched = std::min(march_.distance[w], limit), arc = std::min(length(offset_[w]), limit);
         const float nearer = std::min(marched, arc), apart = std::abs(marched - arc);
-        if (apart > kAgreesAtMost * reach_) least = std::min(least, nearer);
+        if (apart > kAgreesAtMost * std::max(0.5f * reach_, nearer)) least = std::min(least, nearer);
         const auto ring = std::min(kRings - 1, static_cast<std::size_t>(kRings * nearer / limit));
         squares[ring] += apart * apart;
         count[ring] += nearer < limit;
