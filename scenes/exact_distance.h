@@ -120,8 +120,9 @@ class ExactDistance {
     };
     const auto child = [&](double px, double py, double qx, double qy, double first, double last, int edge) {
       const double l = std::hypot(qx - px, qy - py), ex = (qx - px) / l, ey = (qy - py) / l;
-      enter(t, edge, {first * l, last * l, (w.x - px) * ex + (w.y - py) * ey,
-                      -std::abs((w.y - py) * ex - (w.x - px) * ey), w.before});
+      enter(t, edge,
+            {first * l, last * l, (w.x - px) * ex + (w.y - py) * ey, -std::abs((w.y - py) * ex - (w.x - px) * ey),
+             w.before});
     };
     if (through > w.low) {  // over the edge from v to a
       const double end = std::min(through, w.high);

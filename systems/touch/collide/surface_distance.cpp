@@ -81,7 +81,8 @@ PLIANT_KERNEL void arc_offsets(const Mesh& mesh, std::uint32_t begin, const Fiel
   }
 }
 
-PLIANT_KERNEL void unfold(const Mesh& mesh, std::uint32_t begin, const ZoneChart& chart, vec2 place, ZoneOffsets& out) {
+PLIANT_KERNEL void unfold(const Mesh& mesh, std::uint32_t begin, const ZoneChart& chart, vec2 place, float reach2,
+                          ZoneOffsets& out) {
   const float* __restrict nx = mesh.nx.data() + begin;
   const float* __restrict ny = mesh.ny.data() + begin;
   const float* __restrict nz = mesh.nz.data() + begin;
@@ -89,7 +90,7 @@ PLIANT_KERNEL void unfold(const Mesh& mesh, std::uint32_t begin, const ZoneChart
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
     const float x = chart.ix[i] - px, y = chart.iy[i] - py;
     const float ex = chart.ex[i], ey = chart.ey[i], ez = chart.ez[i];
-    const bool far = chart.ix[i] == kFar;
+    const bool far = x * x + y * y >= reach2;
     const float ox = x * ex + y * (ny[i] * ez - nz[i] * ey);
     const float oy = x * ey + y * (nz[i] * ex - nx[i] * ez);
     const float oz = x * ez + y * (nx[i] * ey - ny[i] * ex);
@@ -224,9 +225,11 @@ void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source
   arc_offsets(mesh, mesh.zone_begin(zone), source, offset.zones[zone]);
 }
 
-void chart_offsets(const Mesh& mesh, std::uint32_t zone, vec3 center, const Chart& chart, Offsets& offset) {
-  const vec3 d = center - chart.origin;
-  unfold(mesh, mesh.zone_begin(zone), chart.zones[zone], {dot(d, chart.x), dot(d, chart.y)}, offset.zones[zone]);
+void chart_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Chart& chart,
+                   Offsets& offset) {
+  const vec3 d = source.center - chart.origin;
+  unfold(mesh, mesh.zone_begin(zone), chart.zones[zone], {dot(d, chart.x), dot(d, chart.y)}, 1 / source.inv_reach2,
+         offset.zones[zone]);
 }
 
 std::vector<std::uint8_t> triangles_with_charts(const Mesh& mesh, double reach) {
@@ -271,7 +274,7 @@ bool fill_offsets(const Mesh& mesh, const SurfaceWays& ways, std::uint32_t trian
     if (chart.triangle != triangle || chart.origin != middle || chart.reach < least)
       march_chart(mesh, ways.sides, triangle, middle, kChartRoom * least, march, chart);
   }
-  for (const std::uint32_t zone : zones) chart_offsets(mesh, zone, source.center, chart, offset);
+  for (const std::uint32_t zone : zones) chart_offsets(mesh, zone, source, chart, offset);
   return false;
 }
 

@@ -76,8 +76,9 @@ void march_from(const Mesh& mesh, const std::vector<Side>& sides, const Chart& c
 // The chart of a triangle around a place in it.
 void march_chart(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, vec3 origin, float reach,
                  March& march, Chart& chart);
-// Fills the offsets of a zone's vertices from a place in the chart's triangle.
-void chart_offsets(const Mesh& mesh, std::uint32_t zone, vec3 center, const Chart& chart, Offsets& offset);
+// Fills the offsets of a zone's vertices from a place in the chart's triangle; kFar from the source's reach on.
+void chart_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Chart& chart,
+                   Offsets& offset);
 // Fills the offsets of a zone's vertices by the closed form; kFar where the normals differ by more than 75 degrees.
 void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, Offsets& offset);
 // One or the other, as the triangle and the reach demand. `zones`: within reach. True: the closed form.
