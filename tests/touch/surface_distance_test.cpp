@@ -41,13 +41,13 @@ Mesh built(const Primitive& primitive) {
   return std::move(mesh->mesh);
 }
 
-struct Place {
+struct FootPlace {
   std::uint32_t triangle = 0;
   dvec3 p{0}, normal{0};
 };
-Place some_place(const Mesh& mesh, std::mt19937& random) {
+FootPlace some_place(const Mesh& mesh, std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0, 1);
-  Place place;
+  FootPlace place;
   place.triangle = static_cast<std::uint32_t>(random() % mesh.triangles.size());
   dvec3 share(unit(random), unit(random), 0);
   if (share.x + share.y > 1) share = dvec3(1 - share.x, 1 - share.y, 0);
@@ -61,8 +61,8 @@ Place some_place(const Mesh& mesh, std::mt19937& random) {
 }
 
 // Offsets around places of a mesh, as a tick makes them.
-struct Around {
-  Around(const Mesh& m, double r) : mesh(m), reach(r) {
+struct FieldAround {
+  FieldAround(const Mesh& m, double r) : mesh(m), reach(r) {
     object.visited.assign(mesh.zone_count(), 0);
     ways.sides = sides_of(mesh);
     ways.charts = triangles_with_charts(mesh, reach);
@@ -72,7 +72,7 @@ struct Around {
     offset.size(mesh);
     zones.reserve(mesh.zone_count());
   }
-  FieldSource look(const Place& place) {
+  FieldSource look(const FootPlace& place) {
     clear_offsets(zones, offset);
     FieldSource source;
     source.center = vec3(place.p);
@@ -84,12 +84,12 @@ struct Around {
     return source;
   }
   // True: by arcs.
-  bool fill(const Place& place) {
+  bool fill(const FootPlace& place) {
     const FieldSource source = look(place);
     return fill_offsets(mesh, ways, place.triangle, source, zones, march, chart, offset);
   }
   // Marched from the place itself.
-  void from_the_place(const Place& place) {
+  void from_the_place(const FootPlace& place) {
     const FieldSource source = look(place);
     march_chart(mesh, ways.sides, place.triangle, source.center, static_cast<float>(reach), march, chart);
     for (const std::uint32_t zone : zones) chart_offsets(mesh, zone, source, chart, offset);
@@ -104,11 +104,11 @@ struct Around {
   std::vector<std::uint32_t> zones;
 };
 
-struct Error {
+struct DistanceError {
   double squares = 0, worst = 0, count = 0;
   double rms() const { return std::sqrt(squares / std::max(count, 1.0)); }
   // Shares of the reach, over the vertices that either puts within it.
-  void add(const Around& around, const std::vector<double>& truth) {
+  void add(const FieldAround& around, const std::vector<double>& truth) {
     for (std::uint32_t v = 0; v < around.mesh.vertex_count; ++v) {
       const double is = std::min<double>(around.reach, length(around.offset[v])),
                    should = std::min(around.reach, truth[v]);
@@ -119,27 +119,27 @@ struct Error {
   }
 };
 
-using Truth = std::function<std::vector<double>(const Mesh&, const Place&, double reach)>;
+using TrueDistance = std::function<std::vector<double>(const Mesh&, const FootPlace&, double reach)>;
 
-std::vector<double> exact(const Mesh& mesh, const Place& place, double reach) {
+std::vector<double> exact(const Mesh& mesh, const FootPlace& place, double reach) {
   return ExactDistance(mesh).from(place.triangle, place.p, 1.2 * reach);
 }
-Truth closed_form(const std::function<double(dvec3, dvec3)>& distance) {
-  return [distance](const Mesh& mesh, const Place& place, double) {
+TrueDistance closed_form(const std::function<double(dvec3, dvec3)>& distance) {
+  return [distance](const Mesh& mesh, const FootPlace& place, double) {
     std::vector<double> out;
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) out.push_back(distance(place.p, dvec3(mesh.position(v))));
     return out;
   };
 }
 
-struct Surface {
+struct Case {
   std::string name;
   Primitive primitive;
   double reach;
-  Truth truth = exact;
+  TrueDistance truth = exact;
 };
 
-std::vector<Surface> surfaces() {
+std::vector<Case> surfaces() {
   const double R = 0.1;
   const auto arc = [](dvec3 p, dvec3 v) {
     return 0.1 * std::acos(std::clamp(dot(normalize(p), normalize(v)), -1.0, 1.0));
@@ -168,7 +168,7 @@ TEST(SurfaceDistance, ExactPathsOverABoxAndAroundItsEdgeAreThoseOfItsNet) {
   ExactDistance exact_distance(mesh);
   int seen = 0;
   for (int k = 0; k < 400; ++k) {
-    const Place place = some_place(mesh, random);
+    const FootPlace place = some_place(mesh, random);
     if (std::abs(place.p.y) > 1e-6) continue;  // on the upper face
     const std::vector<double> d = exact_distance.from(place.triangle, place.p, 0.1);
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
@@ -188,15 +188,15 @@ TEST(SurfaceDistance, ExactPathsOverABoxAndAroundItsEdgeAreThoseOfItsNet) {
 
 // The arcs, and a chart of the whole triangle, against a march from the place itself.
 TEST(SurfaceDistance, IsAsExactAsAMarchFromTheFoot) {
-  for (const Surface& surface : surfaces()) {
+  for (const Case& surface : surfaces()) {
     const Mesh mesh = built(surface.primitive);
-    Around around(mesh, surface.reach);
+    FieldAround around(mesh, surface.reach);
     std::mt19937 random(3);
-    Error filled, marched;
+    DistanceError filled, marched;
     int arcs = 0;
     constexpr int kPlaces = 24;
     for (int k = 0; k < kPlaces; ++k) {
-      const Place place = some_place(mesh, random);
+      const FootPlace place = some_place(mesh, random);
       const std::vector<double> truth = surface.truth(mesh, place, surface.reach);
       arcs += around.fill(place);
       filled.add(around, truth);
@@ -211,18 +211,18 @@ TEST(SurfaceDistance, IsAsExactAsAMarchFromTheFoot) {
 }
 
 TEST(SurfaceDistance, DependsOnThePlaceAloneToTheBit) {
-  for (const Surface& surface : surfaces()) {
+  for (const Case& surface : surfaces()) {
     const Mesh mesh = built(surface.primitive);
-    Around warm(mesh, surface.reach);
+    FieldAround warm(mesh, surface.reach);
     std::mt19937 random(8);
     for (int k = 0; k < 6; ++k) {
-      const Place place = some_place(mesh, random);
+      const FootPlace place = some_place(mesh, random);
       for (int i = 0; i < 5; ++i) warm.fill(some_place(mesh, random));
-      Place beside = place;  // the same triangle
+      FootPlace beside = place;  // the same triangle
       beside.p = 0.5 * (place.p + dvec3(mesh.position(mesh.triangles[place.triangle].x)));
       warm.fill(beside);
       warm.fill(place);
-      Around cold(mesh, surface.reach);
+      FieldAround cold(mesh, surface.reach);
       cold.fill(place);
       for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
         ASSERT_EQ(warm.offset[v], cold.offset[v]) << surface.name << ' ' << v;
@@ -232,7 +232,7 @@ TEST(SurfaceDistance, DependsOnThePlaceAloneToTheBit) {
 
 TEST(SurfaceDistance, TheChoiceOfTheWayDependsNotOnTheNumberOfThreads) {
   const Mesh mesh = built(scenes::sphere(60, 0.1));
-  const std::vector<Side> sides = sides_of(mesh);
+  const std::vector<TriangleSide> sides = sides_of(mesh);
   ObjectState object;
   const unsigned before = thread_count();
   set_thread_count(1);
@@ -245,9 +245,9 @@ TEST(SurfaceDistance, TheChoiceOfTheWayDependsNotOnTheNumberOfThreads) {
 
 // The direction of an offset is that of the distance's gradient.
 TEST(SurfaceDistance, OffsetsPointAlongTheGradient) {
-  for (const Surface& surface : surfaces()) {
+  for (const Case& surface : surfaces()) {
     const Mesh mesh = built(surface.primitive);
-    Around around(mesh, surface.reach);
+    FieldAround around(mesh, surface.reach);
     std::mt19937 random(5);
     double off = 0, count = 0;
     for (int k = 0; k < 12; ++k) {

@@ -32,7 +32,7 @@ float square(float x) {
 
 class Comparison {
  public:
-  Comparison(const Mesh& mesh, const std::vector<Side>& sides, const ObjectState& object, float reach)
+  Comparison(const Mesh& mesh, const std::vector<TriangleSide>& sides, const ObjectState& object, float reach)
       : mesh_(mesh), sides_(sides), reach_(reach) {
     march_.size(mesh);
     offset_.size(mesh);
@@ -75,7 +75,7 @@ class Comparison {
 
  private:
   const Mesh& mesh_;
-  const std::vector<Side>& sides_;
+  const std::vector<TriangleSide>& sides_;
   float reach_;
   March march_;
   Chart start_;  // only its triangle and origin
@@ -102,7 +102,8 @@ std::vector<std::uint8_t> rough_vertices(const Mesh& mesh, float reach) {
 
 }  // namespace
 
-std::vector<float> arc_reach(const Mesh& mesh, const std::vector<Side>& sides, const ObjectState& object, double most) {
+std::vector<float> arc_reach(const Mesh& mesh, const std::vector<TriangleSide>& sides, const ObjectState& object,
+                             double most) {
   const float reach = static_cast<float>(most), limit = (1 + kServes) * reach;
   std::vector<float> out(mesh.px.size(), 0.0f);
   std::vector<std::uint32_t> around(mesh.vertex_count, kBorder);  // a triangle at the vertex

@@ -9,10 +9,11 @@
 namespace pliant {
 
 struct ObjectState;
-struct Side;
+struct TriangleSide;
 
 // Per vertex: from a contact near it, the closed form serves every reach up to this. [m] Below `reach` it may be less
 // than it could be.
-std::vector<float> arc_reach(const Mesh& mesh, const std::vector<Side>& sides, const ObjectState& object, double reach);
+std::vector<float> arc_reach(const Mesh& mesh, const std::vector<TriangleSide>& sides, const ObjectState& object,
+                             double reach);
 
 }  // namespace pliant

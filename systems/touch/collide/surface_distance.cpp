@@ -33,7 +33,7 @@ Arrival arrival_at(const Mesh& mesh, const std::vector<float>& distance, std::ui
 struct Crossing {
   float distance, share;
 };
-Crossing arrival(const Side& s, float ra, float rb, float la, float lb) {
+Crossing arrival(const TriangleSide& s, float ra, float rb, float la, float lb) {
   const Crossing bent = ra + la <= rb + lb ? Crossing{ra + la, 0} : Crossing{rb + lb, 1};
   if (std::max(ra, rb) == kFar || !(s.length > 0) || !(s.height > 0)) return bent;
   const float sx = 0.5f * (ra * ra - rb * rb + s.length * s.length) / s.length;
@@ -120,8 +120,8 @@ void clear_offsets(const std::vector<std::uint32_t>& zones, Offsets& offset) {
   for (const std::uint32_t zone : zones) offset.clear(zone);
 }
 
-std::vector<Side> sides_of(const Mesh& mesh) {
-  std::vector<Side> sides(3 * mesh.triangles.size());
+std::vector<TriangleSide> sides_of(const Mesh& mesh) {
+  std::vector<TriangleSide> sides(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (int i = 0; i < 3; ++i) {
       const uvec3 c = mesh.triangles[t];
@@ -134,7 +134,8 @@ std::vector<Side> sides_of(const Mesh& mesh) {
   return sides;
 }
 
-void march_from(const Mesh& mesh, const std::vector<Side>& sides, const Chart& chart, float reach, March& march) {
+void march_from(const Mesh& mesh, const std::vector<TriangleSide>& sides, const Chart& chart, float reach,
+                March& march) {
   std::vector<float>& distance = march.distance;
   std::vector<MarchItem>& heap = march.heap;
   const auto arrived = [&](std::uint32_t v, std::uint32_t t, int corner, float r, vec2 way) {
@@ -158,7 +159,7 @@ void march_from(const Mesh& mesh, const std::vector<Side>& sides, const Chart& c
     if (kShorter * item.distance > distance[item.vertex]) continue;  // a shorter path was found meanwhile
     around_vertex(mesh, item.vertex, item.triangle, [&](std::uint32_t t) {
       const uvec3 c = mesh.triangles[t];
-      const Side* side = &sides[3 * t];
+      const TriangleSide* side = &sides[3 * t];
       for (int i = 0; i < 3; ++i) {
         if (c[i] == item.vertex) continue;
         const int a = (i + 1) % 3, b = (i + 2) % 3;
@@ -184,8 +185,8 @@ void Chart::size(const Mesh& mesh) {
   triangle = kBorder;
 }
 
-void march_chart(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, vec3 origin, float reach,
-                 March& march, Chart& chart) {
+void march_chart(const Mesh& mesh, const std::vector<TriangleSide>& sides, std::uint32_t triangle, vec3 origin,
+                 float reach, March& march, Chart& chart) {
   for (const std::uint32_t zone : chart.filled) {
     chart.zones[zone].ix.fill(kFar);
     chart.has[zone] = 0;

@@ -23,15 +23,15 @@
 namespace pliant {
 
 // The edge opposite to a corner of a triangle: its length, and the corner's place over it, from the next corner on. [m]
-struct Side {
+struct TriangleSide {
   float length, foot, height;
 };
 // Of each corner: 3 * triangle + corner.
-std::vector<Side> sides_of(const Mesh& mesh);
+std::vector<TriangleSide> sides_of(const Mesh& mesh);
 
 // What the two ways know of a mesh; at preparation.
 struct SurfaceWays {
-  std::vector<Side> sides;
+  std::vector<TriangleSide> sides;
   std::vector<float> arc_reach;      // [m] per vertex: arc_reach.h
   std::vector<std::uint8_t> charts;  // per triangle: one chart serves all its places
 };
@@ -72,10 +72,11 @@ struct Chart {
 };
 
 // Distances and images of the vertices nearer than `reach` to the chart's origin. The march must be clear.
-void march_from(const Mesh& mesh, const std::vector<Side>& sides, const Chart& chart, float reach, March& march);
+void march_from(const Mesh& mesh, const std::vector<TriangleSide>& sides, const Chart& chart, float reach,
+                March& march);
 // The chart of a triangle around a place in it.
-void march_chart(const Mesh& mesh, const std::vector<Side>& sides, std::uint32_t triangle, vec3 origin, float reach,
-                 March& march, Chart& chart);
+void march_chart(const Mesh& mesh, const std::vector<TriangleSide>& sides, std::uint32_t triangle, vec3 origin,
+                 float reach, March& march, Chart& chart);
 // Fills the offsets of a zone's vertices from a place in the chart's triangle; kFar from the source's reach on.
 void chart_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Chart& chart,
                    Offsets& offset);

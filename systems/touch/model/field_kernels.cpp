@@ -12,11 +12,11 @@ namespace pliant {
 namespace {
 
 // A zone's vertices seen from a source: chords, or offsets along the surface.
-struct Chords {
+struct ChordsOfZone {
   const float* __restrict px, * __restrict py, * __restrict pz;
   const float* __restrict nx, * __restrict ny, * __restrict nz;
   vec3 center, normal;
-  Chords(const Mesh& mesh, std::uint32_t begin, const FieldSource& s)
+  ChordsOfZone(const Mesh& mesh, std::uint32_t begin, const FieldSource& s)
       : px(mesh.px.data() + begin),
         py(mesh.py.data() + begin),
         pz(mesh.pz.data() + begin),
@@ -35,10 +35,10 @@ struct Chords {
   }
   vec3 source_normal(std::uint32_t) const { return normal; }
 };
-struct Along {
+struct OffsetsOfZone {
   const float* __restrict ox, * __restrict oy, * __restrict oz;
   const float* __restrict nx, * __restrict ny, * __restrict nz;
-  Along(const Mesh& mesh, std::uint32_t begin, const Offsets& offset)
+  OffsetsOfZone(const Mesh& mesh, std::uint32_t begin, const Offsets& offset)
       : ox(offset.zones[begin / kZoneSize].x.data()),
         oy(offset.zones[begin / kZoneSize].y.data()),
         oz(offset.zones[begin / kZoneSize].z.data()),
@@ -101,14 +101,15 @@ inline __attribute__((always_inline)) void add_whole(const View view, const Fiel
   add_whole(view, s, fresh, out, [parameter](vec3 d, vec3 n, vec3 m, float inv, float amplitude) { \
     return shared::field_##word(d, n, m, inv, amplitude, parameter);                               \
   })
-#define PLIANT_SHAPE(word, form, ...)                                                                            \
-  PLIANT_KERNEL void add_##word(const Chords& view, const FieldSource& s, bool fresh, ZoneTargets& out) {        \
-    [[maybe_unused]] const float parameter = s.parameter;                                                        \
-    PLIANT_ADD_##form(word);                                                                                     \
-  }                                                                                                              \
-  PLIANT_KERNEL void add_##word##_along(const Along& view, const FieldSource& s, bool fresh, ZoneTargets& out) { \
-    [[maybe_unused]] const float parameter = s.parameter;                                                        \
-    PLIANT_ADD_##form(word);                                                                                     \
+#define PLIANT_SHAPE(word, form, ...)                                                                           \
+  PLIANT_KERNEL void add_##word(const ChordsOfZone& view, const FieldSource& s, bool fresh, ZoneTargets& out) { \
+    [[maybe_unused]] const float parameter = s.parameter;                                                       \
+    PLIANT_ADD_##form(word);                                                                                    \
+  }                                                                                                             \
+  PLIANT_KERNEL void add_##word##_along(const OffsetsOfZone& view, const FieldSource& s, bool fresh,            \
+                                        ZoneTargets& out) {                                                     \
+    [[maybe_unused]] const float parameter = s.parameter;                                                       \
+    PLIANT_ADD_##form(word);                                                                                    \
   }
 PLIANT_SHAPES(PLIANT_SHAPE)
 #undef PLIANT_SHAPE
@@ -136,7 +137,7 @@ inline __attribute__((always_inline)) double sum_lanes(const float (&lanes)[kLan
 template <class View>
 inline __attribute__((always_inline)) void sum_volume(const View view, const Mesh& mesh, std::uint32_t begin,
                                                       const FieldSource& s, VolumeSums& sums) {
-  const Chords chord(mesh, begin, s);
+  const ChordsOfZone chord(mesh, begin, s);
   const float* __restrict area = mesh.area.data() + begin;
   const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z, inv = s.inv_reach2;
   float S0[kLanes] = {}, S1[kLanes] = {}, Q0[kLanes] = {}, Q1[kLanes] = {}, Q2[kLanes] = {}, bend[kLanes] = {},
@@ -171,11 +172,11 @@ inline __attribute__((always_inline)) void sum_volume(const View view, const Mes
 }
 
 PLIANT_KERNEL void sum_volume_of_chords(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, VolumeSums& sums) {
-  sum_volume(Chords(mesh, begin, s), mesh, begin, s, sums);
+  sum_volume(ChordsOfZone(mesh, begin, s), mesh, begin, s, sums);
 }
 PLIANT_KERNEL void sum_volume_along(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, const Offsets& offset,
                                     VolumeSums& sums) {
-  sum_volume(Along(mesh, begin, offset), mesh, begin, s, sums);
+  sum_volume(OffsetsOfZone(mesh, begin, offset), mesh, begin, s, sums);
 }
 
 PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, float hh, float hv, float vh,
@@ -281,7 +282,7 @@ float share_at(const FieldSource& source, vec3 position, vec3 normal) {
 }
 
 void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets) {
-  const Chords view(mesh, mesh.zone_begin(zone), source);
+  const ChordsOfZone view(mesh, mesh.zone_begin(zone), source);
   if (const ShapeFunction* own = registered_shape(source.shape))
     return add_registered(*own, view, source, fresh, targets);
   int place = 0;
@@ -295,7 +296,7 @@ void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source
 void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Offsets& offset, bool fresh,
                  ZoneTargets& targets) {
   if (offset.empty()) return add_targets(mesh, zone, source, fresh, targets);
-  const Along view(mesh, mesh.zone_begin(zone), offset);
+  const OffsetsOfZone view(mesh, mesh.zone_begin(zone), offset);
   if (const ShapeFunction* own = registered_shape(source.shape))
     return add_registered(*own, view, source, fresh, targets);
   int place = 0;
