@@ -46,10 +46,15 @@ Crossing arrival(const TriangleSide& s, float ra, float rb, float la, float lb) 
 // Shorter by more than rounding; otherwise two corners could improve each other forever.
 constexpr float kShorter = 1 - 1e-5f;
 
-// A chart serves triangles whose edges are at most this share of the reach, with corners whose angles miss a full turn
-// by less than this [rad]; it is marched this much farther than needed, for dents that get deeper.
-constexpr double kChartSize = 0.25, kNearlyFlat = 0.15;
-constexpr float kChartRoom = 1.05f;
+// A chart serves triangles whose edges are shorter than this share of the reach, with corners whose angles miss a full
+// turn by less than this [rad].
+constexpr double kChartEdge = 0.25, kNearlyFlat = 0.15;
+// They lie within this share of the reach of its middle, and the corners between them miss as little in all [rad]: the
+// images then err by a few 1e-4 of the distance.
+constexpr double kChartSize = 0.2, kChartTurn = 0.01;
+// [1] of the reach: a chart extends so much farther, and a place in it is no farther from its middle. kChartRoom: more,
+// for dents that get deeper.
+constexpr float kChartSpan = 0.23f, kChartRoom = 1.02f;
 
 // Cosine of the largest angle between the normals of an arc's ends.
 constexpr float kLeastCosine = 0.26f;
@@ -98,6 +103,25 @@ PLIANT_KERNEL void unfold(const Mesh& mesh, std::uint32_t begin, const ZoneChart
     out.y[i] = far ? kFar : oy;
     out.z[i] = far ? kFar : oz;
   }
+}
+
+vec3 middle_of(const Mesh& mesh, std::uint32_t triangle) {
+  const uvec3 c = mesh.triangles[triangle];
+  return (mesh.position(c.x) + mesh.position(c.y) + mesh.position(c.z)) / 3.0f;
+}
+
+// Of a place over a triangle, between the images of its corners.
+vec2 image_of(const Mesh& mesh, const Chart& chart, std::uint32_t triangle, vec3 p) {
+  const uvec3 c = mesh.triangles[triangle];
+  const vec3 a = mesh.position(c.x), ab = mesh.position(c.y) - a, ac = mesh.position(c.z) - a, n = cross(ab, ac);
+  const float size2 = std::max(dot(n, n), 1e-30f);
+  const float b = dot(cross(p - a, ac), n) / size2, d = dot(cross(ab, p - a), n) / size2;
+  vec2 image[3];
+  for (int i = 0; i < 3; ++i) {
+    const ZoneChart& zone = chart.zones[c[i] / kZoneSize];
+    image[i] = {zone.ix[c[i] % kZoneSize], zone.iy[c[i] % kZoneSize]};
+  }
+  return image[0] + b * (image[1] - image[0]) + d * (image[2] - image[0]);
 }
 
 }  // namespace
@@ -226,14 +250,12 @@ void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source
   arc_offsets(mesh, mesh.zone_begin(zone), source, offset.zones[zone]);
 }
 
-void chart_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Chart& chart,
+void chart_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, vec2 place, const Chart& chart,
                    Offsets& offset) {
-  const vec3 d = source.center - chart.origin;
-  unfold(mesh, mesh.zone_begin(zone), chart.zones[zone], {dot(d, chart.x), dot(d, chart.y)}, 1 / source.inv_reach2,
-         offset.zones[zone]);
+  unfold(mesh, mesh.zone_begin(zone), chart.zones[zone], place, 1 / source.inv_reach2, offset.zones[zone]);
 }
 
-std::vector<std::uint8_t> triangles_with_charts(const Mesh& mesh, double reach) {
+std::vector<std::uint32_t> chart_hubs(const Mesh& mesh, double reach) {
   std::vector<double> turn(mesh.vertex_count, 2 * std::numbers::pi);  // [rad] by which the triangles miss a full turn
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (int i = 0; i < 3; ++i) {
@@ -243,17 +265,43 @@ std::vector<std::uint8_t> triangles_with_charts(const Mesh& mesh, double reach) 
       turn[c[i]] -= std::atan2(length(cross(b, d)), dot(b, d));
     }
   }
-  std::vector<std::uint8_t> out(mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+  const auto serves = [&](std::uint32_t t) {
     const uvec3 c = mesh.triangles[t];
-    bool has = true;
     for (int i = 0; i < 3; ++i) {
       const vec3 edge = mesh.position(c[(i + 1) % 3]) - mesh.position(c[i]);
-      has = has && std::abs(turn[c[i]]) < kNearlyFlat && double(length(edge)) < kChartSize * reach;
+      if (std::abs(turn[c[i]]) >= kNearlyFlat || double(length(edge)) >= kChartEdge * reach) return false;
     }
-    out[t] = has;
+    return true;
+  };
+  std::vector<std::uint32_t> hubs(mesh.triangles.size(), kBorder), seen(mesh.vertex_count, kBorder), group;
+  for (std::uint32_t hub = 0; hub < mesh.triangles.size(); ++hub) {
+    if (hubs[hub] != kBorder || !serves(hub)) continue;
+    const vec3 middle = middle_of(mesh, hub);
+    double turned = 0.0;
+    for (int i = 0; i < 3; ++i) seen[mesh.triangles[hub][i]] = hub;
+    hubs[hub] = hub;
+    group.assign(1, hub);
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      for (int edge = 0; edge < 3; ++edge) {
+        const std::uint32_t t = mesh.across[group[k]][edge];
+        if (t == kBorder || hubs[t] != kBorder || !serves(t)) continue;
+        double more = turned;
+        bool near = true;
+        for (int i = 0; i < 3; ++i) {
+          const std::uint32_t v = mesh.triangles[t][i];
+          if (seen[v] == hub) continue;
+          more += std::abs(turn[v]);
+          near = near && double(length(mesh.position(v) - middle)) < kChartSize * reach;
+        }
+        if (!near || more > kChartTurn) continue;
+        turned = more;
+        for (int i = 0; i < 3; ++i) seen[mesh.triangles[t][i]] = hub;
+        hubs[t] = hub;
+        group.push_back(t);
+      }
+    }
   }
-  return out;
+  return hubs;
 }
 
 bool fill_offsets(const Mesh& mesh, const SurfaceWays& ways, std::uint32_t triangle, const FieldSource& source,
@@ -266,16 +314,20 @@ bool fill_offsets(const Mesh& mesh, const SurfaceWays& ways, std::uint32_t trian
     return true;
   }
   const float reach = 1 / std::sqrt(source.inv_reach2);
-  if (!ways.charts[triangle]) {
-    march_chart(mesh, ways.sides, triangle, source.center, reach, march, chart);
-  } else {
-    const uvec3 c = mesh.triangles[triangle];
-    const vec3 middle = (mesh.position(c.x) + mesh.position(c.y) + mesh.position(c.z)) / 3.0f;
-    const float least = reach + length(source.center - middle);
-    if (chart.triangle != triangle || chart.origin != middle || chart.reach < least)
-      march_chart(mesh, ways.sides, triangle, middle, kChartRoom * least, march, chart);
+  const std::uint32_t hub = ways.hubs[triangle];
+  vec2 place(kFar);
+  if (hub != kBorder) {
+    const float least = (1 + kChartSpan) * reach;
+    const vec3 middle = middle_of(mesh, hub);
+    if (chart.triangle != hub || chart.origin != middle || chart.reach < least)
+      march_chart(mesh, ways.sides, hub, middle, kChartRoom * least, march, chart);
+    place = image_of(mesh, chart, triangle, source.center);
   }
-  for (const std::uint32_t zone : zones) chart_offsets(mesh, zone, source, chart, offset);
+  if (!(length(place) <= kChartSpan * reach)) {
+    march_chart(mesh, ways.sides, triangle, source.center, reach, march, chart);
+    place = vec2(0);
+  }
+  for (const std::uint32_t zone : zones) chart_offsets(mesh, zone, source, place, chart, offset);
   return false;
 }
 

@@ -32,11 +32,11 @@ std::vector<TriangleSide> sides_of(const Mesh& mesh);
 // What the two ways know of a mesh; at preparation.
 struct SurfaceWays {
   std::vector<TriangleSide> sides;
-  std::vector<float> arc_reach;      // [m] per vertex: arc_reach.h
-  std::vector<std::uint8_t> charts;  // per triangle: one chart serves all its places
+  std::vector<float> arc_reach;     // [m] per vertex: arc_reach.h
+  std::vector<std::uint32_t> hubs;  // per triangle: the one whose chart serves it, or kBorder
 };
-// Triangles smaller than a quarter of the reach whose corners are nearly flat.
-std::vector<std::uint8_t> triangles_with_charts(const Mesh& mesh, double reach);
+// Groups of small, nearly flat triangles.
+std::vector<std::uint32_t> chart_hubs(const Mesh& mesh, double reach);
 
 // Working memory of a march; nothing allocates after size().
 struct MarchItem {
@@ -55,8 +55,8 @@ struct March {
 };
 
 // A surface unfolded around a place in a triangle: where a vertex lies in the triangle's plane if the shortest path to
-// it is made straight, and that plane's first axis carried along the path. Seen from another place in the triangle the
-// vertex lies at the difference of the images.
+// it is made straight, and that plane's first axis carried along the path. Seen from another place near the start
+// the vertex lies at the difference of the images.
 struct alignas(32) ZoneChart {
   std::array<float, kZoneSize> ix, iy;  // [m] kFar: not reached
   std::array<float, kZoneSize> ex, ey, ez;
@@ -77,8 +77,8 @@ void march_from(const Mesh& mesh, const std::vector<TriangleSide>& sides, const 
 // The chart of a triangle around a place in it.
 void march_chart(const Mesh& mesh, const std::vector<TriangleSide>& sides, std::uint32_t triangle, vec3 origin,
                  float reach, March& march, Chart& chart);
-// Fills the offsets of a zone's vertices from a place in the chart's triangle; kFar from the source's reach on.
-void chart_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Chart& chart,
+// Fills the offsets of a zone's vertices from a place in the chart's plane; kFar from the source's reach on.
+void chart_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, vec2 place, const Chart& chart,
                    Offsets& offset);
 // Fills the offsets of a zone's vertices by the closed form; kFar where the normals differ by more than 75 degrees.
 void arc_offsets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, Offsets& offset);

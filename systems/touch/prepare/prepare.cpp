@@ -142,9 +142,9 @@ void prepare_distance(World& world, const TouchState& touch, ObjectState& object
     for (const Tip& tip : probe.tips) radius = std::max(radius, tip.radius);
   object.march.size(mesh);
   object.ways.sides = sides_of(mesh);
-  const double reach = std::max(deformable.reach, kLeastReach * mesh.mean_edge) + radius;
-  object.ways.charts = triangles_with_charts(mesh, reach);
-  object.ways.arc_reach = arc_reach(mesh, object.ways.sides, object, reach);
+  const double reach = std::max(deformable.reach, kLeastReach * mesh.mean_edge);
+  object.ways.hubs = chart_hubs(mesh, reach);
+  object.ways.arc_reach = arc_reach(mesh, object.ways.sides, object, reach + radius);
 }
 
 bool something_presses(Registry& registry) {
