@@ -13,13 +13,14 @@
 namespace pliant {
 namespace {
 
-constexpr double kReach = 0.03, kBall = 0.1, kWidth = 0.08;  // [m]
-constexpr double kRim = 5.0;                                 // [1] c of the shape `volume`
+constexpr double kDentReach = 0.03, kDentBall = 0.1, kDentWidth = 0.08;  // [m]
+constexpr double kRimShare = 5.0;                                        // [1] c of the shape `volume`
 
 Mesh dented_mesh(const DentedSurface& surface) {
-  const double edge = kReach / surface.edges;
-  const Primitive p = surface.sphere ? scenes::sphere(static_cast<int>(std::lround(M_PI / 2 * kBall / edge)), kBall)
-                                     : scenes::sheet(static_cast<int>(std::lround(kWidth / edge)), kWidth);
+  const double edge = kDentReach / surface.edges;
+  const Primitive p = surface.sphere
+                          ? scenes::sphere(static_cast<int>(std::lround(M_PI / 2 * kDentBall / edge)), kDentBall)
+                          : scenes::sheet(static_cast<int>(std::lround(kDentWidth / edge)), kDentWidth);
   auto built = build_mesh("dented", std::span(&p, 1), mat4(1));
   ASSERT(built.ok());
   return std::move(built->mesh);
@@ -27,16 +28,17 @@ Mesh dented_mesh(const DentedSurface& surface) {
 
 // Normal of the dented surface over a rest place x; h = -depth (1-u)^3 (1 - c u) of the chord.
 dvec3 true_normal(const DentedSurface& surface, dvec3 center, dvec3 x) {
-  const double depth = surface.depth * kReach, r2 = dot(x - center, x - center), u = r2 / (kReach * kReach);
-  const double w = 1 - u, f = w * w * w * (1 - kRim * u), slope = -w * w * (3 * (1 - kRim * u) + kRim * w);
-  if (!surface.sphere) return normalize(dvec3(0, 1, 0) + depth * 2 * slope / (kReach * kReach) * (x - center));
+  const double depth = surface.depth * kDentReach, r2 = dot(x - center, x - center), u = r2 / (kDentReach * kDentReach);
+  const double w = 1 - u, f = w * w * w * (1 - kRimShare * u),
+               slope = -w * w * (3 * (1 - kRimShare * u) + kRimShare * w);
+  if (!surface.sphere) return normalize(dvec3(0, 1, 0) + depth * 2 * slope / (kDentReach * kDentReach) * (x - center));
   // x = (rho + h) n over the angle from the contact; dh/dangle = -depth f'(u) du/dangle, u = 2 rho^2 (1 - cos) / R^2.
   const dvec3 n = normalize(x), axis = normalize(center);
   const double cosine = std::clamp(dot(n, axis), -1.0, 1.0), sine = std::sqrt(1 - cosine * cosine);
   if (sine < 1e-9) return n;
   const dvec3 away = (cosine * n - axis) / sine;  // along the surface, away from the contact
-  const double h = -depth * f, turned = -depth * slope * 2 * kBall * kBall * sine / (kReach * kReach);
-  return normalize((kBall + h) * n - turned * away);
+  const double h = -depth * f, turned = -depth * slope * 2 * kDentBall * kDentBall * sine / (kDentReach * kDentReach);
+  return normalize((kDentBall + h) * n - turned * away);
 }
 
 // Max's weights, as the mesh's own normals at rest.
@@ -61,12 +63,12 @@ const char* name_of(DrawnNormal normal) {
 NormalErrors normals_on(const DentedSurface& surface, DrawnNormal drawn, int batches) {
   const Mesh mesh = dented_mesh(surface);
   FieldSource source;
-  source.center = surface.sphere ? vec3(kBall * normalize(dvec3(0.007, 1, 0.004))) : vec3(0.0007f, 0, 0.0004f);
+  source.center = surface.sphere ? vec3(kDentBall * normalize(dvec3(0.007, 1, 0.004))) : vec3(0.0007f, 0, 0.0004f);
   source.normal = surface.sphere ? normalize(source.center) : vec3(0, 1, 0);
-  source.amplitude = static_cast<float>(surface.depth * kReach);
-  source.inv_reach2 = static_cast<float>(1 / (kReach * kReach));
+  source.amplitude = static_cast<float>(surface.depth * kDentReach);
+  source.inv_reach2 = static_cast<float>(1 / (kDentReach * kDentReach));
   source.shape = Shape::kVolume;
-  source.parameter = static_cast<float>(kRim);
+  source.parameter = static_cast<float>(kRimShare);
   std::vector<ZoneTargets> targets(mesh.zone_count());
   std::vector<dvec3> place(mesh.vertex_count), normal(mesh.vertex_count, dvec3(0, 1, 0));
   NormalErrors out;
@@ -85,7 +87,7 @@ NormalErrors normals_on(const DentedSurface& surface, DrawnNormal drawn, int bat
   double squares = 0.0, count = 0.0;
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     const dvec3 x(mesh.position(v)), d = x - dvec3(source.center);
-    if (!(mesh.area[v] > 0) || dot(d, d) >= kReach * kReach) continue;
+    if (!(mesh.area[v] > 0) || dot(d, d) >= kDentReach * kDentReach) continue;
     const ZoneTargets& t = targets[v / kZoneSize];
     const std::uint32_t i = v % kZoneSize;
     dvec3 n = drawn == DrawnNormal::kRecomputed ? normal[v] : dvec3(mesh.normal(v));

@@ -15,12 +15,12 @@ namespace pliant {
 namespace {
 
 constexpr double kBoxWidth = 0.1, kBoxHeight = 0.04;      // [m]
-constexpr double kInside = 0.003, kInsideWobble = 0.002;  // [m]
-constexpr double kStiffness = 300.0;                      // [N/m]
+constexpr double kBehind = 0.003, kBehindWobble = 0.002;  // [m]
+constexpr double kBoxStiffness = 300.0;                   // [N/m]
 
 // Around an inner rectangle whose sides move in and out.
 dvec3 on_loop(double s) {
-  const double depth = kInside + kInsideWobble * std::sin(10 * M_PI * s);
+  const double depth = kBehind + kBehindWobble * std::sin(10 * M_PI * s);
   const double a = 0.5 * kBoxWidth, b = 0.5 * kBoxHeight, way = std::fmod(s + 0.05, 1.0) * 4 * (a + b);
   dvec3 side(0, 0, 0.0013);  // on the square from -1 to 1
   if (way < 2 * a)
@@ -34,7 +34,7 @@ dvec3 on_loop(double s) {
   return {(a - depth) * side.x, (b - depth) * side.y - b, side.z};
 }
 
-CreaseErrors errors_of(const std::vector<dvec3>& places, const std::vector<dvec3>& forces) {
+CreaseErrors crease_errors(const std::vector<dvec3>& places, const std::vector<dvec3>& forces) {
   CreaseErrors out;
   double squares = 0.0, count = 0.0, work = 0.0;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -55,7 +55,7 @@ CreaseErrors errors_of(const std::vector<dvec3>& places, const std::vector<dvec3
     work += 0.5 * dot(forces[i] + forces[i - 1], step);
     if (length(step) > 0) out.steepest = std::max(out.steepest, length(forces[i] - forces[i - 1]) / length(step));
   }
-  const double deepest = kInside + kInsideWobble;
+  const double deepest = kBehind + kBehindWobble;
   out.work = std::abs(work) / (0.5 * deepest * deepest);
   out.direction = std::sqrt(squares / std::max(count, 1.0));
   return out;
@@ -73,7 +73,7 @@ CreaseErrors with_drifting_normals(int cells, const std::vector<dvec3>& places) 
     forces.push_back(-foot.height * foot.normal);
   }
   const double us = static_cast<double>(processor_ns() - begin) * 1e-3 / static_cast<double>(places.size());
-  CreaseErrors out = errors_of(places, forces);
+  CreaseErrors out = crease_errors(places, forces);
   out.us = us;
   return out;
 }
@@ -81,7 +81,7 @@ CreaseErrors with_drifting_normals(int cells, const std::vector<dvec3>& places) 
 CreaseErrors with_feet(int cells, const std::vector<dvec3>& places) {
   scenes::Stage stage;
   Deformable d;
-  d.stiffness = kStiffness;
+  d.stiffness = kBoxStiffness;
   d.contact_damping = 0.0;
   d.friction_static = d.friction_sliding = 0.0;
   d.settling_time = DeformableRange::kSettlingTime.min;
@@ -96,9 +96,9 @@ CreaseErrors with_feet(int cells, const std::vector<dvec3>& places) {
   for (const dvec3& x : places) {
     stage.place(probe, x);
     stage.tick();
-    forces.push_back(stage.read(probe).force / kStiffness);
+    forces.push_back(stage.read(probe).force / kBoxStiffness);
   }
-  CreaseErrors out = errors_of(places, forces);
+  CreaseErrors out = crease_errors(places, forces);
   for (std::size_t i = 0; i < stage.schedule().systems().size(); ++i)
     if (std::string(stage.schedule().systems()[i].name) == "collision")
       out.us = stage.schedule().cost(i).percentile_us(0.5);
