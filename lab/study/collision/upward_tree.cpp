@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace pliant {
 namespace {
@@ -65,9 +66,11 @@ void UpwardTree::down(std::uint32_t node, dvec3 x, Answer& best) const {
   std::size_t count = 0;
   for (std::uint32_t child = n.first; child < n.last; ++child) {
     const double apart = outside2(x, nodes_[child].center, nodes_[child].half);
-    if (apart < best.distance2) children[count++] = {apart, child};
+    if (apart >= best.distance2) continue;
+    std::size_t place = count++;
+    for (; place > 0 && children[place - 1].first > apart; --place) children[place] = children[place - 1];
+    children[place] = {apart, child};
   }
-  std::sort(children.begin(), children.begin() + count);
   for (std::size_t i = 0; i < count && children[i].first < best.distance2; ++i) down(children[i].second, x, best);
 }
 
