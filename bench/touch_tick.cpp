@@ -14,6 +14,7 @@
 #include "bench/measure.h"
 #include "content/mesh/mesh_build.h"
 #include "runtime/clock.h"
+#include "scenes/exact_distance.h"
 #include "scenes/scenes.h"
 #include "systems/touch/model/field_kernels.h"
 #include "systems/touch/prepare/prepare.h"
@@ -47,30 +48,63 @@ void print_systems(const std::vector<std::pair<std::string, double>>& systems) {
   fmt::print("{}\n", line);
 }
 
+// What is slid over: a sphere, or one with bumps as wide as the reach.
+struct Body {
+  double radius = 0.1, height = 0, wave = 0;  // [m] of the sphere and of the bumps; [1/m] wave number
+  double at(dvec3 direction) const {
+    const dvec3 x = wave * radius * direction;
+    return radius + height * std::sin(x.x) * std::sin(x.y) * std::sin(x.z);
+  }
+  Primitive mesh(int n) const {
+    Primitive p = scenes::sphere(n, radius);
+    for (vec3& x : p.position) x = vec3(at(normalize(dvec3(x))) * normalize(dvec3(x)));
+    if (height != 0) p.normal.clear();
+    return p;
+  }
+};
+
+// [m2] squares of the distances from a contact: of chords, of arcs on the sphere, of exact paths on bumps.
+std::vector<double> distances2(const Mesh& mesh, const Contact& contact, const Deformable& d, const Body& body) {
+  std::vector<double> out;
+  if (d.distance == Distance::kSurface && body.height != 0) {
+    out = ExactDistance(mesh).from(contact.triangle, contact.foot, d.reach);
+    for (double& r : out) r *= r;
+    return out;
+  }
+  const double radius = length(contact.foot);
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const double chord = length(dvec3(mesh.position(v)) - contact.foot);
+    const double arc = 2 * radius * std::asin(std::min(1.0, chord / (2 * radius)));
+    out.push_back(d.distance == Distance::kSurface ? arc * arc : chord * chord);
+  }
+  return out;
+}
+
 // The target of the volume-preserving shape in double precision, with its own sum for c.
-double field_error(Stage& stage, Entity surface, Entity probe) {
+double field_error(Stage& stage, Entity surface, Entity probe, const Body& body) {
   const Mesh& mesh = stage.mesh(surface);
   const Contact& contact = stage.contact(probe);
   const Deformable& d = stage.world.registry.get<Deformable>(surface);
+  const std::vector<double> distance2 = distances2(mesh, contact, d, body);
   const auto facing = [&](std::uint32_t v) {
-    return std::clamp(4 * dot(dvec3(mesh.normal(v)), contact.normal), 0.0, 1.0);
+    return d.distance == Distance::kSurface ? 1.0
+                                            : std::clamp(4 * dot(dvec3(mesh.normal(v)), contact.normal), 0.0, 1.0);
   };
   double S0 = 0, S1 = 0, Q0 = 0, Q1 = 0, Q2 = 0, bend = 0, spread = 0;
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     const dvec3 x = dvec3(mesh.position(v)) - contact.foot;
-    const double u = dot(x, x) / (d.reach * d.reach);
+    const double r2 = distance2[v], u = r2 / (d.reach * d.reach);
     if (u >= 1) continue;
     const double w = std::pow(1 - u, 3) * facing(v), A = mesh.area[v];
     S0 += A * w, S1 += A * w * u, Q0 += A * w * w, Q1 += A * w * w * u, Q2 += A * w * w * u * u;
-    bend += A * w * dot(dvec3(mesh.normal(v)) - contact.normal, x), spread += A * w * dot(x, x);
+    bend += A * w * dot(dvec3(mesh.normal(v)) - contact.normal, x), spread += A * w * r2;
   }
   const double aH = -contact.height * bend / spread;
   double c = S0 / S1;
   for (int i = 0; i < 20; ++i)
     c -= (S0 - c * S1 - aH * (Q0 - 2 * c * Q1 + c * c * Q2)) / (-S1 + aH * (2 * Q1 - 2 * c * Q2));
   const auto f = [&](std::uint32_t v) {
-    const dvec3 x = dvec3(mesh.position(v)) - contact.foot;
-    const double u = std::min(1.0, dot(x, x) / (d.reach * d.reach));
+    const double u = std::min(1.0, distance2[v] / (d.reach * d.reach));
     return std::pow(1 - u, 3) * (1 - c * u) * facing(v);
   };
   const uvec3 t = mesh.triangles[contact.triangle];
@@ -83,17 +117,22 @@ double field_error(Stage& stage, Entity surface, Entity probe) {
   return worst / amplitude;
 }
 
-Row measure(int n, std::uint32_t wanted_awake) {
+constexpr double kPace = 0.33, kSlowPace = 0.03;  // [1] edges per tick
+
+Row measure(int n, std::uint32_t wanted_awake, Distance distance, double pace, bool bumps = false) {
   Row row;
   Stage stage;
   Deformable d;
-  const double radius = 0.1;
+  d.distance = distance;
+  Body body;
+  const double radius = body.radius;
   const std::uint32_t vertices = 6u * static_cast<std::uint32_t>(n) * static_cast<std::uint32_t>(n) + 2;
   // Zones extend beyond the disc, so the disc itself contains fewer than the wanted awake vertices.
   d.reach = 2 * radius * std::sqrt(0.36 * wanted_awake / vertices);
+  if (bumps) body.height = 0.15 * d.reach, body.wave = 3.14159 / d.reach;
   const auto begin = std::chrono::steady_clock::now();
-  const Entity surface = stage.add(scenes::sphere(n, radius), d);
-  const Entity probe = stage.add_probe({0, radius + 0.001, 0});
+  const Entity surface = stage.add(body.mesh(n), d);
+  const Entity probe = stage.add_probe({0, body.at({0, 1, 0}) + 0.001, 0});
   stage.prepare();
   row.prepare_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double depth = 0.1 * d.reach, edge = stage.mesh(surface).mean_edge;
@@ -102,17 +141,17 @@ Row measure(int n, std::uint32_t wanted_awake) {
   double awake = 0;
   constexpr int kTicks = 20000;
   for (int i = 0; i < kTicks; ++i) {
-    // About a third of an edge per tick, along a curve that reaches new places.
-    const double a = 0.33 * edge / radius * i, b = 0.3 * std::sin(0.37 * a);
+    // Along a curve that reaches new places.
+    const double a = pace * edge / radius * i, b = 0.3 * std::sin(0.37 * a);
     const dvec3 direction = normalize(dvec3(std::sin(a), std::cos(a), b));
-    stage.place(probe, direction * (radius - depth));
+    stage.place(probe, direction * (body.at(direction) - depth));
     for (auto [entity, device] : stage.world.registry.view<HapticDevice>()) device.sensed_at = stage.time();
     const std::uint64_t t0 = now_ns();
     stage.tick();
     times.push_back(static_cast<double>(now_ns() - t0) * 1e-3);
     awake += stage.field(surface).awake_vertices;
   }
-  row.error = field_error(stage, surface, probe);
+  row.error = field_error(stage, surface, probe, body);
   times.erase(times.begin(), times.begin() + kTicks / 20);
   row.vertices = stage.mesh(surface).vertex_count;
   row.awake = static_cast<std::uint32_t>(awake / kTicks);
@@ -216,7 +255,7 @@ int main(int argc, char** argv) {
   std::string json = "{\n  \"tick\": [";
   double first = 0, at_1e6 = 0;
   for (const int n : sizes) {
-    const Row r = measure(n, 2000);
+    const Row r = measure(n, 2000, Distance::kChord, kPace);
     if (first == 0) first = r.p50;
     if (n == 409) at_1e6 = r.p50;
     fmt::print("{:>10} {:>7} {:>9.2f} {:>9.2f} {:>9.1f} {:>10.0f} {:>10.2f} {:>12.1e}\n", r.vertices, r.awake, r.p50,
@@ -226,6 +265,32 @@ int main(int argc, char** argv) {
         "{}\n    {{\"vertices\": {}, \"awake\": {}, \"p50_us\": {:.3f}, \"p99_us\": {:.3f}, \"max_us\": {:.1f}, "
         "\"bytes_per_vertex\": {:.1f}, \"ready_s\": {:.3f}, \"error_of_amplitude\": {:.3e}}}",
         n == 41 ? "" : ",", r.vertices, r.awake, r.p50, r.p99, r.max, r.bytes, r.prepare_s, r.error);
+  }
+  fmt::print(
+      "\ndistance along the surface against the chord\n{:>8} {:>10} {:>6} {:>9} {:>9} {:>9} {:>9} {:>8} {:>12} {:>7}\n",
+      "body", "vertices", "pace", "distance", "p50 us", "p99 us", "max us", "ready s", "error/ampl.", "ratio");
+  json += "\n  ],\n  \"distance\": [";
+  const char* comma = "";
+  for (const bool bumps : {false, true}) {
+    for (const int n : {41, 130, 409}) {
+      for (const double pace : {kSlowPace, kPace}) {
+        double chord = 0;
+        for (const Distance distance : {Distance::kChord, Distance::kSurface}) {
+          const Row r = measure(n, 2000, distance, pace, bumps);
+          const bool along = distance == Distance::kSurface;
+          if (!along) chord = r.p50;
+          const char *word = along ? "surface" : "chord", *body = bumps ? "bumps" : "sphere";
+          fmt::print("{:>8} {:>10} {:>6} {:>9} {:>9.2f} {:>9.2f} {:>9.1f} {:>8.2f} {:>12.1e} {:>7.2f}\n", body,
+                     r.vertices, pace, word, r.p50, r.p99, r.max, r.prepare_s, r.error, r.p50 / chord);
+          json += fmt::format(
+              "{}\n    {{\"body\": \"{}\", \"vertices\": {}, \"edges_per_tick\": {}, \"distance\": \"{}\", "
+              "\"p50_us\": {:.3f}, \"p99_us\": {:.3f}, \"max_us\": {:.1f}, \"ready_s\": {:.3f}, "
+              "\"error_of_amplitude\": {:.3e}}}",
+              comma, body, r.vertices, pace, word, r.p50, r.p99, r.max, r.prepare_s, r.error);
+          comma = ",";
+        }
+      }
+    }
   }
   const AllAwake all = measure_all_awake(409);
   fmt::print(

@@ -13,17 +13,15 @@ namespace {
 
 constexpr double kAside = 0.01;  // [1] of the reach
 
-// Offsets of vertices along the surface from the contact, up to `reach` [m].
-std::vector<vec3> distances(const Mesh& mesh, const Contact& contact, double reach) {
-  std::vector<vec3> offset(mesh.px.size(), vec3(kFar));
-  FieldSource source;
-  source.center = vec3(contact.foot);
-  source.normal = vec3(contact.normal);
-  source.inv_reach2 = static_cast<float>(1 / (reach * reach));
-  std::vector<MarchItem> heap;
-  heap.reserve(std::size_t{8} * mesh.vertex_count);
-  march_distance(mesh, contact, source, offset, heap);
-  return offset;
+// Distances of vertices along the surface from the contact, up to `reach`. [m]
+std::vector<float> distances(const Mesh& mesh, const Contact& contact, double reach) {
+  March march;
+  march.size(mesh);
+  Chart start;
+  start.triangle = contact.triangle;
+  start.origin = vec3(contact.foot);
+  march_from(mesh, sides_of(mesh), start, static_cast<float>(reach), march);
+  return march.distance;
 }
 
 }  // namespace
@@ -93,10 +91,10 @@ void PressBench::find_region(std::size_t place, const Contact& contact, const Su
   Region& region = regions_[place];
   region.known = true;
   const Mesh& its = mesh();
-  const std::vector<vec3> way = distances(its, contact, 2 * truth.region());
+  const std::vector<float> way = distances(its, contact, 2 * truth.region());
   for (std::uint32_t v = 0; v < its.vertex_count; ++v) {
     if (length(dvec3(its.position(v)) - contact.foot) > truth.region()) continue;
-    const double r = length(dvec3(way[v]));
+    const double r = way[v];
     region.vertex.push_back(v);
     region.share.push_back(r < 2 * truth.region() ? truth.share(r) : 0.0);
   }

@@ -95,7 +95,7 @@ std::optional<ModelCandidate> measure(PressBench& bench, const SurfaceModel& mod
     count += 1.0;
   }
   if (count == 0.0) return std::nullopt;
-  const double vertex = shape_ns(model.shape) + (model.distance == Distance::kSurface ? kMarchNs : 0.0);
+  const double vertex = shape_ns(model.shape) + (model.distance == Distance::kSurface ? kSurfaceNs : 0.0);
   return ModelCandidate{label_of(model), std::sqrt(off / count), kTickUs + 1e-3 * vertices / count * vertex, ms / count,
                         vertices / count};
 }

@@ -6,8 +6,9 @@
 
 namespace pliant {
 
-inline constexpr double kTickUs = 3.0;     // [us] of a tick, in addition to its vertices
-inline constexpr double kMarchNs = 150.0;  // [ns] per vertex whose distance along the surface is computed
+inline constexpr double kTickUs = 3.0;  // [us] of a tick, in addition to its vertices
+inline constexpr double kSurfaceNs =
+    2.0;  // [ns] more per vertex: its distance along the surface (an arc, or a kept chart)
 
 // [ns] The volume shape has to sum its coefficient first.
 inline double shape_ns(Shape shape) {

@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "lab/study/surfaces/corrected_normals.h"
+#include "lab/study/surfaces/singular_surfaces.h"
+
 namespace pliant {
 namespace {
 
@@ -61,6 +64,26 @@ TEST(StudySurfaces, PatchesGainMoreThanFacetsWhenTheMeshGetsFiner) {
   };
   EXPECT_NEAR(gain(FeltSurface::kFacets), 4, 1.5);  // half the edge, a quarter of the sagitta
   EXPECT_GT(gain(FeltSurface::kPatches), 8);
+}
+
+TEST(StudySurfaces, CorrectedNormalsAreExactOnASheetAndThoseOfTrianglesBecomeSo) {
+  for (const double depth : {0.02, 0.1, 0.3}) {
+    EXPECT_LT(normals_on({false, 8, depth}, DrawnNormal::kCorrected, 1).worst, 1e-3) << depth;
+    const double coarse = normals_on({false, 8, depth}, DrawnNormal::kRecomputed, 1).rms;
+    EXPECT_NEAR(coarse / normals_on({false, 16, depth}, DrawnNormal::kRecomputed, 1).rms, 4, 1.2) << depth;
+  }
+  // Without a dent's slope a sphere's normals at rest are exact; the correction is to first order in the curvature.
+  const double rest = normals_on({true, 16, 0.02}, DrawnNormal::kRest, 1).rms;
+  EXPECT_LT(normals_on({true, 16, 0.02}, DrawnNormal::kCorrected, 1).rms, 0.05 * rest);
+}
+
+TEST(StudySurfaces, FeetAroundAnEdgeGiveNoWorkAndDriftingNormalsDo) {
+  const CreaseErrors feet = feel_creases(8, CreaseFelt::kFeet, 4000),
+                     drift = feel_creases(8, CreaseFelt::kDriftingNormals, 4000);
+  EXPECT_LT(feet.work, 0.02);
+  EXPECT_LT(feet.direction, 0.01);
+  EXPECT_GT(drift.work, 5 * feet.work);
+  EXPECT_GT(drift.direction, 1);
 }
 
 TEST(StudySurfaces, ErrorsRepeatToTheBit) {

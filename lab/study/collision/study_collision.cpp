@@ -7,17 +7,20 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "lab/console/progress.h"
+#include "lab/study/collision/upward_tree.h"
 #include "lab/study/corpus_folder.h"
 #include "lab/study/processor_time.h"
 #include "lab/study/studies.h"
 #include "runtime/assert.h"
 #include "scenes/brute_force.h"
 #include "scenes/scenes.h"
+#include "systems/touch/collide/around_vertex.h"
 #include "systems/touch/collide/foot.h"
 #include "systems/touch/collide/surface_query.h"
 #include "systems/touch/collide/triangle_tree.h"
@@ -37,7 +40,15 @@ class Searcher {
     vertex_ = nearest(mesh, start, within_);
     foot_ = descend(mesh, flat.triangle, flat.barycentric, start);
     hint_ = flat.triangle;
+    corner_.vertex = mesh.triangles[flat.triangle].x;
+    if (search != Search::kUpwards && search != Search::kUpwardsBall) return;
+    tree_.emplace(mesh);
+    at_vertex_.resize(mesh.vertex_count);
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      for (int i = 0; i < 3; ++i) at_vertex_[mesh.triangles[t][i]] = t;
   }
+  // [m] From the last query to the vertex found for it, by P1's tree.
+  double to_vertex() const { return std::sqrt(corner_.distance2); }
   // [m] Distance to the surface as found by the search.
   double operator()(dvec3 x) {
     switch (search_) {
@@ -56,6 +67,11 @@ class Searcher {
         hint_ = flat.triangle;
         return std::sqrt(flat.distance2);
       }
+      case Search::kUpwards:
+      case Search::kUpwardsBall:
+        corner_ =
+            search_ == Search::kUpwards ? tree_->as_printed(x, corner_.vertex) : tree_->repaired(x, corner_.vertex);
+        return around(x);
       case Search::kBrute:
         break;
     }
@@ -63,12 +79,23 @@ class Searcher {
   }
 
  private:
+  // [m] To the triangles around the vertex found.
+  double around(dvec3 x) const {
+    double least = within_;
+    around_vertex(mesh_, corner_.vertex, at_vertex_[corner_.vertex],
+                  [&](std::uint32_t t) { least = std::min(least, closest_point(mesh_, t, x).distance()); });
+    return least;
+  }
+
   const Mesh& mesh_;
   Search search_;
   double within_;
   SurfaceFoot vertex_;
   Foot foot_;
   std::uint32_t hint_ = FlatPoint::kNone;
+  std::optional<UpwardTree> tree_;
+  std::vector<std::uint32_t> at_vertex_;  // a triangle
+  UpwardTree::Answer corner_;
 };
 
 // Number of triangles of a sphere, as "200k", "2M".
@@ -126,8 +153,8 @@ std::vector<CollisionBody> bodies(StudySize size) {
 }
 
 const char* label_of(Search search) {
-  constexpr const char* kLabels[] = {"walk: vertex",  "walk: patches",       "tree: vertex",
-                                     "tree: closest", "tree: closest, hint", "brute force"};
+  constexpr const char* kLabels[] = {"walk: vertex",        "walk: patches", "tree: vertex", "tree: closest",
+                                     "tree: closest, hint", "P1, printed",   "P1, repaired", "brute force"};
   return kLabels[static_cast<std::size_t>(search)];
 }
 
@@ -215,8 +242,9 @@ std::vector<std::string> sentences_of(const std::vector<Row>& rows, const std::v
 
 const char* name_of(Search search) {
   constexpr const char* kNames[] = {
-      "local walk: contact vertex", "local walk: curved patches",      "tree: contact vertex",
-      "tree: closest point",        "tree: closest point from a hint", "brute force: contact vertex"};
+      "local walk: contact vertex",  "local walk: curved patches",      "tree: contact vertex",
+      "tree: closest point",         "tree: closest point from a hint", "P1's tree, upwards as printed",
+      "P1's tree, upwards repaired", "brute force: contact vertex"};
   return kNames[static_cast<std::size_t>(search)];
 }
 
@@ -252,7 +280,16 @@ Truth truth_along(const Mesh& mesh, const std::vector<dvec3>& way, std::size_t c
   const std::uint64_t begin = processor_ns();
   for (std::size_t i = 0; i < way.size(); i += truth.every) truth.vertex.push_back(brute.nearest(way[i], L).distance());
   truth.us = static_cast<double>(processor_ns() - begin) * 1e-3 / static_cast<double>(truth.vertex.size());
-  for (std::size_t i = 0; i < way.size(); i += truth.every) truth.flat.push_back(brute.closest(way[i], L).distance());
+  for (std::size_t i = 0; i < way.size(); i += truth.every) {
+    truth.flat.push_back(brute.closest(way[i], L).distance());
+    double least2 = L * L;
+    for (const uvec3& t : mesh.triangles)
+      for (int k = 0; k < 3; ++k) {
+        const dvec3 d = dvec3(mesh.position(t[k])) - way[i];
+        least2 = std::min(least2, dot(d, d));
+      }
+    truth.corner.push_back(std::sqrt(least2));
+  }
   return truth;
 }
 
@@ -264,16 +301,22 @@ SearchFigures search_along(const Mesh& mesh, Search search, const std::vector<dv
     return out;
   }
   Searcher searcher(mesh, search, way[0]);
-  std::vector<double> found;
+  std::vector<double> found, corner;
   found.reserve(way.size());
+  corner.reserve(way.size());
   const std::uint64_t begin = processor_ns();
-  for (const dvec3& x : way) found.push_back(searcher(x));
+  for (const dvec3& x : way) {
+    found.push_back(searcher(x));
+    corner.push_back(searcher.to_vertex());
+  }
   out.us = static_cast<double>(processor_ns() - begin) * 1e-3 / static_cast<double>(way.size());
   const bool vertex = search == Search::kWalk || search == Search::kTree;
+  const bool upwards = search == Search::kUpwards || search == Search::kUpwardsBall;
   for (std::size_t i = 0; i < out.checked; ++i) {
     const double off = found[i * truth.every] - (vertex ? truth.vertex : truth.flat)[i];
     out.misses += off > kMissRoom * mesh.mean_edge;
-    out.strict += off > kStrictRoom * mesh.box.diagonal();
+    const double strictly = upwards ? corner[i * truth.every] - truth.corner[i] : off;
+    out.strict += strictly > kStrictRoom * mesh.box.diagonal();
   }
   out.misses /= static_cast<double>(out.checked);
   out.strict /= static_cast<double>(out.checked);

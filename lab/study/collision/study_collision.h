@@ -1,5 +1,5 @@
-// Speed and miss rate of contact searches on a mesh: walking from the last place, the tree, and brute force over every
-// triangle.
+// Speed and miss rate of contact searches on a mesh: walking from the last place, the tree, P1's own tree of vertices,
+// and brute force over every triangle.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,12 @@ enum class Search : std::uint8_t {
   kTree,         // P1's contact vertex, through the tree
   kClosest,      // the closest point of the flat triangles, through the tree
   kClosestHint,  // the same, starting from the last one
+  kUpwards,      // P1's tree, upwards from the last vertex, as printed; then the triangles around the nearest vertex
+  kUpwardsBall,  // the same, repaired: until the ball of the least distance is inside the cell
   kBrute         // every triangle with a sufficiently near bounding sphere
 };
-inline constexpr Search kSearches[] = {Search::kWalk,    Search::kPatches,     Search::kTree,
-                                       Search::kClosest, Search::kClosestHint, Search::kBrute};
+inline constexpr Search kSearches[] = {Search::kWalk,        Search::kPatches, Search::kTree,        Search::kClosest,
+                                       Search::kClosestHint, Search::kUpwards, Search::kUpwardsBall, Search::kBrute};
 const char* name_of(Search search);
 
 // Path of a probe, tick by tick: it slides over the surface by 0.05 % of the mesh's size per tick, from 1.5 % behind it
@@ -33,13 +35,15 @@ inline constexpr double kMissRoom = 0.25;  // [1] of the mean edge
 struct SearchFigures {
   double us = 0.0;          // CPU time per query
   double misses = 0.0;      // [1] of the checked queries
-  double strict = 0.0;      // [1] the same with the strict criterion; NaN for patches, whose truth is another surface
+  double strict = 0.0;      // [1] the same with the strict criterion; NaN for patches, whose truth is another surface;
+                            // of P1's tree: queries that miss the nearest vertex
   std::size_t checked = 0;  //
 };
 // [m] Brute-force distances at every `every`-th place of the path.
 struct Truth {
   std::size_t every = 1;
   std::vector<double> vertex, flat;  // to P1's contact vertex, and to the closest point
+  std::vector<double> corner;        // to the nearest vertex of the mesh
   double us = 0.0;                   // per query of the contact vertex
 };
 Truth truth_along(const Mesh& mesh, const std::vector<dvec3>& way, std::size_t checks);

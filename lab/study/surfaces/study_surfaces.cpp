@@ -9,6 +9,8 @@
 #include "lab/console/progress.h"
 #include "lab/study/processor_time.h"
 #include "lab/study/studies.h"
+#include "lab/study/surfaces/corrected_normals.h"
+#include "lab/study/surfaces/singular_surfaces.h"
 #include "systems/touch/collide/foot.h"
 #include "systems/touch/collide/surface_query.h"
 #include "systems/touch/collide/triangle_tree.h"
@@ -172,6 +174,79 @@ std::string falls_of(const ParetoTable& table) {
   return words;
 }
 
+// P1's corrected normals and those of the dented triangles: the worse of a sheet and a sphere.
+Status study_normals(OutputFolder& out, bool full) {
+  ParetoTable table;
+  table.study = "surfaces_normals";
+  table.title =
+      "normals of a dent 0.1 of its reach deep, on a sheet and a sphere of 5 to 40 edges a reach: the worse of the two";
+  table.cost_name = "cost_ns_per_vertex";
+  table.cost_axis = "cost with the heights [ns a vertex]";
+  table.error_name = "angle_deg";
+  table.error_axis = "RMS angle to the dented surface's normals [degree]";
+  table.more = {"edges_per_reach"};
+  std::string csv = "surface,edges_per_reach,depth_over_reach,normals,rms_deg,worst_deg,cost_ns_per_vertex\n", words;
+  for (const DrawnNormal normal : kDrawnNormals) {
+    for (const int edges : {5, 10, 20, 40}) {
+      if (!full && edges > 10) continue;
+      NormalErrors worse;
+      for (const bool sphere : {false, true}) {
+        for (const double depth : {0.02, 0.1, 0.3}) {
+          const NormalErrors e = normals_on({sphere, edges, depth}, normal, full ? 9 : 2);
+          csv += fmt::format("{},{},{:g},{},{:.9g},{:.9g},{:.3g}\n", sphere ? "sphere" : "sheet", edges, depth,
+                             name_of(normal), e.rms, e.worst, e.ns);
+          if (depth != 0.1) continue;
+          worse.rms = std::max(worse.rms, e.rms);
+          worse.ns = std::max(worse.ns, e.ns);
+        }
+      }
+      table.rows.push_back(
+          {fmt::format("{}", edges), worse.ns, worse.rms, name_of(normal), {static_cast<std::int64_t>(edges)}});
+    }
+    const std::size_t count = table.rows.size(), sizes = full ? 4 : 2;
+    words += fmt::format("{}{} {:.2g} to {:.2g} degrees for {} to {} ns a vertex", words.empty() ? "" : ", ",
+                         name_of(normal), table.rows[count - sizes].error, table.rows[count - 1].error,
+                         two_digits(table.rows[count - sizes].cost), two_digits(table.rows[count - 1].cost));
+  }
+  table.sentences.push_back("From 5 to " + std::string(full ? "40" : "10") + " edges a reach: " + words + ".");
+  if (const Status written = write_text(out, "surfaces_normals_all.csv", csv); !written) return written;
+  return write_study(out, table);
+}
+
+// A box by drifting normals and by feet.
+Status study_creases(OutputFolder& out, bool full) {
+  ParetoTable table;
+  table.study = "surfaces_creases";
+  table.title = "a probe around the edges of a box of 100 x 40 mm, 1 to 5 mm behind its faces";
+  table.cost_name = "cost_us";
+  table.cost_axis = "cost [us a query that follows the probe]";
+  table.error_name = "loop_work";
+  table.error_axis = "work of a closed loop, of the energy stored [1]";
+  table.more = {"cells", "direction_deg", "steepest"};
+  table.least_error = 1e-6;
+  std::string words;
+  for (const CreaseFelt felt : kCreaseFelt) {
+    double work = 0.0, direction = 0.0, steepest = 0.0;
+    for (const int cells : {4, 8, 16, 32, 64}) {
+      if (!full && cells > 8) continue;
+      const CreaseErrors e = feel_creases(cells, felt, full ? 40'000 : 4'000);
+      table.rows.push_back({fmt::format("{} cells", cells),
+                            e.us,
+                            e.work,
+                            name_of(felt),
+                            {static_cast<std::int64_t>(cells), e.direction, e.steepest}});
+      work = std::max(work, e.work);
+      direction = std::max(direction, e.direction);
+      steepest = std::max(steepest, e.steepest);
+    }
+    words +=
+        fmt::format("{}{} at most {:.2g} of the energy, {:.2g} degrees off a face's normal, a slope of {} stiffnesses",
+                    words.empty() ? "" : "; ", name_of(felt), work, direction, two_digits(steepest));
+  }
+  table.sentences.push_back("Over 4 to " + std::string(full ? "64" : "8") + " cells a side: " + words + ".");
+  return write_study(out, table);
+}
+
 }  // namespace
 
 const char* name_of(FeltSurface felt) {
@@ -247,7 +322,10 @@ Status study_surfaces(OutputFolder& out, StudySize size, const Interrupt& interr
     table.sentences.push_back(words + ".");
     if (const Status written = write_study(out, table); !written) return written;
   }
-  return Done{};
+  if (interrupt.requested()) return interrupted();
+  if (const Status written = study_normals(out, full); !written) return written;
+  if (interrupt.requested()) return interrupted();
+  return study_creases(out, full);
 }
 
 }  // namespace pliant

@@ -52,12 +52,12 @@ void FeedWriter::zone(std::uint32_t zone, std::uint64_t mask, bool rests, bool s
   push({FieldEvent::kZone, zone, mask, (rests ? FieldEvent::kRests : 0) | (sleeps ? FieldEvent::kSleeps : 0), {}});
 }
 
-void FeedWriter::offsets(std::uint32_t source, std::uint32_t zone, const std::vector<vec3>& offset, bool fold) {
+void FeedWriter::offsets(std::uint32_t source, std::uint32_t zone, const Offsets& offset, bool fold) {
   if (!feeds_ || lost_) return;
   lost_ = !feed_->events.has_room();  // a block is sent with its event or not at all
   if (lost_) return;
   FieldOffsets block;
-  std::copy_n(offset.begin() + static_cast<std::ptrdiff_t>(zone * kZoneSize), kZoneSize, block.offset.begin());
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) block.offset[i] = offset[zone * kZoneSize + i];
   lost_ = !feed_->offsets.push(block);
   if (lost_) return;
   push({fold ? FieldEvent::kFoldOffsets : FieldEvent::kOffsets, zone, source, 0, {}});

@@ -11,6 +11,7 @@
 namespace pliant {
 
 struct ObjectState;
+struct Offsets;
 
 class FeedWriter {
  public:
@@ -25,7 +26,7 @@ class FeedWriter {
   void source(std::uint32_t source, const FieldSource& now);
   void zone(std::uint32_t zone, std::uint64_t mask, bool rests, bool sleeps);
   // Of a zone's vertices; `offset` is indexed by the mesh's vertices, from zone * kZoneSize on.
-  void offsets(std::uint32_t source, std::uint32_t zone, const std::vector<vec3>& offset, bool fold);
+  void offsets(std::uint32_t source, std::uint32_t zone, const Offsets& offset, bool fold);
   void end_tick(std::uint64_t tick);
 
   // At most once a tick, before its first event. A reader that joined late or fell behind needs the streams of all

@@ -85,7 +85,8 @@ void swap_dents(SourceState& a, SourceState& b) {
   std::swap(a.before, b.before);
   std::swap(a.feed_number, b.feed_number);
   a.zones.swap(b.zones);
-  a.offset.swap(b.offset);
+  std::swap(a.offset, b.offset);
+  std::swap(a.chart, b.chart);
 }
 
 }  // namespace pliant

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "systems/touch/collide/surface_distance.h"
 #include "systems/touch/model/field.h"
 #include "systems/touch/model/field_kernels.h"
 
@@ -28,12 +27,7 @@ void gather_targets(const ObjectState& object, const Mesh& mesh, std::uint32_t z
   bool fresh = true;
   for (std::uint64_t bits = object.zone_sources[zone]; bits; bits &= bits - 1) {
     const SourceState& source = object.sources[static_cast<std::size_t>(std::countr_zero(bits))];
-    if (source.offset.empty()) {
-      add_targets(mesh, zone, source.now, fresh, targets);
-    } else {
-      if (fresh) targets = {};
-      add_targets_at_offsets(mesh, zone, source.now, source.offset, targets);
-    }
+    add_targets(mesh, zone, source.now, source.offset, fresh, targets);
     fresh = false;
   }
   if (fresh) targets = {};

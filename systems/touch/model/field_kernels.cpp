@@ -11,59 +11,82 @@
 namespace pliant {
 namespace {
 
+// A zone's vertices seen from a source: chords, or offsets along the surface.
+struct ChordsOfZone {
+  const float* __restrict px, * __restrict py, * __restrict pz;
+  const float* __restrict nx, * __restrict ny, * __restrict nz;
+  vec3 center, normal;
+  ChordsOfZone(const Mesh& mesh, std::uint32_t begin, const FieldSource& s)
+      : px(mesh.px.data() + begin),
+        py(mesh.py.data() + begin),
+        pz(mesh.pz.data() + begin),
+        nx(mesh.nx.data() + begin),
+        ny(mesh.ny.data() + begin),
+        nz(mesh.nz.data() + begin),
+        center(s.center),
+        normal(s.normal) {}
+  float dx(std::uint32_t i) const { return px[i] - center.x; }
+  float dy(std::uint32_t i) const { return py[i] - center.y; }
+  float dz(std::uint32_t i) const { return pz[i] - center.z; }
+  float facing(std::uint32_t i) const {  // shared::shape_facing
+    float facing = 4.0f * (nx[i] * normal.x + ny[i] * normal.y + nz[i] * normal.z);
+    facing = facing < 0.0f ? 0.0f : facing;
+    return facing > 1.0f ? 1.0f : facing;
+  }
+  vec3 source_normal(std::uint32_t) const { return normal; }
+};
+struct OffsetsOfZone {
+  const float* __restrict ox, * __restrict oy, * __restrict oz;
+  const float* __restrict nx, * __restrict ny, * __restrict nz;
+  OffsetsOfZone(const Mesh& mesh, std::uint32_t begin, const Offsets& offset)
+      : ox(offset.zones[begin / kZoneSize].x.data()),
+        oy(offset.zones[begin / kZoneSize].y.data()),
+        oz(offset.zones[begin / kZoneSize].z.data()),
+        nx(mesh.nx.data() + begin),
+        ny(mesh.ny.data() + begin),
+        nz(mesh.nz.data() + begin) {}
+  float dx(std::uint32_t i) const { return ox[i]; }
+  float dy(std::uint32_t i) const { return oy[i]; }
+  float dz(std::uint32_t i) const { return oz[i]; }
+  float facing(std::uint32_t) const { return 1.0f; }
+  vec3 source_normal(std::uint32_t i) const { return {nx[i], ny[i], nz[i]}; }
+};
+
 // A radial shape depends on u alone; target and gradient follow in the same way for all of them. kFresh: overwrites
 // `out`.
-template <bool kFresh, class Profile>
-inline __attribute__((always_inline)) void add_radial(const Mesh& mesh, std::uint32_t begin, const FieldSource& s,
-                                                      ZoneTargets& out, Profile profile) {
-  const float* __restrict px = mesh.px.data() + begin;
-  const float* __restrict py = mesh.py.data() + begin;
-  const float* __restrict pz = mesh.pz.data() + begin;
-  const float* __restrict nx = mesh.nx.data() + begin;
-  const float* __restrict ny = mesh.ny.data() + begin;
-  const float* __restrict nz = mesh.nz.data() + begin;
-  const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
-  const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z;
+template <bool kFresh, class View, class Profile>
+inline __attribute__((always_inline)) void add_radial(const View view, const FieldSource& s, ZoneTargets& out,
+                                                      Profile profile) {
   const float inv = s.inv_reach2, alpha = s.amplitude;
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
-    const float dx = px[i] - cx, dy = py[i] - cy, dz = pz[i] - cz;
+    const float dx = view.dx(i), dy = view.dy(i), dz = view.dz(i);
     float u = (dx * dx + dy * dy + dz * dz) * inv;
     u = u < 1.0f ? u : 1.0f;
-    float facing = 4.0f * (nx[i] * mx + ny[i] * my + nz[i] * mz);  // shared::shape_facing
-    facing = facing < 0.0f ? 0.0f : facing;
-    facing = facing > 1.0f ? 1.0f : facing;
     const vec2 f = profile(u);
-    const float a = alpha * facing;
+    const float a = alpha * view.facing(i);
     const float g = 2.0f * inv * a * f.y;
-    const float along = dx * nx[i] + dy * ny[i] + dz * nz[i];
+    const float along = dx * view.nx[i] + dy * view.ny[i] + dz * view.nz[i];
     out.h[i] = (kFresh ? 0.0f : out.h[i]) - a * f.x;
-    out.nx[i] = (kFresh ? 0.0f : out.nx[i]) + g * (dx - along * nx[i]);
-    out.ny[i] = (kFresh ? 0.0f : out.ny[i]) + g * (dy - along * ny[i]);
-    out.nz[i] = (kFresh ? 0.0f : out.nz[i]) + g * (dz - along * nz[i]);
+    out.nx[i] = (kFresh ? 0.0f : out.nx[i]) + g * (dx - along * view.nx[i]);
+    out.ny[i] = (kFresh ? 0.0f : out.ny[i]) + g * (dy - along * view.ny[i]);
+    out.nz[i] = (kFresh ? 0.0f : out.nz[i]) + g * (dz - along * view.nz[i]);
   }
 }
-template <class Profile>
-inline __attribute__((always_inline)) void radial(const Mesh& mesh, std::uint32_t begin, const FieldSource& s,
-                                                  bool fresh, ZoneTargets& out, Profile profile) {
-  fresh ? add_radial<true>(mesh, begin, s, out, profile) : add_radial<false>(mesh, begin, s, out, profile);
+template <class View, class Profile>
+inline __attribute__((always_inline)) void radial(const View& view, const FieldSource& s, bool fresh, ZoneTargets& out,
+                                                  Profile profile) {
+  fresh ? add_radial<true>(view, s, out, profile) : add_radial<false>(view, s, out, profile);
 }
 
 // A shape that gives the target itself.
-template <class Target>
-inline __attribute__((always_inline)) void add_whole(const Mesh& mesh, std::uint32_t begin, const FieldSource& s,
-                                                     bool fresh, ZoneTargets& out, Target target) {
-  const float* __restrict px = mesh.px.data() + begin;
-  const float* __restrict py = mesh.py.data() + begin;
-  const float* __restrict pz = mesh.pz.data() + begin;
-  const float* __restrict nx = mesh.nx.data() + begin;
-  const float* __restrict ny = mesh.ny.data() + begin;
-  const float* __restrict nz = mesh.nz.data() + begin;
-  const vec3 center = s.center, normal = s.normal;
+template <class View, class Target>
+inline __attribute__((always_inline)) void add_whole(const View view, const FieldSource& s, bool fresh,
+                                                     ZoneTargets& out, Target target) {
   const float inv = s.inv_reach2, alpha = s.amplitude;
   if (fresh) out = {};
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
-    const vec3 d(px[i] - center.x, py[i] - center.y, pz[i] - center.z), n(nx[i], ny[i], nz[i]);
-    const vec4 t = target(d, n, normal, inv, alpha);
+    const vec3 d(view.dx(i), view.dy(i), view.dz(i)), n(view.nx[i], view.ny[i], view.nz[i]);
+    const vec4 t = target(d, n, view.source_normal(i), inv, alpha);
     out.nx[i] += t.x;
     out.ny[i] += t.y;
     out.nz[i] += t.z;
@@ -71,18 +94,22 @@ inline __attribute__((always_inline)) void add_whole(const Mesh& mesh, std::uint
   }
 }
 
-// One kernel for each shape that ships.
+// One kernel for each shape that ships and each view.
 #define PLIANT_ADD_radial(word) \
-  radial(mesh, begin, s, fresh, out, [parameter](float u) { return shared::shape_##word(u, parameter); })
-#define PLIANT_ADD_whole(word)                                                                            \
-  add_whole(mesh, begin, s, fresh, out, [parameter](vec3 d, vec3 n, vec3 m, float inv, float amplitude) { \
-    return shared::field_##word(d, n, m, inv, amplitude, parameter);                                      \
+  radial(view, s, fresh, out, [parameter](float u) { return shared::shape_##word(u, parameter); })
+#define PLIANT_ADD_whole(word)                                                                     \
+  add_whole(view, s, fresh, out, [parameter](vec3 d, vec3 n, vec3 m, float inv, float amplitude) { \
+    return shared::field_##word(d, n, m, inv, amplitude, parameter);                               \
   })
-#define PLIANT_SHAPE(word, form, ...)                                                                    \
-  PLIANT_KERNEL void add_##word(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh, \
-                                ZoneTargets& out) {                                                      \
-    [[maybe_unused]] const float parameter = s.parameter;                                                \
-    PLIANT_ADD_##form(word);                                                                             \
+#define PLIANT_SHAPE(word, form, ...)                                                                           \
+  PLIANT_KERNEL void add_##word(const ChordsOfZone& view, const FieldSource& s, bool fresh, ZoneTargets& out) { \
+    [[maybe_unused]] const float parameter = s.parameter;                                                       \
+    PLIANT_ADD_##form(word);                                                                                    \
+  }                                                                                                             \
+  PLIANT_KERNEL void add_##word##_along(const OffsetsOfZone& view, const FieldSource& s, bool fresh,            \
+                                        ZoneTargets& out) {                                                     \
+    [[maybe_unused]] const float parameter = s.parameter;                                                       \
+    PLIANT_ADD_##form(word);                                                                                    \
   }
 PLIANT_SHAPES(PLIANT_SHAPE)
 #undef PLIANT_SHAPE
@@ -93,9 +120,9 @@ vec2 profile_of(const ShapeFunction& shape, float u) {
   return {static_cast<float>(shape.value(u)), static_cast<float>(shape.slope(u))};
 }
 
-void add_registered(const ShapeFunction& shape, const Mesh& mesh, std::uint32_t begin, const FieldSource& s, bool fresh,
-                    ZoneTargets& out) {
-  radial(mesh, begin, s, fresh, out, [&](float u) { return profile_of(shape, u); });
+template <class View>
+void add_registered(const ShapeFunction& shape, const View& view, const FieldSource& s, bool fresh, ZoneTargets& out) {
+  radial(view, s, fresh, out, [&](float u) { return profile_of(shape, u); });
 }
 
 constexpr std::uint32_t kLanes = 8;
@@ -107,37 +134,31 @@ inline __attribute__((always_inline)) double sum_lanes(const float (&lanes)[kLan
   return total;
 }
 
-PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, VolumeSums& sums) {
-  const float* __restrict px = mesh.px.data() + begin;
-  const float* __restrict py = mesh.py.data() + begin;
-  const float* __restrict pz = mesh.pz.data() + begin;
-  const float* __restrict nx = mesh.nx.data() + begin;
-  const float* __restrict ny = mesh.ny.data() + begin;
-  const float* __restrict nz = mesh.nz.data() + begin;
+template <class View>
+inline __attribute__((always_inline)) void sum_volume(const View view, const Mesh& mesh, std::uint32_t begin,
+                                                      const FieldSource& s, VolumeSums& sums) {
+  const ChordsOfZone chord(mesh, begin, s);
   const float* __restrict area = mesh.area.data() + begin;
-  const float cx = s.center.x, cy = s.center.y, cz = s.center.z;
   const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z, inv = s.inv_reach2;
   float S0[kLanes] = {}, S1[kLanes] = {}, Q0[kLanes] = {}, Q1[kLanes] = {}, Q2[kLanes] = {}, bend[kLanes] = {},
         spread[kLanes] = {};
   for (std::uint32_t v = 0; v < kZoneSize; v += kLanes) {
     for (std::uint32_t l = 0; l < kLanes; ++l) {
       const std::uint32_t i = v + l;
-      const float dx = px[i] - cx, dy = py[i] - cy, dz = pz[i] - cz;
+      const float dx = view.dx(i), dy = view.dy(i), dz = view.dz(i);
       const float r2 = dx * dx + dy * dy + dz * dz;
       float u = r2 * inv;
       u = u < 1.0f ? u : 1.0f;
-      float facing = 4.0f * (nx[i] * mx + ny[i] * my + nz[i] * mz);
-      facing = facing < 0.0f ? 0.0f : facing;
-      facing = facing > 1.0f ? 1.0f : facing;
       const float q = 1.0f - u;
-      const float w = q * q * q * facing;
+      const float w = q * q * q * view.facing(i);
       const float aw = area[i] * w, aww = aw * w;
       S0[l] += aw;
       S1[l] += aw * u;
       Q0[l] += aww;
       Q1[l] += aww * u;
       Q2[l] += aww * u * u;
-      bend[l] += aw * ((nx[i] - mx) * dx + (ny[i] - my) * dy + (nz[i] - mz) * dz);
+      bend[l] +=
+          aw * ((chord.nx[i] - mx) * chord.dx(i) + (chord.ny[i] - my) * chord.dy(i) + (chord.nz[i] - mz) * chord.dz(i));
       spread[l] += aw * r2;
     }
   }
@@ -148,6 +169,14 @@ PLIANT_KERNEL void sum_volume(const Mesh& mesh, std::uint32_t begin, const Field
   sums.Q2 += sum_lanes(Q2);
   sums.bend += sum_lanes(bend);
   sums.spread += sum_lanes(spread);
+}
+
+PLIANT_KERNEL void sum_volume_of_chords(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, VolumeSums& sums) {
+  sum_volume(ChordsOfZone(mesh, begin, s), mesh, begin, s, sums);
+}
+PLIANT_KERNEL void sum_volume_along(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, const Offsets& offset,
+                                    VolumeSums& sums) {
+  sum_volume(OffsetsOfZone(mesh, begin, offset), mesh, begin, s, sums);
 }
 
 PLIANT_KERNEL void step_linear(float* __restrict state, float* __restrict rate, float hh, float hv, float vh,
@@ -253,19 +282,39 @@ float share_at(const FieldSource& source, vec3 position, vec3 normal) {
 }
 
 void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets) {
-  const std::uint32_t begin = mesh.zone_begin(zone);
+  const ChordsOfZone view(mesh, mesh.zone_begin(zone), source);
   if (const ShapeFunction* own = registered_shape(source.shape))
-    return add_registered(*own, mesh, begin, source, fresh, targets);
+    return add_registered(*own, view, source, fresh, targets);
   int place = 0;
 #define PLIANT_SHAPE(word, ...) \
-  if (static_cast<int>(source.shape) == place++) return add_##word(mesh, begin, source, fresh, targets);
+  if (static_cast<int>(source.shape) == place++) return add_##word(view, source, fresh, targets);
+  PLIANT_SHAPES(PLIANT_SHAPE)
+#undef PLIANT_SHAPE
+  UNREACHABLE();
+}
+
+void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Offsets& offset, bool fresh,
+                 ZoneTargets& targets) {
+  if (offset.empty()) return add_targets(mesh, zone, source, fresh, targets);
+  const OffsetsOfZone view(mesh, mesh.zone_begin(zone), offset);
+  if (const ShapeFunction* own = registered_shape(source.shape))
+    return add_registered(*own, view, source, fresh, targets);
+  int place = 0;
+#define PLIANT_SHAPE(word, ...) \
+  if (static_cast<int>(source.shape) == place++) return add_##word##_along(view, source, fresh, targets);
   PLIANT_SHAPES(PLIANT_SHAPE)
 #undef PLIANT_SHAPE
   UNREACHABLE();
 }
 
 void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums) {
-  sum_volume(mesh, mesh.zone_begin(zone), source, sums);
+  sum_volume_of_chords(mesh, mesh.zone_begin(zone), source, sums);
+}
+
+void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Offsets& offset,
+                     VolumeSums& sums) {
+  if (offset.empty()) return add_volume_sums(mesh, zone, source, sums);
+  sum_volume_along(mesh, mesh.zone_begin(zone), source, offset, sums);
 }
 
 ZoneRest step_residual(const Motion& motion, const PaintedMotion& painted, HeightField& field, std::uint32_t zone) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "components/height_field.h"
 #include "components/mesh.h"
@@ -16,8 +17,38 @@ struct alignas(32) ZoneTargets {
   std::array<float, kZoneSize> nx, ny, nz, h;
 };
 
-// Adds the source's target on the zone's vertices; `fresh`: overwrites instead.
+// Offset of a vertex that lies beyond the reach; the field is zero there.
+inline constexpr float kFar = 1e9f;  // [m]
+
+// Tangent vectors from a contact to the vertices of a mesh, zone by zone (surface_distance.h). [m]
+struct alignas(32) ZoneOffsets {
+  std::array<float, kZoneSize> x, y, z;
+};
+struct Offsets {
+  std::vector<ZoneOffsets> zones;
+  bool empty() const { return zones.empty(); }
+  void size(const Mesh& mesh) {
+    zones.resize(mesh.zone_count());
+    for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) clear(zone);
+  }
+  void clear(std::uint32_t zone) {
+    for (auto* axis : {&zones[zone].x, &zones[zone].y, &zones[zone].z}) axis->fill(kFar);
+  }
+  void set(std::uint32_t v, vec3 o) {
+    ZoneOffsets& zone = zones[v / kZoneSize];
+    zone.x[v % kZoneSize] = o.x, zone.y[v % kZoneSize] = o.y, zone.z[v % kZoneSize] = o.z;
+  }
+  vec3 operator[](std::uint32_t v) const {
+    const ZoneOffsets& zone = zones[v / kZoneSize];
+    return {zone.x[v % kZoneSize], zone.y[v % kZoneSize], zone.z[v % kZoneSize]};
+  }
+};
+
+// Adds the source's target on the zone's vertices; `fresh`: overwrites instead. Offsets, if any, take the chord's
+// place: seen from the vertex, the contact is then in its tangent plane, and the angle between normals is not tested.
 void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets);
+void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Offsets& offset, bool fresh,
+                 ZoneTargets& targets);
 
 // Sums over a zone that fix the coefficient c of the volume-preserving shape (force_field.cpp): with w = (1-u)^3 and A
 // the vertex area, S_n = sum A w u^n, Q_n = sum A w^2 u^n, and the ratio bend/spread is the mean curvature H.
@@ -25,6 +56,8 @@ struct VolumeSums {
   double S0 = 0, S1 = 0, Q0 = 0, Q1 = 0, Q2 = 0, bend = 0, spread = 0;
 };
 void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums);
+void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Offsets& offset,
+                     VolumeSums& sums);
 
 // Advances the residual of a zone by its free motion and returns its size: max |h| [m] and max |n| [1], each with its
 // rate over the natural frequency. Chooses the step by the law.

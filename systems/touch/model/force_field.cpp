@@ -139,7 +139,7 @@ void force_field(World& world, Tick tick) {
       const bool left_behind = touching && source.now.amplitude > 0 && leaves_behind(contact, mesh, object.motion);
       if (source.active && (!touching || left_behind)) fold(source, object, world, tick);
       if (!touching) {
-        if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
+        if (!source.offset.empty()) clear_offsets(source.zones, source.offset);
         source.zones.clear();
         contact.amplitude = 0.0;
         continue;
@@ -161,20 +161,16 @@ void force_field(World& world, Tick tick) {
         source.now.amplitude = 0.0f;
         source.active = true;
       }
-      if (!source.offset.empty()) clear_offsets(mesh, source.zones, source.offset);
+      if (!source.offset.empty()) clear_offsets(source.zones, source.offset);
       const uvec3 corner = mesh.triangles[contact.triangle];
       const std::array<std::uint32_t, 3> own{corner.x / kZoneSize, corner.y / kZoneSize, corner.z / kZoneSize};
       flood(mesh, vec3(contact.foot), 1 / std::sqrt(double(source.now.inv_reach2)), own, object, source.zones);
-      if (!source.offset.empty()) march_distance(mesh, contact, source.now, source.offset, source.heap);
+      if (!source.offset.empty())
+        fill_offsets(mesh, object.ways, contact.triangle, source.now, source.zones, object.march, source.chart,
+                     source.offset);
       if (row_of(source.now.shape).parameter == ShapeParameter::kVolume) {
         VolumeSums sums;
-        for (const std::uint32_t zone : source.zones) {
-          if (source.offset.empty()) {
-            add_volume_sums(mesh, zone, source.now, sums);
-          } else {
-            add_volume_sums_at_offsets(mesh, zone, source.now, source.offset, sums);
-          }
-        }
+        for (const std::uint32_t zone : source.zones) add_volume_sums(mesh, zone, source.now, source.offset, sums);
         add_echo_sums(world, {slot, static_cast<std::uint32_t>(&source - object.sources.data())}, source, sums);
         source.now.parameter = volume_coefficient(sums, std::max(0.0, -contact.height), deformable.volume);
       }

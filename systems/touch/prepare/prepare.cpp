@@ -9,6 +9,7 @@
 #include "components/probe_shape.h"
 #include "components/soft_body.h"
 #include "runtime/long_work.h"
+#include "systems/touch/collide/arc_reach.h"
 #include "systems/touch/collide/seams.h"
 #include "systems/touch/model/field.h"
 #include "systems/touch/model/force_field.h"
@@ -106,8 +107,8 @@ SourceState make_source(Entity contact, const Mesh& mesh, const Deformable& defo
   source.contact = contact;
   source.zones.reserve(mesh.zone_count());
   if (deformable.distance == Distance::kSurface) {
-    source.offset.assign(mesh.px.size(), vec3(kFar));
-    source.heap.reserve(std::size_t{8} * mesh.vertex_count);
+    source.offset.size(mesh);
+    source.chart.size(mesh);
   }
   return source;
 }
@@ -129,6 +130,21 @@ void make_echoes(const World& world, ObjectState& object) {
   const std::size_t wanted = 2 * object.sources.size();
   while (object.sources.size() < std::min<std::size_t>(wanted, kMaxContactsPerObject))
     object.sources.push_back(make_source(kNoEntity, world.meshes[deformable.mesh], deformable));
+}
+
+// Distance::kSurface: up to the reach of a dent as deep as half the largest tip's radius.
+void prepare_distance(World& world, const TouchState& touch, ObjectState& object) {
+  const Deformable& deformable = world.registry.get<Deformable>(object.entity);
+  if (deformable.distance != Distance::kSurface) return;
+  const Mesh& mesh = world.meshes[deformable.mesh];
+  double radius = 0.0;
+  for (const ProbeState& probe : touch.probes)
+    for (const Tip& tip : probe.tips) radius = std::max(radius, tip.radius);
+  object.march.size(mesh);
+  object.ways.sides = sides_of(mesh);
+  const double reach = std::max(deformable.reach, kLeastReach * mesh.mean_edge);
+  object.ways.hubs = chart_hubs(mesh, reach);
+  object.ways.arc_reach = arc_reach(mesh, object.ways.sides, object, reach + radius);
 }
 
 bool something_presses(Registry& registry) {
@@ -320,6 +336,7 @@ Status prepare_touch(World& world) {
   feel_over_seams(world, *touch);
   for (ObjectState& object : touch->objects)
     list_creases(world.meshes[registry.get<Deformable>(object.entity).mesh], object);
+  for (ObjectState& object : touch->objects) prepare_distance(world, *touch, object);
   make_sources(world, *touch, tips.contacts);
   if (something_presses(registry)) make_presses(world, *touch);
   for (ObjectState& object : touch->objects) make_echoes(world, object);

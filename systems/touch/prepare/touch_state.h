@@ -59,11 +59,11 @@ struct SourceState {
   bool active = false;               // the contact dented the surface in the last tick
   FieldSource now, before;           // of this tick and of the last: their difference is the target's rate
   std::vector<std::uint32_t> zones;  // within reach; capacity: all zones
-  std::vector<vec3> offset;          // [m] Distance::kSurface only, per vertex: see surface_distance.h
+  Offsets offset;                    // Distance::kSurface only: see surface_distance.h
+  Chart chart;                       // the same; of the contact's triangle, or of an earlier one
   std::uint32_t feed_number = 0;     // index of the dent in the feed (feed_field.h)
   SourceLink of;                     // of an echo: its source in a neighbour (seam_dents.h)
   std::uint64_t echoed = 0;          // number of the last tick in which it was one, plus 1
-  std::vector<MarchItem> heap;       // working memory of the march; sized at preparation
 };
 
 // GPU only: the dent that a contact left. See field.h.
@@ -161,6 +161,8 @@ struct ObjectState {
   std::vector<FieldSource> terms;           // GPU only: the whole field at `time`
   FeedWriter feed_writer;                   // feeds a GPU that steps a copy of the field
   double time = 0.0;                        // [s] end of the last tick
+  SurfaceWays ways;                         // Distance::kSurface only
+  March march;                              // the same: working memory
   std::vector<SourceState> sources;         // a pool for probes, one per press, echoes; at most kMaxContactsPerObject
   std::uint32_t first_echo = 0;             // index into `sources`
   std::vector<PressState> presses;          // empty unless the level has a moving soft or rigid body
