@@ -126,8 +126,10 @@ Start start_on_side(const ObjectState& object, const Mesh& mesh, const NearCreas
 bool connected(const Mesh& mesh, const Foot& from, const Foot& to, dvec3 x, double within) {
   const dvec3 p = inside_triangle(mesh, from.triangle, from.barycentric),
               q = inside_triangle(mesh, to.triangle, to.barycentric);
-  return walk_section(mesh, from.triangle, to.triangle, p, cross(p - x, q - x),
-                      [&](const SectionEdge& at) { return length(at.p - x) <= within; });
+  const dvec3 across = cross(p - x, q - x);
+  const auto near = [&](const SectionEdge& at) { return length(at.p - x) <= within; };
+  return from.triangle == to.triangle || walk_section(mesh, from.triangle, to.triangle, p, across, near) ||
+         walk_section(mesh, from.triangle, to.triangle, p, -across, near);
 }
 
 }  // namespace
