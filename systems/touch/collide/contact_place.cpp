@@ -169,7 +169,8 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
       return length(f.p - foot.p) < same + 1e-9 * length(f.p) && dot(f.normal, foot.normal) > 0.999;
     };
     if (std::any_of(feet.begin(), feet.begin() + count, is_same)) continue;
-    if (!connected(mesh, foot, own, x, kCreaseReach * std::max(-own.height, -foot.height))) continue;
+    const double within = kCreaseReach * std::max(-own.height, -foot.height) + 2 * static_cast<double>(mesh.tree.bulge);
+    if (!connected(mesh, foot, own, x, within)) continue;
     if (count < kMostFeet) {
       feet[count++] = foot;
     } else {  // replaces the farthest of the others
