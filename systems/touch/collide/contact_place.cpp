@@ -129,8 +129,10 @@ Start start_on_side(const ObjectState& object, const Mesh& mesh, const NearCreas
 bool connected(const Mesh& mesh, const Foot& from, const Foot& to, dvec3 x, double within) {
   const dvec3 p = inside_triangle(mesh, from.triangle, from.barycentric),
               q = inside_triangle(mesh, to.triangle, to.barycentric);
-  return walk_section(mesh, from.triangle, to.triangle, p, cross(p - x, q - x),
-                      [&](const SectionEdge& at) { return length(at.p - x) <= within; });
+  const dvec3 across = cross(p - x, q - x);
+  const auto near = [&](const SectionEdge& at) { return length(at.p - x) <= within; };
+  return from.triangle == to.triangle || walk_section(mesh, from.triangle, to.triangle, p, across, near) ||
+         walk_section(mesh, from.triangle, to.triangle, p, -across, near);
 }
 
 }  // namespace
@@ -170,7 +172,8 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
       return length(f.p - foot.p) < same + 1e-9 * length(f.p) && dot(f.normal, foot.normal) > 0.999;
     };
     if (std::any_of(feet.begin(), feet.begin() + count, is_same)) continue;
-    if (!connected(mesh, foot, own, x, kCreaseReach * std::max(-own.height, -foot.height))) continue;
+    const double within = kCreaseReach * std::max(-own.height, -foot.height) + 2 * static_cast<double>(mesh.tree.bulge);
+    if (!connected(mesh, foot, own, x, within)) continue;
     if (count < kMostFeet) {
       feet[count++] = foot;
     } else {  // replaces the farthest of the others

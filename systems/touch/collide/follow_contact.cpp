@@ -14,6 +14,8 @@ namespace {
 
 // A foot that moves farther than this many times its tip's way has gone over to another minimum. [1]
 constexpr double kJump = 10.0;
+// Depth that the gradients do not explain, from which on it was not pushed. [1] of the tip's way
+constexpr double kUnexplained = 0.1;
 // Two feet of a tip closer than this are the same. [1] of the mean edge
 constexpr double kSameFoot = 1e-6;
 
@@ -87,9 +89,9 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
   // another one. The additional depth was not pushed. Over a short way, that is what the gradients do not explain.
   const double deeper = last - source.place.height, least = 1e-9 * static_cast<double>(s.mesh.box.diagonal());
   const double pushed = -0.5 * dot(slope + source.place.gradient, step);
-  const bool jumped = length(source.place.p - place) > kJump * moved && deeper - pushed > least;
+  const bool jumped = source.tip.radius > 0 && length(source.place.p - place) > kJump * moved && deeper - pushed > kUnexplained * moved;
   if (jumped || deeper - moved > least) {
-    contact.unpushed += jumped ? deeper - pushed : deeper;
+    contact.unpushed += jumped ? deeper - pushed : source.tip.radius > 0 ? deeper : deeper - moved;
     source.settled = false;
   }
   // The unpushed depth is at most the depth that is left.
