@@ -43,13 +43,13 @@ Mesh built(const Primitive& primitive) {
   return std::move(mesh->mesh);
 }
 
-struct FootPlace {
+struct SurfacePlace {
   std::uint32_t triangle = 0;
   dvec3 p{0}, normal{0};
 };
-FootPlace some_place(const Mesh& mesh, std::mt19937& random) {
+SurfacePlace some_place(const Mesh& mesh, std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0, 1);
-  FootPlace place;
+  SurfacePlace place;
   place.triangle = static_cast<std::uint32_t>(random() % mesh.triangles.size());
   dvec3 share(unit(random), unit(random), 0);
   if (share.x + share.y > 1) share = dvec3(1 - share.x, 1 - share.y, 0);
@@ -78,7 +78,7 @@ struct FieldAround {
     offset.size(mesh);
     zones.reserve(mesh.zone_count());
   }
-  FieldSource look(const FootPlace& place) {
+  FieldSource look(const SurfacePlace& place) {
     clear_offsets(zones, offset);
     FieldSource source;
     source.center = vec3(place.p);
@@ -90,12 +90,12 @@ struct FieldAround {
     return source;
   }
   // True: by arcs.
-  bool fill(const FootPlace& place) {
+  bool fill(const SurfacePlace& place) {
     const FieldSource source = look(place);
     return fill_offsets(mesh, ways, place.triangle, source, zones, march, chart, offset);
   }
   // Marched from the place itself.
-  void from_the_place(const FootPlace& place) {
+  void from_the_place(const SurfacePlace& place) {
     const FieldSource source = look(place);
     march_chart(mesh, ways.sides, place.triangle, source.center, static_cast<float>(reach), march, chart);
     for (const std::uint32_t zone : zones) chart_offsets(mesh, zone, source, vec2(0), chart, offset);
@@ -125,13 +125,13 @@ struct DistanceError {
   }
 };
 
-using TrueDistance = std::function<std::vector<double>(const Mesh&, const FootPlace&, double reach)>;
+using TrueDistance = std::function<std::vector<double>(const Mesh&, const SurfacePlace&, double reach)>;
 
-std::vector<double> exact(const Mesh& mesh, const FootPlace& place, double reach) {
+std::vector<double> exact(const Mesh& mesh, const SurfacePlace& place, double reach) {
   return ExactDistance(mesh).from(place.triangle, place.p, 1.2 * reach);
 }
 TrueDistance closed_form(const std::function<double(dvec3, dvec3)>& distance) {
-  return [distance](const Mesh& mesh, const FootPlace& place, double) {
+  return [distance](const Mesh& mesh, const SurfacePlace& place, double) {
     std::vector<double> out;
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) out.push_back(distance(place.p, dvec3(mesh.position(v))));
     return out;
@@ -192,7 +192,7 @@ TEST(SurfaceDistance, ExactPathsOverABoxAndAroundItsEdgeAreThoseOfItsNet) {
   ExactDistance exact_distance(mesh);
   int seen = 0;
   for (int k = 0; k < 400; ++k) {
-    const FootPlace place = some_place(mesh, random);
+    const SurfacePlace place = some_place(mesh, random);
     if (std::abs(place.p.y) > 1e-6) continue;  // on the upper face
     const std::vector<double> d = exact_distance.from(place.triangle, place.p, 0.1);
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
@@ -220,7 +220,7 @@ TEST(SurfaceDistance, IsAsExactAsAMarchFromTheFoot) {
     int arcs = 0;
     constexpr int kPlaces = 24;
     for (int k = 0; k < kPlaces; ++k) {
-      const FootPlace place = some_place(mesh, random);
+      const SurfacePlace place = some_place(mesh, random);
       const std::vector<double> truth = surface.truth(mesh, place, surface.reach);
       arcs += around.fill(place);
       filled.add(around, truth);
@@ -240,9 +240,9 @@ TEST(SurfaceDistance, DependsOnThePlaceAloneToTheBit) {
     FieldAround warm(mesh, surface.reach);
     std::mt19937 random(8);
     for (int k = 0; k < 6; ++k) {
-      const FootPlace place = some_place(mesh, random);
+      const SurfacePlace place = some_place(mesh, random);
       for (int i = 0; i < 5; ++i) warm.fill(some_place(mesh, random));
-      FootPlace beside = place;  // the same triangle
+      SurfacePlace beside = place;  // the same triangle
       beside.p = 0.5 * (place.p + dvec3(mesh.position(mesh.triangles[place.triangle].x)));
       warm.fill(beside);
       warm.fill(place);
@@ -296,7 +296,7 @@ TEST(SurfaceDistance, OffsetsPointAlongTheGradientAsThoseOfAMarchFromTheFoot) {
     std::mt19937 random(5);
     double filled = 0, marched = 0, count = 0, counted = 0;
     for (int k = 0; k < 12; ++k) {
-      const FootPlace place = some_place(mesh, random);
+      const SurfacePlace place = some_place(mesh, random);
       around.fill(place);
       filled += off_gradient(around, count);
       around.from_the_place(place);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <type_traits>
 
 #include "systems/touch/collide/collision.h"
 #include "systems/touch/collide/ridge.h"
@@ -20,6 +22,14 @@ namespace {
 
 // A shallower contact stores no energy: its share would divide by it. [1] of the reach
 constexpr double kLeastDepth = 1e-9;
+
+// Room for values that are written before they are read: clearing it would cost as much as a contact.
+template <class Value, std::size_t size>
+union Room {
+  static_assert(std::is_trivially_copyable_v<Value>);
+  std::array<Value, size> all;
+  Room() {}  // NOLINT
+};
 
 // One contact of this tick, from collision to force.
 struct Pressing {
@@ -113,29 +123,30 @@ class SharedDents {
     for (std::size_t i = 0; i < last; ++i) {
       const Pressing& a = pressing[i];
       pair_[i][last] = kNone;
-      if (radius == 0.0 || count_ == pairs_.size() || a.contact->probe != b.contact->probe ||
+      if (radius == 0.0 || count_ == kMostPairs || a.contact->probe != b.contact->probe ||
           a.contact->tip != b.contact->tip)
         continue;
       const Ridge ridge = ridge_between(mesh, a.source->place, b.source->place, b.source->x, radius);
       pair_[i][last] = static_cast<std::uint16_t>(count_);
-      pairs_[count_++] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(last), ridge};
+      pairs_.all[count_++] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(last), ridge};
     }
   }
 
   // A contact that stores nothing after all.
   void remove(std::size_t contact) {
-    while (count_ > 0 && pairs_[count_ - 1].b == contact) --count_;
+    while (count_ > 0 && pairs_.all[count_ - 1].b == contact) --count_;
   }
 
   std::span<const SharedDent> of(std::span<const Pressing> pressing) {
     if (count_ == 0) return {};
     // The way over a third contact may be the deeper one. The depths of all ridges are then those of a tree, and the
     // matrix of their energies has no negative eigenvalue.
-    std::array<Ridge, kMostPairs> deepest;
-    for (std::size_t k = 0; k < count_; ++k) deepest[k] = pairs_[k].ridge;
+    Room<Ridge, kMostPairs> room;
+    std::array<Ridge, kMostPairs>& deepest = room.all;
+    for (std::size_t k = 0; k < count_; ++k) deepest[k] = pairs_.all[k].ridge;
     for (std::size_t over = 0; over < pressing.size(); ++over)
       for (std::size_t k = 0; k < count_; ++k) {
-        const std::uint32_t a = pairs_[k].a, b = pairs_[k].b;
+        const std::uint32_t a = pairs_.all[k].a, b = pairs_.all[k].b;
         if (over == a || over == b || b >= pressing.size()) continue;
         const std::uint16_t to = between(a, over), on = between(over, b);
         if (to == kNone || on == kNone) continue;
@@ -144,8 +155,8 @@ class SharedDents {
       }
     std::size_t dents = 0;
     for (std::size_t k = 0; k < count_; ++k)
-      if (pairs_[k].b < pressing.size() && shared(pressing, pairs_[k], deepest[k], dents_[dents])) ++dents;
-    return {dents_.data(), dents};
+      if (pairs_.all[k].b < pressing.size() && shared(pressing, pairs_.all[k], deepest[k], dents_.all[dents])) ++dents;
+    return {dents_.all.data(), dents};
   }
 
  private:
@@ -173,14 +184,15 @@ class SharedDents {
   }
 
   std::array<std::array<std::uint16_t, kMaxContactsPerObject>, kMaxContactsPerObject> pair_;
-  std::array<Pair, kMostPairs> pairs_;
-  std::array<SharedDent, kMostPairs> dents_;
+  Room<Pair, kMostPairs> pairs_;
+  Room<SharedDent, kMostPairs> dents_;
   std::size_t count_ = 0;
 };
 
 // One object's contacts of a tick.
 struct Pressed {
-  std::array<Pressing, kMaxContactsPerObject> pressing;
+  Room<Pressing, kMaxContactsPerObject> room;
+  std::span<Pressing> pressing{room.all};
   std::size_t count = 0;
   SharedDents dents;
 };
@@ -197,9 +209,9 @@ bool settle(const ObjectState& object, const Deformable& deformable, const Mesh&
     const bool stores = store(object, deformable, mesh, field, pressing, loaded[pressed.count]);
     const std::size_t count = pressed.count + (stores ? 1 : 0);
     if (count == 0) return 0.0;
-    return share_load(loaded.first(count), object.kernel, pressed.dents.of(std::span(pressed.pressing).first(count)));
+    return share_load(loaded.first(count), object.kernel, pressed.dents.of(pressed.pressing.first(count)));
   };
-  pressed.dents.add(mesh, std::span(pressed.pressing).first(pressed.count + 1));
+  pressed.dents.add(mesh, pressed.pressing.first(pressed.count + 1));
   double none = 0.0, enough = contact.unpushed;
   const double had = energy(enough), others = energy(-contact.height), allowed = std::max(had, others) * (1 + 1e-12);
   if (energy(none) <= allowed) enough = none;
@@ -277,7 +289,9 @@ void friction_feedback(World& world, Tick tick) {
     const HeightField& field = world.fields[deformable.field];
     std::vector<LoadedContact>& loaded = world.touch->loaded;
     Pressed pressed;
-    auto& [pressing, count, dents] = pressed;
+    const std::span<Pressing> pressing = pressed.pressing;
+    std::size_t& count = pressed.count;
+    SharedDents& dents = pressed.dents;
     for (const bool settled : {true, false}) {
       for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
         SourceState& source = object.sources[i];
@@ -290,7 +304,7 @@ void friction_feedback(World& world, Tick tick) {
                                            : settle(object, deformable, mesh, field, pressed, loaded));
         if (stores) {
           ++count;
-          if (settled) dents.add(mesh, std::span(pressing).first(count));
+          if (settled) dents.add(mesh, pressing.first(count));
         } else {
           dents.remove(count);
           if (contact.height < 0 && !std::isfinite(pressing[count].stored.energy)) world.dropped |= kDroppedNonFinite;
@@ -299,7 +313,7 @@ void friction_feedback(World& world, Tick tick) {
       }
     }
     object.stored =
-        count > 0 ? share_load({loaded.data(), count}, object.kernel, dents.of({pressing.data(), count})) : 0.0;
+        count > 0 ? share_load({loaded.data(), count}, object.kernel, dents.of(pressing.first(count))) : 0.0;
     if (count == 0) continue;
     if (!std::isfinite(object.stored)) {  // from a registered law or shape
       world.dropped |= kDroppedNonFinite;
