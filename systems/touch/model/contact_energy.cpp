@@ -29,6 +29,16 @@ double wendland_slope(double r, double a) {
 constexpr double kEven = 1e-6;
 constexpr int kMostPivots = 60;
 
+// A of two contacts in one dent and its derivatives, by m and by the kernel's q (SharedDent).
+struct DentOverlap {
+  double value, by_m, by_q;
+};
+DentOverlap dent_overlap(double m, double q) {
+  const double a = 1 - m, b = 1 - q, below = a + b - a * b;
+  if (!(below > 1e-12)) return {1.0, 0.0, 0.0};
+  return {1 - a * b / below, (b / below) * (b / below), (a / below) * (a / below)};
+}
+
 // The linear complementarity problem A l >= e, l >= 0 by block principal pivoting (Judice & Pires 1994). Exact; needs
 // one factorisation if the active set is the last tick's. Falls back to single pivots, which always terminate.
 class Loads {
@@ -46,8 +56,10 @@ class Loads {
       }
       A_[i][i] = 1.0;
     }
-    for (const SharedDent& dent : dents)
-      A_[dent.a][dent.b] = A_[dent.b][dent.a] += dent.part * (1 - A_[dent.a][dent.b]);
+    for (const SharedDent& dent : dents) {
+      const double q = A_[dent.a][dent.b];
+      A_[dent.a][dent.b] = A_[dent.b][dent.a] = dent_overlap(dent.part, q).value;
+    }
     for (std::size_t i = 0; i < n_; ++i)
       for (std::size_t j = 0; j < n_; ++j)
         if (j != i) even_[i] = std::max(even_[i], kEven * A_[i][j] * A_[i][j]);
@@ -199,9 +211,9 @@ double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel, 
   }
   Loads loads(contacts, kernel, dents);
   loads.solve();
-  const auto apart = [&](std::size_t i, std::size_t j) {
+  const auto by_kernel = [&](std::size_t i, std::size_t j, double q) {  // dA/dq
     for (const SharedDent& dent : dents)
-      if ((dent.a == i && dent.b == j) || (dent.a == j && dent.b == i)) return 1 - dent.part;
+      if ((dent.a == i && dent.b == j) || (dent.a == j && dent.b == i)) return dent_overlap(dent.part, q).by_q;
     return 1.0;
   };
   double energy = 0.0;
@@ -224,15 +236,15 @@ double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel, 
       if (j < i) energy -= a.load * b.load * loads.overlap(i, j);
       if (facing > 0)
         a.force +=
-            a.load * b.load * apart(i, j) *
+            a.load * b.load * by_kernel(i, j, phi * facing) *
             (facing * kernel.slope(r2) * (glm::transpose(a.moves) * d) + phi * (glm::transpose(a.turns) * b.normal));
     }
   }
   for (const SharedDent& dent : dents) {
     LoadedContact &a = contacts[dent.a], &b = contacts[dent.b];
     const dvec3 d = a.p - b.p;
-    const double kernel_part = std::max(0.0, dot(a.normal, b.normal)) * kernel.at(dot(d, d));
-    const dvec3 force = 0.5 * a.load * b.load * (1 - kernel_part) * dent.slope;
+    const double q = std::max(0.0, dot(a.normal, b.normal)) * kernel.at(dot(d, d));
+    const dvec3 force = 0.5 * a.load * b.load * dent_overlap(dent.part, q).by_m * dent.slope;
     a.force += force;
     b.force += force;
   }

@@ -41,8 +41,10 @@ struct LoadedContact {
 };
 
 // Two contacts of one tip in one dent: with the depth s at the ridge between them (collide/ridge.h),
-//   m = sqrt(W_a(s) W_b(s) / (W_a W_b)),   A_ab = 1 - (1 - m) (1 - phi n_a.n_b)
-// Where the ridge is as deep as one of them, m is e of that one over e of the other, and it bears no load.
+//   m = sqrt(W_a(s) W_b(s) / (W_a W_b)),   A_ab = 1 - (1 - m)(1 - q) / (1 - m q),   q = phi n_a.n_b
+// Where the ridge is as deep as one of them, m is e of that one over e of the other, and it bears no load: A is at
+// least m and q. It is 1 for the same place alone, so that the force turns from one to the other over a way, not in a
+// tick.
 struct SharedDent {
   std::uint32_t a = 0, b = 0;  // indices of contacts
   double part = 0.0;           // [1] m
@@ -52,7 +54,6 @@ struct SharedDent {
 // Solves for the loads and the forces. Returns U [J]; NaN if a load was not finite and was replaced by 0. At most
 // kMaxLoaded contacts.
 inline constexpr std::size_t kMaxLoaded = 64;
-double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel,
-                  std::span<const SharedDent> dents = {});
+double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel, std::span<const SharedDent> dents = {});
 
 }  // namespace pliant

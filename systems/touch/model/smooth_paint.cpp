@@ -209,7 +209,7 @@ std::vector<float> felt_paint(const Mesh& mesh, const std::vector<float>& factor
     for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
       Regression sums(dvec3(mesh.position(v)), dvec3(mesh.normal(v)), radius, double{felt[v]});
       for (const auto& [surface, other] : near) surface->add(other, sums);
-      felt[v] = static_cast<float>(sums.value(double{at(factor, v)}));
+      if (at(factor, v) > 0) felt[v] = static_cast<float>(sums.value(double{at(factor, v)}));  // none stays none
     }
   }
   return felt;

@@ -19,7 +19,7 @@ struct FlushPaint {
 
 // The map without detail that a contact cannot resolve: at each vertex the regression plane of the values within
 // `radius` [m] on its side of the surface and of those flush with it (weights: area times (1 - r2/R2)^2). A vertex with
-// too few others there keeps its value. Empty if it is 1 everywhere.
+// too few others there keeps its value, and so does 0. Empty if it is 1 everywhere.
 std::vector<float> felt_paint(const Mesh& mesh, const std::vector<float>& factor, double radius,
                               const std::vector<FlushPaint>& flush = {});
 
