@@ -48,7 +48,7 @@ void print_systems(const std::vector<std::pair<std::string, double>>& systems) {
   fmt::print("{}\n", line);
 }
 
-// What is slid over: a sphere, or one with bumps as wide as the reach.
+// The body under the probe: a sphere, or one with bumps as wide as the reach.
 struct Body {
   double radius = 0.1, height = 0, wave = 0;  // [m] of the sphere and of the bumps; [1/m] wave number
   double at(dvec3 direction) const {

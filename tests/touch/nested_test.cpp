@@ -1,4 +1,4 @@
-// What lies in what, said before a run.
+// Notes on surfaces inside of others, before a run.
 #include "systems/touch/prepare/nested.h"
 
 #include <gtest/gtest.h>

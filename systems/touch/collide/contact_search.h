@@ -1,4 +1,4 @@
-// What following and finding contacts share: the search of one tip's contacts on one object, in the object's frame.
+// Shared by following and finding contacts: the search of one tip's contacts on one object, in the object's frame.
 #pragma once
 
 #include <cstdint>

@@ -29,7 +29,7 @@ struct TriangleSide {
 // Of each corner: 3 * triangle + corner.
 std::vector<TriangleSide> sides_of(const Mesh& mesh);
 
-// What the two ways know of a mesh; at preparation.
+// Data on a mesh for both ways; made at preparation.
 struct SurfaceWays {
   std::vector<TriangleSide> sides;
   std::vector<float> arc_reach;     // [m] per vertex: arc_reach.h
