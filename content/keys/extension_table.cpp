@@ -492,6 +492,12 @@ std::string listed(const std::vector<std::string>& words) {
   return out;
 }
 
+void scale_defaults(LevelNode& fresh, const LevelNode& node) {
+  if (!fresh.deformable) return;
+  fresh.deformable->relaxation_stiffness *= node.scaled_with_young;
+  fresh.deformable->cubic *= node.scaled_with_young;
+}
+
 const std::vector<Extension>& extension_table() {
   static const std::vector<Extension> table = make_table();
   return table;

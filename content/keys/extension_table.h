@@ -48,6 +48,9 @@ const Key* find_key(const Extension& extension, const std::string& name);
 // The key of NODE.EXTENSION.KEY; the node's name may contain dots. nullptr: none.
 const Key* find_key_of_path(const std::string& path);
 
+// Makes the constants of a fresh component, which an unstated key has beside the `young` of this node.
+void scale_defaults(LevelNode& fresh, const LevelNode& node);
+
 std::optional<Note> check_value(const Key& key, const Json& value);  // the fault
 std::string range_text(const Key& key);
 // A question if a number (or any component of a vector or point) is outside the usual range, with the unit that was

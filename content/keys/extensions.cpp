@@ -141,11 +141,7 @@ Json write_all(bool on_scene, const Owner& owner, const Json& before) {
     if (extension.on_scene != on_scene || !extension.present(&owner)) continue;
     Owner defaults;
     extension.add(&defaults);
-    if constexpr (std::is_same_v<Owner, LevelNode>)
-      if (extension.name == "deformable") {  // what follows from `young` is not saved
-        defaults.deformable->relaxation_stiffness *= owner.scaled_with_young;
-        defaults.deformable->cubic *= owner.scaled_with_young;
-      }
+    if constexpr (std::is_same_v<Owner, LevelNode>) scale_defaults(defaults, owner);  // what follows is not saved
     const std::string name = "PLIANT_" + extension.name;
     const bool was = before.is_object() && before.contains(name);
     Json json = write(extension, &owner, &defaults, owner.stated, was ? before[name] : Json());

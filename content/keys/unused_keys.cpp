@@ -116,6 +116,7 @@ template <class Owner>
 bool is_set(const Extension& extension, const Key& key, const Owner& owner) {
   Owner fresh;
   extension.add(&fresh);
+  if constexpr (std::is_same_v<Owner, LevelNode>) scale_defaults(fresh, owner);
   return key.get(&owner) != key.get(&fresh);
 }
 

@@ -105,6 +105,9 @@ Level everything() {
   body.deformable->contact_damping_material = true;
   body.deformable->young = 5400.0;
   body.deformable->stiffness = 2.0 * 5400.0 / (1.0 - 0.45 * 0.45) * 0.004;
+  body.scaled_with_young = body.deformable->stiffness / Deformable{}.stiffness;
+  body.deformable->relaxation_stiffness *= body.scaled_with_young;
+  body.deformable->cubic *= body.scaled_with_young;
   body.deformable->shape = Shape::kKelvinlet;
   body.deformable->distance = Distance::kSurface;
   body.deformable->friction_static = body.deformable->friction_sliding = 0.1;

@@ -47,9 +47,10 @@ TEST_F(Run, WritesReportForcesAndPlotAsPromised) {
   EXPECT_TRUE(json["notes"].is_array());
 
   const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
-  EXPECT_EQ(forces.columns,
-            (std::vector<std::string>{"tick", "time_s", "probe", "x", "y", "z", "in_contact", "object", "depth_m",
-                                      "height_m", "nx", "ny", "nz", "fx", "fy", "fz", "fn", "ft", "objects"}));
+  EXPECT_EQ(forces.columns, (std::vector<std::string>{"tick",       "time_s",  "probe",    "x",        "y",     "z",
+                                                      "in_contact", "object",  "depth_m",  "height_m", "nx",    "ny",
+                                                      "nz",         "fx",      "fy",       "fz",       "fn",    "ft",
+                                                      "objects",    "clipped", "withheld", "gated",    "slewed"}));
   EXPECT_EQ(forces.rows.size(), 1500u) << "one row per probe and tick";
   EXPECT_EQ(read_text(folder / "out" / "forces.png").substr(1, 3), "PNG");
 }

@@ -117,7 +117,7 @@ TEST_F(ToolRun, WhatTheRowsSayOfTorqueAndTouchIsWhatTheReportSays) {
   ASSERT_EQ(press("out").status, 0);
   const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
   EXPECT_EQ(std::vector<std::string>(forces.columns.end() - 4, forces.columns.end()),
-            (std::vector<std::string>{"objects", "tx", "ty", "tz"}));
+            (std::vector<std::string>{"slewed", "tx", "ty", "tz"}));
   double largest = 0.0;
   for (std::size_t i = 0; i < forces.rows.size(); ++i) {
     largest = std::max(largest, std::hypot(forces.number(i, "tx"), forces.number(i, "ty"), forces.number(i, "tz")));

@@ -43,7 +43,7 @@ double ContactLaw::potential(double depth) const {
 
 ContactLaw::Limited ContactLaw::limited(double depth) const {
   const double whole = force(depth);
-  if (whole <= kMostForce || !std::isfinite(depth)) return {whole, potential(depth)};
+  if (!(whole > kMostForce) || !std::isfinite(depth)) return {whole, potential(depth)};
   double low = 0.0, high = depth;
   for (int i = 0; i < 100 && high - low > 1e-15 * high; ++i) {
     const double middle = 0.5 * (low + high);
