@@ -24,7 +24,6 @@ enum class AtSeam { kStays, kBetween, kCarried };
 AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source, Contact& contact, dvec3 world) {
   TouchState& touch = *s.world.touch;
   ObjectState& object = touch.objects[seam.object];
-  if (object.world_box.empty()) return AtSeam::kStays;  // the object is removed
   const ProbeTip tip{contact.probe, contact.tip, source.tip};
   const Deformable& deformable = s.world.registry.get<Deformable>(object.entity);
   const ContactSearch there{s.world, object, s.world.meshes[deformable.mesh], s.world.fields[deformable.field], s.tick};
@@ -89,7 +88,8 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
   // another one. The additional depth was not pushed. Over a short way, that is what the gradients do not explain.
   const double deeper = last - source.place.height, least = 1e-9 * static_cast<double>(s.mesh.box.diagonal());
   const double pushed = -0.5 * dot(slope + source.place.gradient, step);
-  const bool jumped = source.tip.radius > 0 && length(source.place.p - place) > kJump * moved && deeper - pushed > kUnexplained * moved;
+  const bool jumped =
+      source.tip.radius > 0 && length(source.place.p - place) > kJump * moved && deeper - pushed > kUnexplained * moved;
   if (jumped || deeper - moved > least) {
     contact.unpushed += jumped ? deeper - pushed : source.tip.radius > 0 ? deeper : deeper - moved;
     source.settled = false;

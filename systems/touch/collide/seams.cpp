@@ -80,11 +80,6 @@ void list_joined(TouchState& touch, std::uint32_t slot) {
   for (std::size_t k = 0; k < joined.size(); ++k) add(touch.objects[joined[k]]);
 }
 
-Pose relative_pose(const Pose& first, const Pose& second) {
-  const dquat back = glm::conjugate(first.rotation);
-  return {back * (second.position - first.position), back * second.rotation};
-}
-
 // How far the farthest corner of the box is from where it is at another pose. [m]
 double farthest_move(const Box& box, const Pose& from, const Pose& to) {
   double farthest = 0;
@@ -209,6 +204,11 @@ void find_closed_edges_and_zones(const World& world, TouchState& touch, std::uin
 
 }  // namespace
 
+Pose relative_pose(const Pose& first, const Pose& second) {
+  const dquat back = glm::conjugate(first.rotation);
+  return {back * (second.position - first.position), back * second.rotation};
+}
+
 const Seam* seam_at(const ObjectState& object, const Foot& foot) {
   if (object.seams.empty() || foot.place == FootPlace::kInside || !foot.at_border) return nullptr;
   const auto find = [&](std::uint32_t key) -> const Seam* {
@@ -248,10 +248,8 @@ void find_seams(World& world, TouchState& touch) {
   }
   for (std::size_t n = 0; n < start.size(); ++n)
     if (touch.moving[n].object >= 0) {
-      ObjectState& object = touch.objects[static_cast<std::size_t>(touch.moving[n].object)];
-      world.registry.get<Pose>(object.entity) = start[n];
-      object.world_box = touch_box(mesh_of(world, object), start[n]);
-      touch.object_boxes.move(static_cast<std::uint32_t>(touch.moving[n].object), object.world_box);
+      world.registry.get<Pose>(touch.moving[n].entity) = start[n];
+      renew_box(world, touch, static_cast<std::uint32_t>(touch.moving[n].object));
     }
 
   for (std::uint32_t i = 0; i < count; ++i) find_closed_edges_and_zones(world, touch, i);

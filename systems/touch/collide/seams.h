@@ -14,6 +14,9 @@ const Seam* seam_at(const ObjectState& object, const Foot& foot);
 // Whether a foot is on either side of a seam.
 bool at_seam(const ObjectState& object, const Foot& foot);
 
+// Pose of the second in the first's frame.
+Pose relative_pose(const Pose& first, const Pose& second);
+
 // Largest number of key times at which moving surfaces are examined.
 inline constexpr std::size_t kMostKeyTimes = 64;
 

@@ -129,11 +129,8 @@ void place_at(World& world, TouchState& touch, std::vector<MovingNode> nodes, do
         node.motion.valid() ? sample_motion(world.motions[node.motion], node.rest, time) : local_frame(node.rest);
     node.world = (node.parent < 0 ? node.above : nodes[static_cast<std::size_t>(node.parent)].world) * local.matrix();
     if (node.object < 0) continue;
-    Pose& pose = world.registry.get<Pose>(node.entity);
-    pose = rigid_part(node.world);
-    ObjectState& object = touch.objects[static_cast<std::size_t>(node.object)];
-    object.world_box = touch_box(world.meshes[world.registry.get<Deformable>(node.entity).mesh], pose);
-    touch.object_boxes.move(static_cast<std::uint32_t>(node.object), object.world_box);
+    world.registry.get<Pose>(node.entity) = rigid_part(node.world);
+    renew_box(world, touch, static_cast<std::uint32_t>(node.object));
   }
 }
 

@@ -277,12 +277,8 @@ void feel_over_seams(const World& world, TouchState& touch) {
       const ObjectState& other = touch.objects[slot];
       if (&other == &object) continue;
       const Deformable& there = registry.get<Deformable>(other.entity);
-      const Pose& at = registry.get<Pose>(other.entity);
-      const dquat back = glm::conjugate(pose.rotation);
-      flush.push_back({&world.meshes[there.mesh],
-                       {back * (at.position - pose.position), back * at.rotation},
-                       there.stiffness / here.stiffness,
-                       &world.meshes[there.mesh].stiffness_factor});
+      flush.push_back({&world.meshes[there.mesh], relative_pose(pose, registry.get<Pose>(other.entity)),
+                       there.stiffness / here.stiffness, &world.meshes[there.mesh].stiffness_factor});
     }
     if (flush.empty()) continue;
     const Mesh& mesh = world.meshes[here.mesh];
@@ -301,6 +297,13 @@ Box touch_box(const Mesh& mesh, const Pose& pose) {
     box.add(vec3(pose.to_world(dvec3(corner))));
   }
   return box;
+}
+
+void renew_box(const World& world, TouchState& touch, std::uint32_t slot) {
+  ObjectState& object = touch.objects[slot];
+  const Mesh& mesh = world.meshes[world.registry.get<Deformable>(object.entity).mesh];
+  object.world_box = touch_box(mesh, world.registry.get<Pose>(object.entity));
+  touch.object_boxes.move(slot, object.world_box);
 }
 
 Status prepare_touch(World& world) {

@@ -13,6 +13,8 @@ Status prepare_touch(World& world);
 
 // The world box of an object's rest surface, including its curved patches.
 Box touch_box(const Mesh& mesh, const Pose& pose);
+// Puts an object's box, and its leaf among the objects, where its Pose is now.
+void renew_box(const World& world, TouchState& touch, std::uint32_t slot);
 
 // Bytes of touch state of one mesh and its field (for reports): everything that a tick may read or write.
 std::size_t touch_bytes(const Mesh& mesh, const HeightField& field);

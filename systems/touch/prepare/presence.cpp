@@ -26,9 +26,7 @@ std::uint32_t slot_of(const World& world, const ObjectState& object) {
 }
 
 void take_in(World& world, ObjectState& object) {
-  const Mesh& mesh = world.meshes[world.registry.get<Deformable>(object.entity).mesh];
-  object.world_box = touch_box(mesh, world.registry.get<Pose>(object.entity));
-  world.touch->object_boxes.move(slot_of(world, object), object.world_box);
+  renew_box(world, *world.touch, slot_of(world, object));
   move_seams(world, *world.touch, slot_of(world, object));
 }
 
