@@ -8,6 +8,8 @@
 #include "systems/device/path.h"
 #include "systems/device/softening.h"
 #include "systems/device/tissue_account.h"
+#include "systems/effects/effect_account.h"
+#include "systems/effects/felt_effects.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/feed/contacts_of.h"
 
@@ -89,6 +91,10 @@ dvec3 surface_displacement(const World& world, Entity probe, double dt) {
     const dvec3 at = registry.get<Pose>(contact.object).to_world(contact.foot);
     sum += force * dt * surface_velocity(registry, contact.object, at);
   });
+  if (const FeltEffects* const felt = registry.find<FeltEffects>(probe)) {
+    forces += length(felt->drag);
+    sum += dt * felt->carried;
+  }
   return forces > 0.0 ? sum / forces : dvec3(0);
 }
 
@@ -123,6 +129,7 @@ void write_devices(World& world, Tick tick) {
     SafetyLimits limits = force_limits(device);
     limits.touched = soften(world, state.entity, device, state.safety);
     limits.carried = surface_displacement(world, state.entity, tick.elapsed());
+    limits.weight = effects_beside(world, state.entity, state.safety.share);
     const ToolTouchState* const among_bodies = find_tool(world, state.entity);
     if (among_bodies) limits.ease = ease_of_tool(tick.skipped);
     const dvec3 pressed = with_own(
@@ -134,6 +141,7 @@ void write_devices(World& world, Tick tick) {
     if (safe.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
     if (safe.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
     if (safe.event == SafetyEvent::kJumped) world.dropped |= kDroppedJump;
+    keep_account(world, state.entity, state.safety, state.safety.share);
     device.force_sent = safe.force;
   }
   if (!world.tools) return;
