@@ -33,7 +33,7 @@ LevelNode& add_effect(Level& level, const std::string& name, dvec3 at, const Eff
 
 // Through the drag, past the magnet, up and down in the weight, onto the ball, through the detents, across the rail's
 // bends, onto the board, and back beside all of them.
-std::vector<Waypoint> finger_path() {
+std::vector<Waypoint> effects_row_path() {
   const auto at = [](double time, double x, double y, double z = 0.0) { return Waypoint{time, {x, y, z}, dvec3(0)}; };
   return {at(0.0, -0.20, kHeight),         at(0.7, -0.20, kHeight),      at(2.2, -0.13, kHeight),
           at(3.2, -0.07, kHeight + 0.008), at(3.8, kWeight, kHeight),    at(4.6, kWeight, kHeight + 0.012),
@@ -45,7 +45,7 @@ std::vector<Waypoint> finger_path() {
 }
 
 // Two waves of 6 mm, in the frame of its node.
-Path rail() {
+Path effects_rail() {
   Path path;
   for (int i = 0; i <= 120; ++i) {
     const double x = 0.0005 * (i - 60);
@@ -112,16 +112,17 @@ Level effects_level() {
   finger.probe->color = kTeal;
   finger.probe_device = "finger";
   finger.device = script_device("effects_finger.csv", 3.3);
-  place(finger, finger_path().front());
+  place(finger, effects_row_path().front());
   add_view(level, {0.05, 0.22, 0.42}, {0.0, 0.01, 0.0});
   return level;
 }
 
 Status write_effects_level(const std::filesystem::path& folder) {
   if (Status s = write_scene(effects_level(), folder); !s) return s;
-  if (Status s = save_script(rail(), "two waves, in the frame of the node `rail`", folder / "effects_rail.csv"); !s)
+  if (Status s = save_script(effects_rail(), "two waves, in the frame of the node `rail`", folder / "effects_rail.csv");
+      !s)
     return s;
-  return write_path(finger_path(), "goes along the effects, presses the board 4 mm deep and returns",
+  return write_path(effects_row_path(), "goes along the effects, presses the board 4 mm deep and returns",
                     "effects_finger.csv", folder);
 }
 
