@@ -62,9 +62,9 @@ Level effects_level() {
   level.about =
       "Felt in the air: drag, a magnet, weight, a forbidden ball, detents and a rail, and a soft board below.";
   LevelNode& board = add_shape(level, "board", rounded_box({0.21, 0.01, 0.065}, 0.006), around({0.22, 0.02, 0.075}),
-                               0.005, add_material(level, "wood", {0.50f, 0.30f, 0.14f}, 0.5f));
+                               0.0045, add_material(level, "wood", {0.50f, 0.30f, 0.14f}, 0.5f));
   board.deformable = Deformable{};
-  board.deformable->reach = 0.015;
+  board.deformable->reach = 0.03;
   place(board, {0.0, {0, -0.02, 0}, dvec3(0)});
 
   Effect drag = effect_of(EffectKind::kViscosity);

@@ -1,4 +1,4 @@
-// What an effect does to one tip of a probe, in the effect's frame. Potentials and their derivatives are exact
+// The law of an effect on one tip of a probe, in the effect's frame. Potentials and their derivatives are exact
 // (methods.md 1.11): force = -dU/dx, stiffness = d2U/dx2.
 #pragma once
 
@@ -24,7 +24,7 @@ struct EffectValue {
   double damping = 0.0;  // [N s/m] of a drag against the velocity
 };
 
-// What a kind remembers of a tip. A change of it never raises U, so that no energy is made.
+// Memory of a kind, per tip. A change of it never raises U, so that no energy is made.
 struct EffectMemory {
   bool begun = false;     // the rest means something
   dvec3 last{0};          // [m] last tick's place

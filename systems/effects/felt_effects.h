@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-// What all effects do to a probe; on the probe. Rate: touch. Writer: effects; write_devices (the account).
+// The sum of all effects on a probe; on the probe. Rate: touch. Writer: effects; write_devices (the account).
 struct FeltEffects {
   dvec3 force{0};        // [N] world: minus the gradient of `energy`
   dvec3 drag{0};         // [N] world: of viscosity

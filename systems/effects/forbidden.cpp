@@ -4,7 +4,7 @@
 // A box keeps the face through which the tip came: beyond its middle it still pushes back. A sphere pushes along its
 // radius; a tip that is pushed through the middle is pulled back to where it came in. So a tip is held up to a force of
 // k times the way through the region. Beyond it, or where the tip leaves by another face, U falls to zero: energy is
-// lost. What begins inside pushes only beyond its first depth.
+// lost. A tip that begins inside is pushed only beyond its first depth.
 #include <algorithm>
 #include <cmath>
 

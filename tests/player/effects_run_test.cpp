@@ -30,9 +30,10 @@ class EffectsRun : public CommandTest {
   };
   std::vector<Row> run(const std::string& keys) {
     write_level(keys);
-    const Said said = pliant({"run", "level.gltf", "--frames", "0", "--out", "out"});
+    const std::string out = "out" + std::to_string(runs_++);
+    const Said said = pliant({"run", "level.gltf", "--frames", "0", "--out", out});
     EXPECT_EQ(said.status, 0) << said.err;
-    std::istringstream lines(read_text(folder / "out/forces.csv"));
+    std::istringstream lines(read_text(folder / out / "forces.csv"));
     std::vector<std::string> names;
     std::vector<Row> rows;
     std::string line;
@@ -51,8 +52,7 @@ class EffectsRun : public CommandTest {
         ADD_FAILURE() << "no column " << name;
         return 0.0;
       };
-      rows.push_back(
-          {value("time_s"), {value("x"), value("y"), value("z")}, {value("fx"), value("fy"), value("fz")}});
+      rows.push_back({value("time_s"), {value("x"), value("y"), value("z")}, {value("fx"), value("fy"), value("fz")}});
     }
     EXPECT_GT(rows.size(), 3900u);
     return rows;
@@ -67,6 +67,7 @@ class EffectsRun : public CommandTest {
     }
     EXPECT_GT(most, 0.05) << keys;
   }
+  int runs_ = 0;
 };
 
 double step(double t) {
