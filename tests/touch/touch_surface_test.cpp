@@ -325,24 +325,8 @@ TEST(TouchSurface, AGapOfATenthOfAnEdgeIsAGap) {
   EXPECT_EQ(raw_force(stage, probe), dvec3(0));
 }
 
-TEST(TouchSurface, ACapsuleLyingOnASurfaceIsHeldUpAlongItsLengthAndOneOnAnEdgeIsNot) {
-  Stage stage;
-  Deformable d = frictionless();
-  d.reach = 0.01;
-  stage.add(scenes::sheet(40, 0.2), d);
-  const Entity lying = stage.add_probe({-0.02, 0.02, 0.001}, 0.003);
-  stage.world.registry.get<Probe>(lying).length = 0.04;
-  stage.device(lying).rotation = glm::angleAxis(-M_PI / 2, dvec3(0, 0, 1));  // +Y of its frame along +X
-  stage.prepare();
-  stage.move(lying, {-0.02, 0.002, 0.001}, 1.0);
-  const dvec3 f = raw_force(stage, lying);
-  EXPECT_GT(f.y, 2.5 * law(d, 0.001));  // several dents' worth
-  EXPECT_LT(std::hypot(f.x, f.z), 1e-3 * f.y);
-  // Supported evenly: zero torque about its centre.
-  const dvec3 torque = stage.world.registry.get<Probe>(lying).torque - cross(dvec3(0.02, 0, 0), f);
-  EXPECT_LT(length(torque), 1e-3 * 0.02 * f.y);
-
-  // Across the edge of a box it touches in one place, wherever along its length that is.
+// Wherever along its length that is (flat on a surface: touch_capsule_test.cpp).
+TEST(TouchSurface, ACapsuleAcrossABoxsEdgeTouchesInOnePlace) {
   Stage box;
   box.add(scenes::slab(4, 0.08, 0.06), frictionless());
   const Entity shaft = box.add_probe({0.03, 0.03, 0}, 0.004);
@@ -360,7 +344,7 @@ TEST(TouchSurface, ACapsuleLyingOnASurfaceIsHeldUpAlongItsLengthAndOneOnAnEdgeIs
     high = std::max(high, length(raw_force(box, shaft)));
   }
   EXPECT_GT(low, 0.4);
-  EXPECT_LT(high - low, 0.2 * high);  // the row of spheres changes the force by 3 % of a radius
+  EXPECT_LT(high - low, 0.01 * high);
 }
 
 // A tip that was pressed through a wall is not caught by it on its way back; a second wall behind it is touched. Seen

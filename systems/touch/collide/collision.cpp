@@ -18,13 +18,21 @@ void drop_contact(SourceState& source, Contact& contact) {
   contact.force = dvec3(0);
 }
 
-dvec3 tip_position(const Probe& probe, const Tip& tip) {
-  return probe.position + probe.rotation * tip.place;
+TipPlace tip_place(const Probe& probe, const Tip& tip) {
+  return {probe.position + probe.rotation * tip.place, probe.rotation * tip.axis};
 }
 
-dvec3 tip_position_before(const Probe& probe, const Tip& tip) {
-  return probe.previous + probe.previous_rotation * tip.place;
+TipPlace tip_place_before(const Probe& probe, const Tip& tip) {
+  return {probe.previous + probe.previous_rotation * tip.place, probe.previous_rotation * tip.axis};
 }
+
+namespace {
+
+TipPlace to_local(const Pose& pose, const TipPlace& place) {
+  return {pose.to_local(place.end), glm::conjugate(pose.rotation) * place.axis};
+}
+
+}  // namespace
 
 void collision(World& world, Tick tick) {
   TouchState& touch = *world.touch;
@@ -40,7 +48,7 @@ void collision(World& world, Tick tick) {
       if (!source.tracked || source.born == tick.index + 1) continue;  // carried over a seam in this tick
       Contact& contact = registry.get<Contact>(source.contact);
       const Probe& probe = registry.get<Probe>(contact.probe);
-      follow_contact(search, source, contact, pose.to_local(tip_position(probe, source.tip)));
+      follow_contact(search, source, contact, to_local(pose, tip_place(probe, source.tip)));
       ++followed;
     }
     if (followed > 1) merge_contacts(search);
@@ -50,11 +58,13 @@ void collision(World& world, Tick tick) {
     if (!probe.placed) continue;
     for (std::size_t t = 0; t < state.tips.size(); ++t) {
       const Tip& tip = state.tips[t];
-      const dvec3 to = tip_position(probe, tip), from = probe.fresh ? to : tip_position_before(probe, tip);
+      const TipPlace to = tip_place(probe, tip), from = probe.fresh ? to : tip_place_before(probe, tip);
       const double band = tip.radius * (1 + kAhead) + 2 * kEarly * touch.extent;
       Box swept;
-      swept.add(vec3(glm::min(from, to) - dvec3(band)));
-      swept.add(vec3(glm::max(from, to) + dvec3(band)));
+      for (const dvec3& end : {from.end, from.at(1), to.end, to.at(1)}) {
+        swept.add(vec3(end - dvec3(band)));
+        swept.add(vec3(end + dvec3(band)));
+      }
       touch.object_boxes.visit(swept, [&](std::uint32_t slot) {
         ObjectState& object = touch.objects[slot];
         if (object.world_box.empty()) return;  // the object is removed
@@ -62,8 +72,8 @@ void collision(World& world, Tick tick) {
         const ContactSearch search{world, object, world.meshes[deformable.mesh], world.fields[deformable.field], tick};
         find_new_contacts(search, {state.entity, static_cast<std::uint8_t>(t), tip},
                           object.searched[state.first_tip + t], probe.fresh,
-                          pose_before(registry, object.entity).to_local(from),
-                          registry.get<Pose>(object.entity).to_local(to));
+                          to_local(pose_before(registry, object.entity), from),
+                          to_local(registry.get<Pose>(object.entity), to));
       });
     }
   }

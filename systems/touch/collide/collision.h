@@ -12,8 +12,8 @@ void collision(World& world, Tick tick);
 // Ends the contact and frees its source.
 void drop_contact(SourceState& source, Contact& contact);
 
-// Centre of a tip now, and a tick ago. [m] world
-dvec3 tip_position(const Probe& probe, const Tip& tip);
-dvec3 tip_position_before(const Probe& probe, const Tip& tip);
+// Place of a tip now, and a tick ago. World frame.
+TipPlace tip_place(const Probe& probe, const Tip& tip);
+TipPlace tip_place_before(const Probe& probe, const Tip& tip);
 
 }  // namespace pliant

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "systems/touch/collide/around_vertex.h"
-#include "systems/touch/collide/contact_place.h"
+#include "systems/touch/collide/capsule.h"
 #include "systems/touch/model/field.h"
 
 namespace pliant {
@@ -26,15 +26,17 @@ HeightState recovering(const ContactSearch& s, const Foot& foot) {
 
 }  // namespace
 
-void put_contact(SourceState& source, Contact& contact, const FootBlend& place, dvec3 x) {
-  source.x = x;
-  source.place = place;
+void put_contact(SourceState& source, Contact& contact, const TipContact& at) {
+  source.x = at.x;
+  source.place = at.place;
+  source.axis = at.axis;
+  const FootBlend& place = source.place;
   const Foot& main = place.main();
   contact.triangle = main.triangle;
   contact.barycentric = main.barycentric;
   contact.foot = place.p;
   contact.normal = place.normal;
-  contact.height = place.height - source.tip.radius;
+  contact.height = place.height + at.raised - source.tip.radius;
   if (contact.height >= 0) {
     contact.state = ContactState::kFree;
   } else if (contact.state == ContactState::kFree) {
@@ -42,10 +44,10 @@ void put_contact(SourceState& source, Contact& contact, const FootBlend& place, 
   }
 }
 
-void begin_contact(const ContactSearch& s, const ProbeTip& tip, const Foot& foot, dvec3 from, dvec3 x) {
-  SourceState* source = s.free_source();
+void begin_contact(const ContactSearch& s, const ProbeTip& tip, const TipContact& at, dvec3 from) {
+  SourceState* source = s.free_source(tip.tip);
   if (!source) {
-    s.world.dropped |= kDroppedContacts;
+    if (!tip.tip.drawn) s.world.dropped |= kDroppedContacts;
     return;
   }
   Contact& contact = s.world.registry.get<Contact>(source->contact);
@@ -58,8 +60,8 @@ void begin_contact(const ContactSearch& s, const ProbeTip& tip, const Foot& foot
   contact.load = contact.share = contact.normal_force = 0.0;
   contact.bristle = dvec3(0);
   contact.sliding = false;
-  put_contact(*source, contact, contact_place(s.object, s.mesh, foot, x), x);
-  HeightState surface = recovering(s, foot);
+  put_contact(*source, contact, at);
+  HeightState surface = recovering(s, at.place.main());
   // Beside others of its tip the surface does not recover: the tip is on it, and has left that dent itself.
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
     const SourceState& beside = s.object.sources[i];
@@ -69,7 +71,7 @@ void begin_contact(const ContactSearch& s, const ProbeTip& tip, const Foot& foot
     surface = {other.free_height, other.free_velocity};
     break;
   }
-  const double pushed = length(x - from), unpushed = -contact.height - pushed;
+  const double pushed = length(at.x - from), unpushed = -contact.height - pushed;
   contact.free_height = std::min(0.0, surface.height);
   contact.free_velocity = contact.free_height < 0 ? surface.velocity : 0.0;
   contact.unpushed = unpushed > 1e-9 * static_cast<double>(s.mesh.box.diagonal()) ? unpushed : 0.0;

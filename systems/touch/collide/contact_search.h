@@ -34,18 +34,22 @@ struct ContactSearch {
   Foot downhill(std::uint32_t triangle, dvec3 barycentric, dvec3 x) const {
     return descend(mesh, triangle, barycentric, x, true, object.closed);
   }
-  SourceState* free_source() const {
-    for (std::uint32_t i = 0; i < object.probe_sources; ++i)
+  // What is only drawn leaves half of the pool to what bears force.
+  SourceState* free_source(const Tip& tip) const {
+    for (std::uint32_t i = tip.drawn ? object.probe_sources / 2 : 0; i < object.probe_sources; ++i)
       if (!object.sources[i].tracked) return &object.sources[i];
     return nullptr;
   }
 };
 
-// Writes the place of a contact.
-void put_contact(SourceState& source, Contact& contact, const FootBlend& place, dvec3 x);
+struct TipContact;
 
-// Begins a contact. Its initial depth was not pushed, so its force starts from zero.
-void begin_contact(const ContactSearch& s, const ProbeTip& tip, const Foot& foot, dvec3 from, dvec3 x);
+// Writes the place of a contact.
+void put_contact(SourceState& source, Contact& contact, const TipContact& at);
+
+// Begins a contact. What of its initial depth is more than the way from `from` was not pushed: its force starts from
+// zero.
+void begin_contact(const ContactSearch& s, const ProbeTip& tip, const TipContact& at, dvec3 from);
 
 // Whether x is past the rim of an open surface. Edges in `but` are not rims (3 * triangle + edge, ascending).
 bool beyond_border(const Mesh& mesh, const Foot& foot, dvec3 x, std::span<const std::uint32_t> but = {});

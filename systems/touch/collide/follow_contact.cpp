@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/touch/collide/capsule.h"
 #include "systems/touch/collide/collision.h"
-#include "systems/touch/collide/contact_place.h"
 #include "systems/touch/collide/seams.h"
 #include "systems/touch/collide/triangle_tree.h"
 #include "systems/touch/model/seam_dents.h"
@@ -35,11 +35,12 @@ AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source,
     return AtSeam::kStays;
   if (!is_known(there, tip, foot)) {
     const Contact before = contact;
-    SourceState* to = there.free_source();
+    SourceState* to = there.free_source(tip.tip);
     if (!to) return AtSeam::kStays;
-    begin_contact(there, tip, foot, x, x);
-    Contact& after = s.world.registry.get<Contact>(to->contact);
     const dquat turn = glm::conjugate(pose.rotation) * s.world.registry.get<Pose>(s.object.entity).rotation;
+    const TipPlace place{x - source.axis.along * (turn * source.axis.axis), turn * source.axis.axis};
+    begin_contact(there, tip, deepest_on_tip(there, place, source.tip.radius, foot, source.axis.along), x);
+    Contact& after = s.world.registry.get<Contact>(to->contact);
     after.free_height = before.free_height;
     after.free_velocity = before.free_velocity;
     const dvec3 own = s.world.registry.get<Pose>(s.object.entity).to_local(world);
@@ -59,14 +60,15 @@ AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source,
 
 }  // namespace
 
-void follow_contact(const ContactSearch& s, SourceState& source, Contact& contact, dvec3 x) {
+void follow_contact(const ContactSearch& s, SourceState& source, Contact& contact, const TipPlace& tip) {
+  const dvec3 x = tip.at(source.axis.along);
   const double radius = source.tip.radius;
   const Foot before = source.place.main();
   const double last = source.place.height;
   if (last < s.early())
     source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal};
   const dvec3 step = x - source.x, slope = source.place.gradient, place = source.place.p;
-  const double moved = length(step);
+  const TipPlace was{source.x - source.axis.along * source.axis.axis, source.axis.axis};
   const Foot foot = follow_foot(s, before, source.x, x);
   contact.older_height = contact.previous_height;
   contact.previous_height = contact.height;
@@ -83,11 +85,15 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
       std::abs(foot.height) > static_cast<double>(s.mesh.box.diagonal()) + radius ||
       foot.height > radius * (1 + 2 * kAhead))
     return drop_contact(source, contact);
-  put_contact(source, contact, contact_place(s.object, s.mesh, foot, x), x);
+  put_contact(source, contact, deepest_on_tip(s, tip, radius, foot, source.axis.along));
   // A depth changes no faster than the tip moves, unless the tracked minimum vanished and the foot moved downhill to
   // another one. The additional depth was not pushed. Over a short way, that is what the gradients do not explain.
-  const double deeper = last - source.place.height, least = 1e-9 * static_cast<double>(s.mesh.box.diagonal());
-  const double pushed = -0.5 * dot(slope + source.place.gradient, step);
+  const dvec3 step_there = source.x - was.at(source.axis.along);  // of the same sphere of a capsule
+  const double moved = std::max(length(step), length(step_there));
+  const double deeper = contact.previous_height - contact.height,
+               least = 1e-9 * static_cast<double>(s.mesh.box.diagonal());
+  const double pushed = source.tip.is_capsule() ? -dot(source.place.gradient, step_there)  // it was the deepest before
+                                                : -0.5 * dot(slope + source.place.gradient, step);
   const bool jumped =
       source.tip.radius > 0 && length(source.place.p - place) > kJump * moved && deeper - pushed > kUnexplained * moved;
   if (jumped || deeper - moved > least) {

@@ -5,8 +5,8 @@
 
 namespace pliant {
 
-// To the tip's place x now: downhill from the last foot, over seams to the other surface, or to its end.
-void follow_contact(const ContactSearch& s, SourceState& source, Contact& contact, dvec3 x);
+// To the tip's place now, object frame: downhill from the last foot, over seams to the other surface, or to its end.
+void follow_contact(const ContactSearch& s, SourceState& source, Contact& contact, const TipPlace& tip);
 
 // Of contacts of one tip that have reached the same foot, the one stays whose depth was pushed.
 void merge_contacts(const ContactSearch& s);

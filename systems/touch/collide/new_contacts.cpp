@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/touch/collide/capsule.h"
 #include "systems/touch/collide/seams.h"
 #include "systems/touch/collide/surface_query.h"
 #include "systems/touch/collide/triangle_tree.h"
@@ -102,13 +103,25 @@ EntryPlace entry_place(const ContactSearch& s, const ProbeTip& tip, dvec3 from, 
   return {};
 }
 
-// Begins a contact where a point passed through the surface.
-void find_entry(const ContactSearch& s, const ProbeTip& tip, dvec3 from, dvec3 to) {
-  const dvec3 d = to - from;
+// Way of a tip on the object in this tick.
+struct TipWay {
+  TipPlace from, to;
+};
+
+// Begins a contact at the deepest sphere of the tip, downhill from the foot of that at `along`.
+void begin_at(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, const Foot& foot, double along) {
+  if (is_known(s, tip, foot)) return;
+  const TipContact at = deepest_on_tip(s, way.to, tip.tip.radius, foot, along);
+  if (!tip.tip.is_capsule() || !is_known(s, tip, at.place.main()))
+    begin_contact(s, tip, at, way.from.at(at.axis.along));
+}
+
+// Begins a contact where the sphere at `along` passed through the surface with its centre.
+void find_entry(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, double along) {
+  const dvec3 from = way.from.at(along), to = way.to.at(along), d = to - from;
   if (!(dot(d, d) > 0) || inside_neighbour(s, tip)) return;
   const auto enter = [&](const Foot& foot) {
-    if (foot.valid() && foot.height < 0 && !beyond_border(s.mesh, foot, to) && !is_known(s, tip, foot))
-      begin_contact(s, tip, foot, from, to);
+    if (foot.valid() && foot.height < 0 && !beyond_border(s.mesh, foot, to)) begin_at(s, tip, way, foot, along);
   };
   const auto bulge = static_cast<double>(s.mesh.tree.bulge);
   const dvec3 early = s.early() / length(d) * d;
@@ -130,32 +143,21 @@ void find_entry(const ContactSearch& s, const ProbeTip& tip, dvec3 from, dvec3 t
 }
 
 // The first pose may be inside a body; only a closed one has an inside.
-void find_inside(const ContactSearch& s, const ProbeTip& tip, dvec3 x) {
+void find_inside(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, double along) {
   if (!s.mesh.closed) return;
+  const dvec3 x = way.to.at(along);
   const FlatPoint near =
       closest_flat(s.mesh, x, std::max(tip.tip.radius, 0.1 * static_cast<double>(s.mesh.box.diagonal())));
   if (!near.valid()) return;
   const Foot foot = s.downhill(near.triangle, near.barycentric, x);
-  if (foot.height < tip.tip.radius && !is_known(s, tip, foot)) begin_contact(s, tip, foot, x, x);
+  if (foot.height < tip.tip.radius) begin_at(s, tip, {way.to, way.to}, foot, along);
 }
 
-}  // namespace
-
-void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, dvec3& searched, bool fresh, dvec3 from, dvec3 to) {
+// Begins contacts with the walls within reach of the sphere at `along`: around its way's end, and along the way of a
+// fast one. A sphere touches before its centre crosses.
+void find_near(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, double along) {
   const double radius = tip.tip.radius, within = radius * (1 + kAhead);
-  const double band = within + static_cast<double>(s.mesh.tree.bulge) + 2 * s.early();
-  const Box& box = s.mesh.box;
-  const dvec3 low = glm::min(from, to) - dvec3(band), high = glm::max(from, to) + dvec3(band);
-  if (low.x > box.max.x || low.y > box.max.y || low.z > box.max.z || high.x < box.min.x || high.y < box.min.y ||
-      high.z < box.min.z)
-    return;
-  if (fresh) return find_inside(s, tip, to);
-  find_entry(s, tip, from, to);
-  if (radius == 0 || inside_neighbour(s, tip)) return;
-
-  if (length(to - searched) < 0.5 * kAhead * radius) return;
-  searched = to;
-  // A sphere touches before its centre crosses: search around the segment's end, and along the segment of a fast one.
+  const dvec3 from = way.from.at(along), to = way.to.at(along);
   const int steps = std::clamp(static_cast<int>(std::ceil(2 * length(to - from) / radius)), 1, 16);
   for (int i = 1; i <= steps; ++i) {
     const dvec3 x = from + (to - from) * (double(i) / steps);
@@ -164,10 +166,44 @@ void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, dvec3& searc
     find_walls(s, x, within, feet, count);
     for (std::size_t f = 0; f < count; ++f) {
       const Foot foot = i == steps ? feet[f] : follow_foot(s, feet[f], x, to);
-      if (foot.height > within || is_known(s, tip, foot) || pressed_through(s, tip, foot.p, foot.normal)) continue;
-      begin_contact(s, tip, foot, from, to);
+      if (foot.height <= within && !pressed_through(s, tip, foot.p, foot.normal)) begin_at(s, tip, way, foot, along);
     }
   }
+}
+
+// Number of intervals between the spheres of a capsule from which its contacts are searched: half a radius long, of a
+// line half an edge of the mesh. A sphere: 0.
+int intervals(const ContactSearch& s, const Tip& tip) {
+  if (!tip.is_capsule()) return 0;
+  constexpr double kMost = 256;
+  const double apart = 0.5 * (tip.radius > 0 ? tip.radius : static_cast<double>(s.mesh.mean_edge));
+  return static_cast<int>(std::clamp(std::ceil(length(tip.axis) / apart), 1.0, kMost));
+}
+
+}  // namespace
+
+void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, TipPlace& searched, bool fresh,
+                       const TipPlace& from, const TipPlace& to) {
+  const double radius = tip.tip.radius, within = radius * (1 + kAhead);
+  const double band = within + static_cast<double>(s.mesh.tree.bulge) + 2 * s.early();
+  const Box& box = s.mesh.box;
+  const dvec3 low = glm::min(glm::min(from.end, from.at(1)), glm::min(to.end, to.at(1))) - dvec3(band),
+              high = glm::max(glm::max(from.end, from.at(1)), glm::max(to.end, to.at(1))) + dvec3(band);
+  if (low.x > box.max.x || low.y > box.max.y || low.z > box.max.z || high.x < box.min.x || high.y < box.min.y ||
+      high.z < box.min.z)
+    return;
+  const TipWay way{from, to};
+  const int count = intervals(s, tip.tip);
+  const auto along = [&](int i) { return count == 0 ? 0.0 : double(i) / count; };
+  // A capsule's wall is known before the axis crosses it, unless it is fast.
+  const double far = std::max(length(to.end - from.end), length(to.at(1) - from.at(1)));
+  if (fresh || !tip.tip.is_capsule() || far > 0.5 * radius)
+    for (int i = 0; i <= count; ++i) fresh ? find_inside(s, tip, way, along(i)) : find_entry(s, tip, way, along(i));
+  if (fresh || radius == 0 || inside_neighbour(s, tip)) return;
+
+  if (std::max(length(to.end - searched.end), length(to.at(1) - searched.at(1))) < 0.5 * kAhead * radius) return;
+  searched = to;
+  for (int i = 0; i <= count; ++i) find_near(s, tip, way, along(i));
 }
 
 }  // namespace pliant

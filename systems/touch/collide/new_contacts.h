@@ -7,6 +7,7 @@ namespace pliant {
 
 // On the tip's way on the object. `fresh`: its first pose. `searched`: where this tip last searched for walls of the
 // object.
-void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, dvec3& searched, bool fresh, dvec3 from, dvec3 to);
+void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, TipPlace& searched, bool fresh,
+                       const TipPlace& from, const TipPlace& to);
 
 }  // namespace pliant

@@ -99,7 +99,7 @@ WayPoint beside(const Mesh& mesh, WayPoint at, dvec3 way, dvec3 x) {
 
 Ridge ridge_between(const Mesh& mesh, const FootBlend& a, const FootBlend& b, dvec3 x, double radius) {
   const double most = std::min(radius - a.height, radius - b.height);
-  const Ridge none_between{most, a.height > b.height ? -a.gradient : -b.gradient};
+  const Ridge none_between{most, a.height > b.height ? -a.gradient : -b.gradient, x};
   if (a.main().triangle == b.main().triangle) return none_between;
   const auto end = [&](const Foot& foot) {
     return WayPoint{foot.triangle, inside_triangle(mesh, foot.triangle, foot.barycentric)};
@@ -123,7 +123,7 @@ Ridge ridge_between(const Mesh& mesh, const FootBlend& a, const FootBlend& b, dv
   if (!(depth > 0)) return {};
   if (depth >= most || highest.at.triangle == kBorder) return none_between;
   const dvec3 outward = (highest.at.p - x) / highest.far;
-  if (!straight) return {depth, outward};
+  if (!straight) return {depth, outward, x};
   const auto moves = [&](const Foot& foot) {
     const uvec3 t = mesh.triangles[foot.triangle];
     dmat3 sum(0.0);
@@ -132,7 +132,7 @@ Ridge ridge_between(const Mesh& mesh, const FootBlend& a, const FootBlend& b, dv
     return sum;
   };
   const dvec3 share = share_slope(mesh, highest.edge, from.p, moves(a.main()), to.p, moves(b.main()), x);
-  return {depth, outward - dot(outward, on_surface(mesh, highest.edge).along) * share};
+  return {depth, outward - dot(outward, on_surface(mesh, highest.edge).along) * share, x};
 }
 
 }  // namespace pliant

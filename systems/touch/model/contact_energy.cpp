@@ -201,7 +201,7 @@ ShareKernel share_kernel(Shape shape, double reach, double volume, double contac
   return {weight + weight_by * volume, (inner + inner_by * volume) * reach, (outer + outer_by * volume) * reach};
 }
 
-double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel, std::span<const SharedDent> dents) {
+double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel, std::span<SharedDent> dents) {
   if (contacts.size() == 1) {
     LoadedContact& only = contacts[0];
     only.load = std::sqrt(2 * only.energy);
@@ -240,11 +240,12 @@ double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel, 
             (facing * kernel.slope(r2) * (glm::transpose(a.moves) * d) + phi * (glm::transpose(a.turns) * b.normal));
     }
   }
-  for (const SharedDent& dent : dents) {
+  for (SharedDent& dent : dents) {
     LoadedContact &a = contacts[dent.a], &b = contacts[dent.b];
     const dvec3 d = a.p - b.p;
     const double q = std::max(0.0, dot(a.normal, b.normal)) * kernel.at(dot(d, d));
-    const dvec3 force = 0.5 * a.load * b.load * dent_overlap(dent.part, q).by_m * dent.slope;
+    dent.pull = a.load * b.load * dent_overlap(dent.part, q).by_m;
+    const dvec3 force = 0.5 * dent.pull * dent.slope;
     a.force += force;
     b.force += force;
   }

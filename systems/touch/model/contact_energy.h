@@ -49,11 +49,13 @@ struct SharedDent {
   std::uint32_t a = 0, b = 0;  // indices of contacts
   double part = 0.0;           // [1] m
   dvec3 slope{0};              // [1/m] dm/dx of the tip
+  dvec3 turning{0};            // [1] dm by a turn about the object's origin
+  double pull = 0.0;           // [J] out: -dU/dm
 };
 
 // Solves for the loads and the forces. Returns U [J]; NaN if a load was not finite and was replaced by 0. At most
 // kMaxLoaded contacts.
 inline constexpr std::size_t kMaxLoaded = 64;
-double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel, std::span<const SharedDent> dents = {});
+double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel, std::span<SharedDent> dents = {});
 
 }  // namespace pliant

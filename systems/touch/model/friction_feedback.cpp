@@ -9,8 +9,8 @@
 #include <span>
 #include <type_traits>
 
+#include "systems/touch/collide/capsule.h"
 #include "systems/touch/collide/collision.h"
-#include "systems/touch/collide/ridge.h"
 #include "systems/touch/model/contact_law.h"
 #include "systems/touch/model/field_kernels.h"
 #include "systems/touch/model/friction.h"
@@ -74,9 +74,19 @@ Painted relaxed_depth(const FootBlend& place, const Mesh& mesh, const Motion& mo
   return sum;
 }
 
+// The place where a capsule touches moves along its axis (AxisPlace).
+dvec3 with_axis(dvec3 gradient, const AxisPlace& axis) {
+  return gradient + dot(gradient, axis.axis) * axis.shift;
+}
+dmat3 with_axis(const dmat3& moves, const AxisPlace& axis) {
+  return moves + glm::outerProduct(moves * axis.axis, axis.shift);
+}
+
 // Stored energy of one contact as if it were alone, and its gradient.
-bool store(const ObjectState& object, const Deformable& deformable, const Mesh& mesh, const HeightField& field,
-           Pressing& pressing, LoadedContact& out) {
+bool store(const ContactSearch& search, const Deformable& deformable, Pressing& pressing, LoadedContact& out) {
+  const ObjectState& object = search.object;
+  const Mesh& mesh = search.mesh;
+  const HeightField& field = search.field;
   const FootBlend& place = pressing.source->place;
   const Contact& contact = *pressing.contact;
   const double depth = -contact.height;
@@ -100,14 +110,16 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
   out.energy = pressing.stored.energy;
   // W is proportional to the painted stiffness; its dependence on q adds q's slope, that of the arm's own paint its
   // slope.
-  out.pull = pressing.stored.force * place.gradient -
-             (pressing.stored.energy / std::max(pressing.stiffness.value, 1e-12)) * pressing.stiffness.gradient -
-             pressing.stored.by_relaxed * relaxed.gradient -
-             pressing.stored.by_arm * (law.arm / std::max(relaxation.value, 1e-12)) * relaxation.gradient;
+  const AxisPlace& axis = pressing.source->axis;
+  const dvec3 painted =
+      (pressing.stored.energy / std::max(pressing.stiffness.value, 1e-12)) * pressing.stiffness.gradient +
+      pressing.stored.by_relaxed * relaxed.gradient +
+      pressing.stored.by_arm * (law.arm / std::max(relaxation.value, 1e-12)) * relaxation.gradient;
+  out.pull = pressing.stored.force * place.gradient - with_axis(painted, axis);
   out.p = place.p;
   out.normal = place.normal;
-  out.moves = place.moves;
-  out.turns = place.turns;
+  out.moves = with_axis(place.moves, axis);
+  out.turns = with_axis(place.turns, axis);
   out.load = contact.load;
   return true;
 }
@@ -116,17 +128,19 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
 class SharedDents {
  public:
   // The last contact, which may be in one dent with those before.
-  void add(const Mesh& mesh, std::span<const Pressing> pressing) {
+  void add(const ContactSearch& search, std::span<const Pressing> pressing) {
     const std::size_t last = pressing.size() - 1;
     const Pressing& b = pressing[last];
     const double radius = b.source->tip.radius;
     for (std::size_t i = 0; i < last; ++i) {
       const Pressing& a = pressing[i];
       pair_[i][last] = kNone;
-      if (radius == 0.0 || count_ == kMostPairs || a.contact->probe != b.contact->probe ||
+      const bool capsule = b.source->tip.is_capsule();
+      if ((radius == 0.0 && !capsule) || count_ == kMostPairs || a.contact->probe != b.contact->probe ||
           a.contact->tip != b.contact->tip)
         continue;
-      const Ridge ridge = ridge_between(mesh, a.source->place, b.source->place, b.source->x, radius);
+      const Ridge ridge = capsule ? ridge_along(search, *a.source, *b.source)
+                                  : ridge_between(search.mesh, a.source->place, b.source->place, b.source->x, radius);
       pair_[i][last] = static_cast<std::uint16_t>(count_);
       pairs_.all[count_++] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(last), ridge};
     }
@@ -137,7 +151,7 @@ class SharedDents {
     while (count_ > 0 && pairs_.all[count_ - 1].b == contact) --count_;
   }
 
-  std::span<const SharedDent> of(std::span<const Pressing> pressing) {
+  std::span<SharedDent> of(std::span<const Pressing> pressing) {
     if (count_ == 0) return {};
     // The way over a third contact may be the deeper one. The depths of all ridges are then those of a tree, and the
     // matrix of their energies has no negative eigenvalue.
@@ -176,10 +190,11 @@ class SharedDents {
     dent.a = pair.a;
     dent.b = pair.b;
     dent.part = std::sqrt(at_a.energy / a.stored.energy * (at_b.energy / b.stored.energy));
-    dent.slope = 0.5 * dent.part *
-                 ((at_a.force / at_a.energy + at_b.force / at_b.energy) * ridge.slope +
-                  a.stored.force / a.stored.energy * a.source->place.gradient +
-                  b.stored.force / b.stored.energy * b.source->place.gradient);
+    const dvec3 at_ridge = (at_a.force / at_a.energy + at_b.force / at_b.energy) * ridge.slope,
+                by_a = a.stored.force / a.stored.energy * a.source->place.gradient,
+                by_b = b.stored.force / b.stored.energy * b.source->place.gradient;
+    dent.slope = 0.5 * dent.part * (at_ridge + by_a + by_b);
+    dent.turning = 0.5 * dent.part * (cross(ridge.x, at_ridge) + cross(a.source->x, by_a) + cross(b.source->x, by_b));
     return true;
   }
 
@@ -199,19 +214,19 @@ struct Pressed {
 
 // Depth without a hand's motion stores no energy that was not there: a contact that begins beside others, or goes over
 // to a deeper place, takes over their load, and only what is beyond counts as unpushed. It is the next of `pressed`.
-bool settle(const ObjectState& object, const Deformable& deformable, const Mesh& mesh, const HeightField& field,
-            Pressed& pressed, std::span<LoadedContact> loaded) {
+bool settle(const ContactSearch& search, const Deformable& deformable, Pressed& pressed,
+            std::span<LoadedContact> loaded) {
   constexpr int kHalvings = 24;
   Pressing& pressing = pressed.pressing[pressed.count];
   Contact& contact = *pressing.contact;
   const auto energy = [&](double unpushed) {
     contact.unpushed = unpushed;
-    const bool stores = store(object, deformable, mesh, field, pressing, loaded[pressed.count]);
+    const bool stores = store(search, deformable, pressing, loaded[pressed.count]);
     const std::size_t count = pressed.count + (stores ? 1 : 0);
     if (count == 0) return 0.0;
-    return share_load(loaded.first(count), object.kernel, pressed.dents.of(pressed.pressing.first(count)));
+    return share_load(loaded.first(count), search.object.kernel, pressed.dents.of(pressed.pressing.first(count)));
   };
-  pressed.dents.add(mesh, pressed.pressing.first(pressed.count + 1));
+  pressed.dents.add(search, pressed.pressing.first(pressed.count + 1));
   double none = 0.0, enough = contact.unpushed;
   const double had = energy(enough), others = energy(-contact.height), allowed = std::max(had, others) * (1 + 1e-12);
   if (energy(none) <= allowed) enough = none;
@@ -221,7 +236,7 @@ bool settle(const ObjectState& object, const Deformable& deformable, const Mesh&
   }
   contact.unpushed = enough;
   pressing.source->settled = true;
-  return store(object, deformable, mesh, field, pressing, loaded[pressed.count]);
+  return store(search, deformable, pressing, loaded[pressed.count]);
 }
 
 // Rate term and friction on top of the elastic force; world frame.
@@ -246,10 +261,11 @@ void feel(World& world, const Deformable& deformable, const Mesh& mesh, const Ob
 
   Probe& probe = registry.get<Probe>(contact.probe);
   const Tip& tip = pressing.source->tip;
-  const dvec3 at = tip_position(probe, tip);
+  const AxisPlace& axis = pressing.source->axis;
+  const dvec3 at = tip_place(probe, tip).at(axis.along);
   // Friction in the tangent plane of this tick; the last tick's deflection is projected onto it.
-  const dvec3 moving =
-      (at - tip_position_before(probe, tip)) / tick.elapsed() - surface_velocity(registry, contact.object, at);
+  const dvec3 moving = (at - tip_place_before(probe, tip).at(axis.along)) / tick.elapsed() -
+                       surface_velocity(registry, contact.object, at);
   const dvec3 velocity = glm::conjugate(pose.rotation) * moving;
   const double factor = painted(place, mesh, mesh.friction_factor).value;
   const double K = kBristleStiffness * deformable.stiffness * pressing.stiffness.value, B = K * kBristleDampingTime;
@@ -267,6 +283,18 @@ void feel(World& world, const Deformable& deformable, const Mesh& mesh, const Ob
   contact.bristle_damping = bristle.sliding ? 0.0 : B;
   probe.force += contact.force;
   probe.torque += cross(at - probe.position, contact.force);
+  if (axis.curvature > 0) {  // a turn moves the place along the axis, where the depth is stationary and all else is not
+    const double depth = loaded.share * pressing.stored.force * dot(place.gradient, axis.axis);
+    const double by_along = (depth - dot(loaded.force, axis.axis)) / (1 + dot(axis.shift, axis.axis));
+    probe.torque += pose.rotation * (by_along / axis.curvature * cross(axis.axis, place.gradient));
+  }
+}
+
+// The force of a dent that two contacts of a capsule share acts at the ridge, too; each has half of it.
+void turn_at_ridge(Registry& registry, const Pose& pose, const SharedDent& dent, const Pressing& a, const Pressing& b) {
+  if (!a.source->tip.is_capsule()) return;
+  const dvec3 halves = 0.5 * cross(a.source->x + b.source->x, dent.slope);
+  registry.get<Probe>(a.contact->probe).torque += pose.rotation * (dent.pull * (dent.turning - halves));
 }
 
 void release(Contact& contact) {
@@ -287,6 +315,7 @@ void friction_feedback(World& world, Tick tick) {
     const Deformable& deformable = registry.get<Deformable>(object.entity);
     const Mesh& mesh = world.meshes[deformable.mesh];
     const HeightField& field = world.fields[deformable.field];
+    const ContactSearch search{world, object, mesh, field, tick};
     std::vector<LoadedContact>& loaded = world.touch->loaded;
     Pressed pressed;
     const std::span<Pressing> pressing = pressed.pressing;
@@ -295,16 +324,15 @@ void friction_feedback(World& world, Tick tick) {
     for (const bool settled : {true, false}) {
       for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
         SourceState& source = object.sources[i];
-        if (!source.tracked || source.settled != settled) continue;
+        if (!source.tracked || source.tip.drawn || source.settled != settled) continue;
         Contact& contact = registry.get<Contact>(source.contact);
         advance_free_surface(contact, source.place, mesh, object.motion);
         pressing[count] = {&source, &contact, {}, {}, 0.0, {}};
-        const bool stores =
-            contact.height < 0 && (settled ? store(object, deformable, mesh, field, pressing[count], loaded[count])
-                                           : settle(object, deformable, mesh, field, pressed, loaded));
+        const bool stores = contact.height < 0 && (settled ? store(search, deformable, pressing[count], loaded[count])
+                                                           : settle(search, deformable, pressed, loaded));
         if (stores) {
           ++count;
-          if (settled) dents.add(mesh, pressing.first(count));
+          if (settled) dents.add(search, pressing.first(count));
         } else {
           dents.remove(count);
           if (contact.height < 0 && !std::isfinite(pressing[count].stored.energy)) world.dropped |= kDroppedNonFinite;
@@ -312,9 +340,10 @@ void friction_feedback(World& world, Tick tick) {
         }
       }
     }
-    object.stored =
-        count > 0 ? share_load({loaded.data(), count}, object.kernel, dents.of(pressing.first(count))) : 0.0;
+    object.stored = 0.0;
     if (count == 0) continue;
+    const std::span<SharedDent> shared = dents.of(pressing.first(count));
+    object.stored = share_load({loaded.data(), count}, object.kernel, shared);
     if (!std::isfinite(object.stored)) {  // from a registered law or shape
       world.dropped |= kDroppedNonFinite;
       object.stored = 0.0;
@@ -327,6 +356,7 @@ void friction_feedback(World& world, Tick tick) {
         release(*pressing[i].contact);
       }
     }
+    for (const SharedDent& dent : shared) turn_at_ridge(registry, pose, dent, pressing[dent.a], pressing[dent.b]);
   }
 }
 

@@ -80,7 +80,6 @@ void list_creases(const Mesh& mesh, ObjectState& object) {
   object.crease_boxes.build(boxes);
 }
 
-constexpr std::size_t kMostTips = 16;     // of a capsule
 constexpr std::size_t kLeastEchoes = 16;  // sources that an object beside seams reserves for dents of its neighbours
 
 std::size_t most_contacts(const ObjectState& object) {
@@ -89,16 +88,22 @@ std::size_t most_contacts(const ObjectState& object) {
 // Largest number of simultaneous contacts of a tip with one object: the walls of a corner, and one more.
 constexpr std::size_t kContactsOfASphere = 8, kContactsOfAPoint = 2;
 
-// A capsule is a row of spheres half a radius apart, up to kMostTips.
-std::vector<Tip> tips_of(const Probe& probe) {
-  std::vector<Tip> tips;
+// A capsule is one tip, and a row of spheres that are only drawn, up to kMostDrawn, at most kDrawnApart of the smallest
+// reach apart.
+constexpr double kDrawnApart = 1.0 / 3;
+constexpr double kMostDrawn = 32;
+
+std::vector<Tip> tips_of(const Probe& probe, double reach) {
+  std::vector<Tip> tips, drawn;
   for (const ProbePart& part : probe_parts(probe)) {
     const dvec3 axis = part.to - part.from;
-    const double apart = std::max(0.5 * probe.radius, length(axis) / (kMostTips - 1));
-    const int count = part.is_sphere() ? 0 : std::max(1, static_cast<int>(std::ceil(length(axis) / apart)));
-    for (int i = 0; i <= count; ++i)
-      tips.push_back({part.from + axis * double(i) / double(std::max(count, 1)), probe.radius});
+    tips.push_back({part.from, axis, probe.radius, false});
+    const double count =
+        part.is_sphere() ? 0.0 : std::clamp(std::ceil(length(axis) / (kDrawnApart * reach)), 1.0, kMostDrawn);
+    for (int i = 0; i < static_cast<int>(count) + (count > 0); ++i)
+      drawn.push_back({part.from + axis * (double(i) / count), dvec3(0), probe.radius, true});
   }
+  tips.insert(tips.end(), drawn.begin(), drawn.end());
   return tips;
 }
 
@@ -179,13 +184,14 @@ struct TipCount {
   std::size_t contacts = 0;  // of all tips with one object, at the same time
 };
 
-TipCount list_probes(Registry& registry, TouchState& touch) {
+// `reach` [m] the smallest of all objects.
+TipCount list_probes(Registry& registry, TouchState& touch, double reach) {
   TipCount count;
   for (auto [entity, probe] : registry.view<Probe>()) {
     const bool meets_surfaces = probe.meets != ProbeMeets::kBodies;
-    touch.probes.push_back({entity, {}, meets_surfaces ? tips_of(probe) : std::vector<Tip>(), count.all});
+    touch.probes.push_back({entity, {}, meets_surfaces ? tips_of(probe, reach) : std::vector<Tip>(), count.all});
     for (const Tip& tip : touch.probes.back().tips)
-      count.contacts += tip.radius > 0 ? kContactsOfASphere : kContactsOfAPoint;
+      count.contacts += tip.radius > 0 && !tip.drawn ? kContactsOfASphere : kContactsOfAPoint;
     count.all += static_cast<std::uint32_t>(touch.probes.back().tips.size());
   }
   count.contacts = std::min<std::size_t>(count.contacts, kMaxContactsPerObject);
@@ -214,7 +220,7 @@ ObjectState make_object(World& world, Entity entity, const Pose& pose, double dt
   object.kernel = share_kernel(deformable.shape, reach, deformable.volume, contact / reach);
   object.felt_stiffness = felt_paint(mesh, mesh.stiffness_factor, contact);
   object.felt_relaxation = felt_paint(mesh, mesh.relaxation_factor, contact);
-  object.searched.assign(tips, dvec3(std::numeric_limits<double>::max()));
+  object.searched.assign(tips, {dvec3(std::numeric_limits<double>::max()), dvec3(0)});
   object.world_box = touch_box(mesh, pose);
   object.zone_sources.assign(mesh.zone_count(), 0);
   object.visited.assign(mesh.zone_count(), 0);
@@ -312,15 +318,19 @@ Status prepare_touch(World& world) {
   drop_contacts(registry);
   auto touch = std::make_shared<TouchState>();
   touch->dt = 1.0 / world.simulation.touch_rate;
-  const TipCount tips = list_probes(registry, *touch);
+  double reach = std::numeric_limits<double>::max();
+  for (auto [entity, deformable, pose] : registry.view<Deformable, const Pose>()) {
+    if (deformable.reach == 0.0) deformable.reach = default_reach(world.meshes[deformable.mesh]);
+    if (Status status = check(deformable, name_of(world, entity)); !status) return status.error();
+    reach = std::min(reach, deformable.reach);
+  }
+  const TipCount tips = list_probes(registry, *touch, reach);
 
   Box extent;
   Snapshot snapshot;
   for (auto [entity, deformable, pose] : registry.view<Deformable, const Pose>()) {
     const Mesh& mesh = world.meshes[deformable.mesh];
     check_in("preparing what is touched, now `" + name_of(world, entity) + "`");
-    if (deformable.reach == 0.0) deformable.reach = default_reach(mesh);
-    if (Status status = check(deformable, name_of(world, entity)); !status) return status.error();
     ObjectState object = make_object(world, entity, pose, touch->dt, tips.all);
     object.accounts.resize(touch->probes.size());
     snapshot.objects.push_back(snapshot_of(object, mesh));

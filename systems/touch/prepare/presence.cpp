@@ -18,7 +18,7 @@ void let_go_of(World& world, ObjectState& object) {
   for (std::uint32_t i = 0; i < object.probe_sources; ++i)
     if (object.sources[i].tracked)
       drop_contact(object.sources[i], world.registry.get<Contact>(object.sources[i].contact));
-  for (dvec3& searched : object.searched) searched = dvec3(1e30);  // walls are searched anew
+  for (TipPlace& searched : object.searched) searched.end = dvec3(1e30);  // walls are searched anew
 }
 
 std::uint32_t slot_of(const World& world, const ObjectState& object) {

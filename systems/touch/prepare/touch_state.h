@@ -23,10 +23,20 @@ namespace pliant {
 
 inline constexpr std::uint32_t kMaxContactsPerObject = 64;  // one bit each in ObjectState::zone_sources
 
-// A sphere of a probe.
+// A sphere of a probe, or a capsule: all spheres with centres place + s axis, 0 <= s <= 1. A capsule touches with its
+// deepest ones (collide/capsule.h).
 struct Tip {
-  dvec3 place{0};     // [m] its centre, probe frame
-  double radius = 0;  // [m] 0: a point
+  dvec3 place{0};      // [m] probe frame
+  dvec3 axis{0};       // [m] the same; zero: a sphere
+  double radius = 0;   // [m] 0: a point, or a line
+  bool drawn = false;  // it dents the surface that is drawn, and bears no force: a sphere of a capsule
+  bool is_capsule() const { return axis != dvec3(0); }
+};
+
+// Where a tip is, in any frame.
+struct TipPlace {
+  dvec3 end{0}, axis{0};  // [m]
+  dvec3 at(double along) const { return end + along * axis; }
 };
 
 // Identifies a source by its object and index.
@@ -35,6 +45,14 @@ struct SourceLink {
   std::uint32_t object = kNone, source = kNone;
   bool valid() const { return object != kNone; }
   bool operator==(const SourceLink&) const = default;
+};
+
+// Where on its axis a capsule touches, and how that moves. Of a sphere: zero.
+struct AxisPlace {
+  double along = 0.0;      // [1] s
+  double curvature = 0.0;  // [m] d2 height / ds2; 0: the place does not move along the axis
+  dvec3 axis{0};           // [m] object frame
+  dvec3 shift{0};          // [1/m] ds/dx
 };
 
 // Foot of a contact whose tip was behind the surface: the tip may return through a wall that it was pressed through.
@@ -54,6 +72,7 @@ struct SourceState {
   bool settled = true;               // false: it has depth of which friction_feedback tells how much counts as unpushed
   dvec3 x{0};                        // [m] the tip's centre last tick, object frame
   Tip tip;                           // the tip in contact
+  AxisPlace axis;                    // of a capsule
   FootBlend place;                   // of the tip's centre
   HeldFoot held;                     // written where its contact is tracked
   bool active = false;               // the contact dented the surface in the last tick
@@ -137,14 +156,14 @@ struct ObjectState {
   Entity entity;
   Motion motion;  // of unpainted vertices
   PaintedMotion painted;
-  std::vector<float> felt_stiffness;   // the painted factors as a contact feels them (smooth_paint.h)
+  std::vector<float> felt_stiffness;  // the painted factors as a contact feels them (smooth_paint.h)
   std::vector<float> felt_relaxation;
   std::vector<float> flush_stiffness;  // the same while its seams are closed: that of what is flush with it counts too
-  SeamsFound found;                         // all that may be; the next lists have those that are closed now
-  std::vector<Seam> seams;                  // by edge, ascending
-  std::vector<SeamZones> seam_zones;        // to other objects, each pair once
-  std::vector<std::uint32_t> joined;        // objects in which a dent may continue, over any number of seams, each once
-  std::vector<SeamZones> cracks;            // to zones of the same object
+  SeamsFound found;                    // all that may be; the next lists have those that are closed now
+  std::vector<Seam> seams;             // by edge, ascending
+  std::vector<SeamZones> seam_zones;   // to other objects, each pair once
+  std::vector<std::uint32_t> joined;   // objects in which a dent may continue, over any number of seams, each once
+  std::vector<SeamZones> cracks;       // to zones of the same object
   std::vector<std::uint32_t> neighbours;    // objects beyond its seams, each once
   std::vector<std::uint32_t> closed;        // edges of seams, from both sides, ascending: no foot crosses them
   BoxTree crease_boxes;                     // of `creases`, object frame
@@ -155,7 +174,7 @@ struct ObjectState {
   double stored = 0.0;                      // [J] U: elastic energy of all its contacts (contact_energy.h)
   std::vector<TissueAccount> accounts;      // per probe
   bool listed = false;                      // it is in TouchState::awake
-  std::vector<dvec3> searched;              // [m] per tip of every probe: place of the last search for walls
+  std::vector<TipPlace> searched;           // per tip of every probe: place of the last search for walls
   bool on_gpu = false;                      // the field is `terms`, drawn by the GPU; there is no HeightField
   std::vector<Release> releases;            // GPU only; capacity kMaxReleases
   std::vector<FieldSource> terms;           // GPU only: the whole field at `time`

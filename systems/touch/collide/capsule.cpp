@@ -1,0 +1,111 @@
+#include "systems/touch/collide/capsule.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/touch/collide/contact_place.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kMostSteps = 24;
+constexpr double kExactly = 1e-10;  // [1] of the axis
+
+// A bent axis.
+struct Axis {
+  TipPlace tip;
+  double bend;  // [m]
+
+  Axis(const TipPlace& place, double radius)
+      : tip(place), bend(std::max(kBend * radius, kLeastBend * length(place.axis))) {}
+  double raised(double along) const { return 4 * bend * (along - 0.5) * (along - 0.5); }
+};
+
+// One sphere of a capsule.
+struct AxisSphere {
+  Foot foot;
+  FootBlend place;
+  double along = 0.0;
+  double slope = 0.0, curvature = 0.0;  // [m] of the height by `along`
+  bool on_surface = true;               // not behind the rim of an open surface
+};
+
+AxisSphere sphere_at(const ContactSearch& s, const Axis& axis, const Foot& foot, double along) {
+  const dvec3 x = axis.tip.at(along);
+  AxisSphere out{foot, contact_place(s.object, s.mesh, foot, x), along};
+  out.slope = dot(out.place.gradient, axis.tip.axis) + 8 * axis.bend * (along - 0.5);
+  out.curvature = dot(axis.tip.axis, out.place.turns * axis.tip.axis) + 8 * axis.bend;
+  out.on_surface = foot.height >= 0 || !beyond_border(s.mesh, foot, x);
+  return out;
+}
+
+AxisSphere sphere_at(const ContactSearch& s, const Axis& axis, const AxisSphere& from, double along) {
+  return sphere_at(s, axis, follow_foot(s, from.foot, axis.tip.at(from.along), axis.tip.at(along)), along);
+}
+
+// A zero of the slope between 0 and 1 where it rises, or an end. Newton's method within a bracket. The first steps are
+// short: they follow one minimum.
+AxisSphere lowest(const ContactSearch& s, const Axis& axis, AxisSphere at) {
+  double farthest = std::min(0.25, std::max(1e-3, static_cast<double>(s.mesh.mean_edge) / length(axis.tip.axis)));
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const bool back = at.slope > 0;
+    (back ? high : low) = at.along;
+    double way = back ? -farthest : farthest;
+    if (at.curvature > 0) way = std::clamp(-at.slope / at.curvature, -farthest, farthest);
+    if (std::abs(way) == farthest) farthest = std::min(0.25, 2 * farthest);
+    double to = std::clamp(at.along + way, low, high);
+    if (to == (back ? low : high) && to != 0.0 && to != 1.0) to = 0.5 * (low + high);
+    if (!(std::abs(to - at.along) > kExactly)) break;
+    AxisSphere next = sphere_at(s, axis, at, to);
+    if (!next.on_surface) {  // the surface ends at its rim
+      (back ? low : high) = to;
+      if (high - low < kExactly) break;
+      next = sphere_at(s, axis, at, 0.5 * (at.along + to));
+      if (!next.on_surface) continue;
+    }
+    at = next;
+  }
+  return at;
+}
+
+}  // namespace
+
+TipContact deepest_on_tip(const ContactSearch& s, const TipPlace& tip, double radius, Foot foot, double along) {
+  if (tip.axis == dvec3(0)) return {contact_place(s.object, s.mesh, foot, tip.end), {}, tip.end};
+  const Axis axis(tip, radius);
+  const AxisSphere at = lowest(s, axis, sphere_at(s, axis, foot, along));
+  TipContact out{at.place, {at.along, 0.0, tip.axis}, tip.at(at.along), axis.raised(at.along)};
+  if (at.along > 0 && at.along < 1 && at.curvature > 0) {
+    out.axis.curvature = at.curvature;
+    out.axis.shift = -(glm::transpose(at.place.turns) * tip.axis) / at.curvature;
+  }
+  return out;
+}
+
+Ridge ridge_along(const ContactSearch& s, const SourceState& a, const SourceState& b) {
+  constexpr double kNear = 1e-7;  // [1] of the axis
+  const double radius = a.tip.radius, sense = b.axis.along > a.axis.along ? 1.0 : -1.0;
+  const Axis axis({a.x - a.axis.along * a.axis.axis, a.axis.axis}, radius);
+  AxisSphere from = sphere_at(s, axis, a.place.main(), a.axis.along),
+             to = sphere_at(s, axis, b.place.main(), b.axis.along);
+  // Where the height stops rising on the way: from either end, as long as it rises.
+  for (int i = 0; i < kMostSteps && std::abs(to.along - from.along) > kNear; ++i) {
+    const double middle = 0.5 * (from.along + to.along);
+    AxisSphere next = sphere_at(s, axis, from, middle);
+    if (sense * next.slope > 0)
+      from = next;
+    else
+      to = sphere_at(s, axis, to, middle);
+  }
+  const double raised = axis.raised(from.along), same = 1e-3 * static_cast<double>(s.mesh.mean_edge);
+  const dvec3 x = axis.tip.at(from.along);
+  if (length(from.foot.p - to.foot.p) < same + std::abs(to.along - from.along) * length(axis.tip.axis))
+    return {radius - from.place.height - raised, -from.place.gradient, x};
+  if (radius == 0.0) return {};
+  Ridge across = ridge_between(s.mesh, from.place, to.place, x, radius);
+  across.depth -= raised;
+  return across;
+}
+
+}  // namespace pliant
