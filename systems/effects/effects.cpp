@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/probe_shape.h"
 #include "systems/effects/felt_effects.h"
-#include "systems/touch/collide/collision.h"
 #include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
@@ -14,7 +14,7 @@ namespace {
 constexpr double kElsewhere = 1e-6;  // [m] a place that is farther from where motion has brought it was set anew
 
 void begin(FeltEffects& felt) {
-  felt.force = felt.drag = felt.torque = felt.carried = dvec3(0);
+  felt.force = felt.drag = felt.torque = felt.drag_torque = felt.carried = dvec3(0);
   felt.stiffness = dmat3(0.0);
   felt.damping = felt.energy = felt.before = 0.0;
 }
@@ -24,21 +24,20 @@ bool finite(const EffectValue& value) {
   return std::isfinite(value.energy) && std::isfinite(f.x + f.y + f.z) && std::isfinite(value.damping);
 }
 
-void act_on_tip(World& world, EffectPair& pair, std::size_t t, Tick tick, FeltEffects& felt) {
+void act_on_tip(World& world, const EffectPair& pair, EffectTip& tip, Tick tick, FeltEffects& felt) {
   const Registry& registry = world.registry;
   const Probe& probe = registry.get<Probe>(pair.probe);
-  const std::vector<Tip>& tips = world.touch->probes[pair.hand].tips;
-  const Tip& tip = tips[t];
-  EffectMemory& memory = pair.tips[t];
+  EffectMemory& memory = tip.memory;
   const Pose& pose = registry.get<Pose>(pair.effect);
-  const dvec3 at = tip_position(probe, tip), last = probe.fresh ? at : tip_position_before(probe, tip);
+  const dvec3 at = probe.position + probe.rotation * tip.place;
+  const dvec3 last = probe.fresh ? at : probe.previous + probe.previous_rotation * tip.place;
   const Effect& effect = registry.get<Effect>(pair.effect);
   const GuidedBy* const guide = registry.find<GuidedBy>(pair.effect);
   const EffectInput in{effect,
                        guide ? &guide->path : nullptr,
                        pose.to_local(at),
                        pose_before(registry, pair.effect).to_local(last),
-                       tip.radius,
+                       probe.radius,
                        tick.elapsed()};
   if (probe.fresh || (memory.begun && length(in.before - memory.last) > kElsewhere)) memory = {};
   EffectValue value = effect_value(in, memory);
@@ -47,7 +46,7 @@ void act_on_tip(World& world, EffectPair& pair, std::size_t t, Tick tick, FeltEf
     value = {};
     memory = {};
   }
-  const double part = row_of(effect.kind).tips == EffectTips::kMean ? 1.0 / static_cast<double>(tips.size()) : 1.0;
+  const double part = row_of(effect.kind).tips == EffectTips::kMean ? 1.0 / static_cast<double>(pair.tips.size()) : 1.0;
   felt.energy += part * value.energy;
   felt.before += part * (memory.begun ? memory.energy : value.energy);
   memory.begun = true;
@@ -63,7 +62,8 @@ void act_on_tip(World& world, EffectPair& pair, std::size_t t, Tick tick, FeltEf
     felt.damping += part * value.damping;
     felt.carried += length(drag) * moves;
   }
-  felt.torque += cross(at - probe.position, force + drag);
+  felt.torque += cross(at - probe.position, force);
+  felt.drag_torque += cross(at - probe.position, drag);
   const dmat3 turn = glm::mat3_cast(pose.rotation);
   felt.stiffness += part * (turn * value.stiffness * glm::transpose(turn));
 }
@@ -99,9 +99,24 @@ void limit(FeltEffects& felt, double most) {
     felt.limited = std::min(felt.limited, most / stiffest);
   if (felt.limited == 1.0) return;
   felt.force *= felt.limited;
+  felt.torque *= felt.limited;
   felt.stiffness *= felt.limited;
   felt.energy *= felt.limited;
   felt.before *= felt.limited;
+}
+
+// Spheres half a radius apart along a capsule, at most kMost.
+std::vector<EffectTip> tips_of_effects(const Registry& registry, Entity entity) {
+  constexpr int kMost = 16;
+  const Probe& probe = registry.get<Probe>(entity);
+  std::vector<EffectTip> tips;
+  for (const ProbePart& part : probe_parts(probe)) {
+    const dvec3 axis = part.to - part.from;
+    const double apart = std::max(0.5 * probe.radius, length(axis) / (kMost - 1));
+    const int count = part.is_sphere() ? 0 : std::max(1, static_cast<int>(std::ceil(length(axis) / apart)));
+    for (int i = 0; i <= count; ++i) tips.push_back({part.from + axis * (double(i) / std::max(count, 1)), {}});
+  }
+  return tips;
 }
 
 }  // namespace
@@ -112,13 +127,13 @@ void effects(World& world, Tick tick) {
   for (auto [entity, pair] : registry.view<EffectPair>()) {
     if (!registry.get<Probe>(pair.probe).placed) continue;
     FeltEffects& felt = registry.get<FeltEffects>(pair.probe);
-    for (std::size_t t = 0; t < pair.tips.size(); ++t) act_on_tip(world, pair, t, tick, felt);
+    for (EffectTip& tip : pair.tips) act_on_tip(world, pair, tip, tick, felt);
   }
   for (auto [entity, felt, probe] : registry.view<FeltEffects, Probe>()) {
     felt.stiffness = positive_part(felt.stiffness);
     limit(felt, registry.get<HapticDevice>(probe.device).max_stiffness);
     probe.force += felt.force + felt.drag;
-    probe.torque += felt.torque;
+    probe.torque += felt.torque + felt.drag_torque;
   }
 }
 
@@ -142,18 +157,11 @@ Status prepare_effects(World& world) {
       gone.push_back(entity);
   }
   for (const Entity entity : gone) registry.destroy(entity);
-  for (std::uint32_t hand = 0; hand < world.touch->probes.size(); ++hand) {
-    const ProbeState& state = world.touch->probes[hand];
+  for (const ProbeState& state : world.touch->probes) {
     if (!sources.empty() && !registry.has<FeltEffects>(state.entity)) registry.add<FeltEffects>(state.entity, {});
-    for (const Entity source : sources) {
+    for (const Entity source : sources)
       if (std::find(known.begin(), known.end(), std::pair(source, state.entity)) == known.end())
-        registry.add<EffectPair>(registry.create(), {source, state.entity, hand, {}});
-    }
-    for (auto [entity, pair] : registry.view<EffectPair>())
-      if (pair.probe == state.entity) {
-        pair.hand = hand;
-        pair.tips.resize(state.tips.size());
-      }
+        registry.add<EffectPair>(registry.create(), {source, state.entity, tips_of_effects(registry, state.entity)});
   }
   return Done{};
 }

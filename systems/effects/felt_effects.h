@@ -1,7 +1,6 @@
 // Run state of effects. Made by prepare_effects, for every probe of a level with effects.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "components/math.h"
@@ -15,7 +14,8 @@ namespace pliant {
 struct FeltEffects {
   dvec3 force{0};        // [N] world: minus the gradient of `energy`
   dvec3 drag{0};         // [N] world: of viscosity
-  dvec3 torque{0};       // [N m] world, about the probe's position: of both
+  dvec3 torque{0};       // [N m] world, about the probe's position: of `force`
+  dvec3 drag_torque{0};  // [N m] the same, of `drag`
   dmat3 stiffness{0.0};  // [N/m] world: -d force / d position, without its negative eigenvalues
   double damping = 0.0;  // [N s/m] of the drag
   dvec3 carried{0};      // [N m/s] world: velocities of moving viscous regions, each times its part of the drag
@@ -27,11 +27,16 @@ struct FeltEffects {
   double let_in = 0.0;   // [1] last tick's share that the safety layer's gate let in
 };
 
+// A tip on which effects act: of a capsule one of the spheres along its axis.
+struct EffectTip {
+  dvec3 place{0};  // [m] its centre, probe frame
+  EffectMemory memory;
+};
+
 // One effect on one probe, an entity of its own. Rate: touch. Writer: effects.
 struct EffectPair {
   Entity effect, probe;
-  std::uint32_t hand = 0;          // index into TouchState::probes
-  std::vector<EffectMemory> tips;  // of the probe
+  std::vector<EffectTip> tips;
 };
 
 // On an effect that guides. Rate: never changes.

@@ -110,5 +110,27 @@ TEST_F(EffectsRun, AForbiddenBallAndDetentsAreTheirClosedForm) {
          });
 }
 
+// A simulated hand on a simulated device, behind servo and guard: it begins within some of them, above their minimum.
+TEST_F(EffectsRun, AHandFeelsEachKindAndNothingIsWithheldOrTrips) {
+  for (const char* keys :
+       {R"({"kind": "viscosity", "radius": 0.03, "damping": 5})",
+        R"({"kind": "gravity", "region": "everywhere", "force": [0, -1.5, 0]})",
+        R"({"kind": "attraction", "stiffness": 100, "range": 0.06})",
+        R"({"kind": "guidance", "path": "line.csv", "stiffness": 200})",
+        R"({"kind": "forbidden", "radius": 0.015, "stiffness": 300})",
+        R"({"kind": "detents", "region": "everywhere", "detents": "around", "count": 5, "peak": 0.3})"}) {
+    write_level(keys);
+    const std::string out = "out" + std::to_string(runs_++);
+    const Said said = pliant({"run", "level.gltf", "--lockstep", "--seconds", "3", "--probe", "tip=hand:omega.7",
+                              "--frames", "0", "--out", out});
+    ASSERT_EQ(said.status, 0) << said.err;
+    EXPECT_EQ(said.err.find("trip"), std::string::npos) << keys << said.err;
+    const Json probe = report(out)["probes"][0];
+    EXPECT_EQ(probe["withheld"]["ticks"], 0) << keys;
+    EXPECT_GT(probe["max_force_N"].get<double>(), 0.15) << keys;
+    EXPECT_LT(probe["net_work_J"].get<double>(), 100 * 0.06 * 0.06 / 6) << keys << ": no more than a potential held";
+  }
+}
+
 }  // namespace
 }  // namespace pliant::testing
