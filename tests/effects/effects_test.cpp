@@ -134,6 +134,19 @@ TEST(Effects, ATippedProbeFeelsTheMeanAndItsTorque) {
   EXPECT_LT(length(now.torque - torque), 1e-12);
 }
 
+TEST(Effects, ACapsuleIsARowOfSpheresAlsoIfItMeetsBodiesAlone) {
+  Room room;
+  room.add_effect(EffectKind::kGravity, [](Effect& it) { everywhere(it), it.force = {0.5, 0, 0}; });
+  const Entity probe = room.add_probe({0, 0, 0}, 0.005);
+  Probe& it = room.world.registry.get<Probe>(probe);
+  it.length = 0.1;
+  it.meets = ProbeMeets::kBodies;
+  room.ready();
+  room.tick();
+  EXPECT_LT(length(it.force - dvec3(0.5, 0, 0)), 1e-12);
+  EXPECT_LT(length(it.torque - cross(dvec3(0, 0.05, 0), dvec3(0.5, 0, 0))), 1e-12);
+}
+
 // The node goes at 0.1 m/s along x: a magnet pulls to where it is, and a river carries.
 TEST(Effects, AMovingNodeCarriesItsEffect) {
   for (const EffectKind kind : {EffectKind::kAttraction, EffectKind::kViscosity}) {
