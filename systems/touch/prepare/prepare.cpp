@@ -189,10 +189,15 @@ TipCount list_probes(Registry& registry, TouchState& touch, double reach) {
   TipCount count;
   for (auto [entity, probe] : registry.view<Probe>()) {
     const bool meets_surfaces = probe.meets != ProbeMeets::kBodies;
-    touch.probes.push_back({entity, {}, meets_surfaces ? tips_of(probe, reach) : std::vector<Tip>(), count.all});
-    for (const Tip& tip : touch.probes.back().tips)
+    ProbeState& state = touch.probes.emplace_back();
+    state.entity = entity;
+    state.first_tip = count.all;
+    if (meets_surfaces) state.tips = tips_of(probe, reach);
+    for (const Tip& tip : state.tips) {
+      state.has_torque = state.has_torque || tip.place != dvec3(0) || tip.is_capsule();
       count.contacts += tip.radius > 0 && !tip.drawn ? kContactsOfASphere : kContactsOfAPoint;
-    count.all += static_cast<std::uint32_t>(touch.probes.back().tips.size());
+    }
+    count.all += static_cast<std::uint32_t>(state.tips.size());
   }
   count.contacts = std::min<std::size_t>(count.contacts, kMaxContactsPerObject);
   return count;
