@@ -29,7 +29,7 @@ struct Row {
   double safe = -1.0;    // [ms] until nothing more leaves; < 0: it stays in service
   bool still_on = false;
   DeviceState state{};
-  std::string causes;
+  std::string cause;  // of the first transition
 };
 
 // The cause without the remedy.
@@ -66,8 +66,7 @@ Row play(const Fault& fault) {
   for (std::uint64_t i = 0; i < kept; ++i) {
     const std::uint64_t number = report.transitions - kept + i;
     if (number < before) continue;
-    const std::string cause = short_cause(report.transition(i));
-    if (row.causes.find(cause) == std::string::npos) row.causes += (row.causes.empty() ? "" : "; ") + cause;
+    if (row.cause.empty()) row.cause = short_cause(report.transition(i));
   }
   return row;
 }
@@ -294,7 +293,7 @@ std::vector<Fault> faults() {
 std::string in_table(const Row& row) {
   const std::string safe = row.still_on ? "never" : fmt::format("{:.0f}", row.safe);
   return fmt::format("| {} | {:.2f} | {:.1f} | {} | {} | {} |\n", row.name, row.largest, std::max(0.0, row.given) + 0.0,
-                     safe, name_of(row.state), row.causes.empty() ? "-" : row.causes);
+                     safe, name_of(row.state), row.cause.empty() ? "-" : row.cause);
 }
 
 constexpr const char* kOthers =
@@ -312,7 +311,7 @@ constexpr const char* kOthers =
 TEST(FaultTable, EveryFaultEndsWithoutForceOrWithinTheLimitsAndTheTableSaysHow) {
   std::string table =
       "| fault, while a hand presses 1 N into a wall of 400 N/m | largest force after it [N] | energy out [mJ] | force "
-      "gone after [ms] | state 3 s later | why |\n|---|---|---|---|---|---|\n";
+      "gone after [ms] | state 3 s later | first cause |\n|---|---|---|---|---|---|\n";
   for (const Fault& fault : faults()) {
     const Row row = play(fault);
     table += in_table(row);
