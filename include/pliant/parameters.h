@@ -1,5 +1,5 @@
 // The authored parameters of surfaces, bodies, probes, tools and devices. Each struct is one extension of the level
-// format; its members are the keys (docs/level-format.md, docs/reference.md).
+// format; its members are the keys (docs/level-format.md).
 #pragma once
 
 #include <array>
