@@ -223,6 +223,8 @@ void find_in_scripts(const Level& level, const fs::path& folder, Findings& findi
         error(script.error(), "script.unreadable");
     };
     if (node.motion && !node.motion->script.empty()) find(node.motion->script, "PLIANT_motion/script", false);
+    if (node.effect && !node.effect->path.empty())
+      find(node.effect->path, "PLIANT_effect/path", node.effect->kind == EffectKind::kGuidance);
     if (node.device && !node.device->file.empty())
       find(node.device->file, "PLIANT_haptic_device/file", node.device->driver == DriverKind::kScript);
   }

@@ -2,6 +2,7 @@
 #include "systems/schedule.h"
 
 #include "systems/device/devices.h"
+#include "systems/effects/effects.h"
 #include "systems/soft/publish_soft.h"
 #include "systems/soft/soft_step.h"
 #include "systems/tool/pull.h"
@@ -27,6 +28,7 @@ std::vector<System<World>> touch_schedule() {
       {"force_field", force_field},              // Contacts -> amplitudes (small LCP); wakes the zones within reach
       {"dynamics", dynamics},                    // awake zones: exact step, stream = targets + residual; rest sleeps
       {"friction_feedback", friction_feedback},  // minus the gradient of one stored energy, friction -> Probe force
+      {"effects", effects},                      // Effect x Probe -> minus the gradient of its potential, drag
       {"tool_feedback", tool_feedback},          // device pose -> 6-DoF handle on its model -> Handle6 wrench
       {"write_devices", write_devices},          // safety: finite, clamp, slew, engage, passivity -> device
       {"publish", publish_paced},                // dirty zones, probe poses and forces -> TripleBuffer

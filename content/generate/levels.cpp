@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "content/generate/fields_level.h"
 #include "content/generate/instrument_levels.h"
 #include "content/generate/lattice_sphere.h"
 #include "content/generate/minimal.h"
@@ -295,6 +296,7 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   if (Status s = save_strokes(ball_level, ridged_ball(), ball_strokes(), levels); !s) return s;
   if (Status s = write_tool_levels(levels); !s) return s;
   if (Status s = write_instrument_levels(levels); !s) return s;
+  if (Status s = write_fields_level(levels); !s) return s;
   return write_minimal(levels);
 }
 

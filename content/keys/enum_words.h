@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "components/deformable.h"
+#include "components/effect.h"
 #include "components/haptic_device.h"
 #include "components/probe.h"
 #include "components/registered.h"
@@ -113,6 +114,46 @@ constexpr const char* word_of(ToolForce force) {
       return "linear";
     case ToolForce::kContacts:
       return "contacts";
+  }
+  return nullptr;
+}
+
+constexpr const char* word_of(EffectKind kind) {
+  return static_cast<std::size_t>(kind) < std::size(kEffectRows) ? row_of(kind).word : nullptr;
+}
+
+constexpr const char* word_of(EffectRegion region) {
+  switch (region) {
+    case EffectRegion::kEverywhere:
+      return "everywhere";
+    case EffectRegion::kSphere:
+      return "sphere";
+    case EffectRegion::kBox:
+      return "box";
+    case EffectRegion::kHalfSpace:
+      return "half_space";
+  }
+  return nullptr;
+}
+
+constexpr const char* word_of(EffectTarget target) {
+  switch (target) {
+    case EffectTarget::kPoint:
+      return "point";
+    case EffectTarget::kSegment:
+      return "segment";
+    case EffectTarget::kPlane:
+      return "plane";
+  }
+  return nullptr;
+}
+
+constexpr const char* word_of(DetentAxis axis) {
+  switch (axis) {
+    case DetentAxis::kAlong:
+      return "along";
+    case DetentAxis::kAround:
+      return "around";
   }
   return nullptr;
 }

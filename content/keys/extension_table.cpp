@@ -383,6 +383,55 @@ std::vector<Key> motion_keys() {
   return keys;
 }
 
+std::vector<Key> effect_keys() {
+  using E = Effect;
+  using R = EffectRange;
+  const auto e = [](auto member) { return at(&LevelNode::effect, member); };
+  std::vector<Key> keys;
+  keys.push_back(choice("kind", e(&E::kind), "what it does to every probe"));
+  keys.push_back(choice("region", e(&E::region),
+                        "where it acts: a sphere around the node, `box`, or below the plane through the node across "
+                        "its +Y"));
+  keys.push_back(number("radius", "m", {R::kWidth, {1e-3, 1.0}}, e(&E::radius), "radius of the sphere"));
+  keys.push_back(box("box", e(&E::box), "the box, in the node's frame"));
+  keys.push_back(number("edge", "m", {R::kWidth, {1e-3, 0.1}}, e(&E::edge),
+                        "depth below the region's border over which the effect comes in, at most to its middle; around "
+                        "the axis of detents the radius within which they fade"));
+  keys.push_back(number("damping", "N s/m", {R::kDamping, {0.1, 20.0}}, e(&E::damping), "drag per speed"));
+  Key force = key(
+      "force", "N", KeyType::kVector, "constant force in the node's frame; one number points down (-Y)", e(&E::force),
+      [](dvec3 f) {
+        return Json::array({f.x, f.y, f.z});
+      },
+      [](const Json& json) {
+        return json.is_number() ? dvec3(0.0, -json.get<double>(), 0.0)
+                                : dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
+      });
+  force.range = R::kForce;
+  force.usual = {-20.0, 20.0};
+  keys.push_back(force);
+  keys.push_back(
+      choice("target", e(&E::target), "what attracts: the node, a segment from it along its +Y, or its XZ plane"));
+  keys.push_back(number("length", "m", {R::kLength, {1e-3, 1.0}}, e(&E::length), "length of the segment"));
+  Key size = pair("size", "m", e(&E::size), "of the plane, along X and Z around the node; 0: without end");
+  size.range = R::kLength;
+  keys.push_back(size);
+  keys.push_back(number("stiffness", "N/m", {R::kStiffness, {1.0, 5e3}}, e(&E::stiffness),
+                        "of a spring to the target or path, near it; of the wall of what is forbidden"));
+  keys.push_back(number("range", "m", {R::kWidth, {1e-3, 1.0}}, e(&E::range),
+                        "distance from the target or path beyond which nothing pulls; the largest force is 0.286 "
+                        "`stiffness` `range`, at 0.447 `range`"));
+  keys.push_back(
+      text("path", KeyType::kText, e(&E::path),
+           "CSV of the path that guides, in the node's frame, relative to the level; its times do not count"));
+  keys.push_back(choice("detents", e(&E::detents), "detents along the node's +Y, or around it"));
+  keys.push_back(number("spacing", "m", {R::kWidth, {1e-4, 0.1}}, e(&E::spacing), "of detents along"));
+  keys.push_back(
+      number("count", "1", {R::kCount, {2.0, 100.0}}, e(&E::count), "of detents around, in a turn: a whole number"));
+  keys.push_back(number("peak", "N", {R::kPeak, {0.05, 5.0}}, e(&E::peak), "largest force from a detent to the next"));
+  return keys;
+}
+
 std::vector<Key> environment_keys() {
   using E = LevelEnvironment;
   const auto e = [](auto member) { return at(&Level::environment, member); };
@@ -465,6 +514,8 @@ std::vector<Extension> make_table() {
   table.push_back(extension("motion", "How an animation or a script carries the node, and all below it.",
                             &LevelNode::motion, motion_keys()));
   table.back().settle = settle_motion;
+  table.push_back(
+      extension("effect", "Acts on probes in space, without a surface.", &LevelNode::effect, effect_keys()));
   table.push_back(extension("environment", "Surroundings of the scene.", &Level::environment, environment_keys()));
   Extension simulation;
   simulation.name = "simulation";

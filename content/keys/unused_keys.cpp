@@ -111,6 +111,26 @@ const UnusedRow kRows[] = {
      {"is not needed where `mass` is given", "remove one of them"}},
 };
 
+// Keys of an effect that its kind, region, target or detents do not read.
+std::optional<UnusedWords> unused_of_effect(const Effect& effect, const std::string& key) {
+  if (key == "kind") return std::nullopt;
+  if (!reads_key(effect.kind, key))
+    return only_with("kind", kEffectRows, [&](std::size_t i) { return reads_key(static_cast<EffectKind>(i), key); });
+  const auto needs = [](bool has, const char* what) -> std::optional<UnusedWords> {
+    if (has) return std::nullopt;
+    return UnusedWords{fmt::format("is read with {} only", what), "set that, or remove the key"};
+  };
+  if (key == "radius") return needs(effect.region == EffectRegion::kSphere, "`region` `sphere`");
+  if (key == "box") return needs(effect.region == EffectRegion::kBox, "`region` `box`");
+  if (key == "edge" && !(effect.kind == EffectKind::kDetents && effect.detents == DetentAxis::kAround))
+    return needs(effect.region != EffectRegion::kEverywhere, "a `region` that has a border");
+  if (key == "length") return needs(effect.target == EffectTarget::kSegment, "`target` `segment`");
+  if (key == "size") return needs(effect.target == EffectTarget::kPlane, "`target` `plane`");
+  if (key == "spacing") return needs(effect.detents == DetentAxis::kAlong, "`detents` `along`");
+  if (key == "count") return needs(effect.detents == DetentAxis::kAround, "`detents` `around`");
+  return std::nullopt;
+}
+
 // Whether the owner's value differs from the default.
 template <class Owner>
 bool is_set(const Extension& extension, const Key& key, const Owner& owner) {
@@ -128,6 +148,12 @@ void find_in_node(const Level& level, std::size_t n, std::vector<UnusedKey>& fou
     if (is_set(extension, *find_key(extension, row.key), node))
       found.push_back({static_cast<std::int32_t>(n), fmt::format("PLIANT_{}/{}", row.extension, row.key),
                        row.words.what, row.words.cure});
+  }
+  if (node.effect) {
+    const Extension& extension = *find_extension("effect");
+    for (const Key& key : extension.keys)
+      if (const auto words = unused_of_effect(*node.effect, key.name); words && is_set(extension, key, node))
+        found.push_back({static_cast<std::int32_t>(n), "PLIANT_effect/" + key.name, words->what, words->cure});
   }
   // An error budget chooses the law of a sphere by it.
   if (!node.deformable || !(node.deformable->young > 0.0) || !(node.deformable->thickness > 0.0) ||

@@ -5,7 +5,7 @@
 namespace pliant {
 
 bool LevelNode::has_pliant() const {
-  return deformable || probe || device || soft_body || handle || rigid_body || motion;
+  return deformable || probe || device || soft_body || handle || rigid_body || motion || effect;
 }
 
 bool Level::has_pliant() const {

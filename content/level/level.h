@@ -11,6 +11,7 @@
 
 #include "components/appearance.h"
 #include "components/deformable.h"
+#include "components/effect.h"
 #include "components/haptic_device.h"
 #include "components/kinematic.h"
 #include "components/probe.h"
@@ -70,6 +71,7 @@ struct LevelNode {
   std::optional<Handle6> handle;         // PLIANT_handle
   std::optional<RigidBody> rigid_body;   // PLIANT_rigid_body
   std::optional<NodeMotion> motion;      // PLIANT_motion
+  std::optional<Effect> effect;          // PLIANT_effect
   std::int32_t source = -1;              // /nodes/i of Level::source; -1: new, for instance a copy
   std::set<std::string> stated;          // keys set by the file or --set, even to their default: deformable.shape
   double scaled_with_young = 1.0;        // [1] factor of the deformable's unstated constants in N/m and N/m3

@@ -10,6 +10,7 @@
 #include "content/level/soft_store.h"
 #include "content/level/spawn_carried.h"
 #include "content/level/spawn_device.h"
+#include "content/level/spawn_effect.h"
 #include "content/level/spawn_mesh.h"
 #include "content/level/spawn_soft.h"
 #include "content/level/spawn_state.h"
@@ -78,6 +79,8 @@ class Spawner {
     if (const std::optional<Note> fault = soft_fault(node)) return state_.at(n, *fault);
     if (node.handle) registry.add<Handle6>(entity, *node.handle);
     if (Status s = surface(n); !s) return s;
+    if (node.effect)
+      if (Status s = add_effect(state_, n); !s) return s;
     if (Status s = devices_.add_device(n); !s) return s;
     if (node.probe) {
       const Pose pose = rigid_part(motions.world[n]);

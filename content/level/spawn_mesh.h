@@ -36,7 +36,8 @@ inline bool is_touched(const LevelNode& node) {
 }
 // A moving node that is only drawn may change its scale, so its transform is not baked into its mesh.
 inline bool has_pose(const SpawnState& state, std::size_t n) {
-  return is_touched(state.level.nodes[n]) || !state.motions.moves[n];
+  const LevelNode& node = state.level.nodes[n];
+  return is_touched(node) || node.effect || !state.motions.moves[n];
 }
 
 class MeshBaker {

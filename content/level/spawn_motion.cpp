@@ -82,7 +82,7 @@ class MotionMaker {
     for (std::size_t n = level_.nodes.size(); n-- > 0;) {
       const LevelNode& node = level_.nodes[n];
       if (!node.in_scene) continue;
-      if (node.deformable) touched_[n] = true;
+      if (node.deformable || node.effect) touched_[n] = true;
       if (node.soft_body || (node.rigid_body && !node.rigid_body->fixed)) something_is_pushed_ = true;
       if (touched_[n] && node.parent >= 0) touched_[static_cast<std::size_t>(node.parent)] = true;
     }

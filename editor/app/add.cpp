@@ -48,6 +48,18 @@ void add_probe(Editor& editor) {
   add(editor, "Add a probe", std::move(node));
 }
 
+void add_effect(Editor& editor) {
+  const Box box = around(editor);
+  const double size = box.empty() ? 0.1 : static_cast<double>(box.diagonal());
+  LevelNode node;
+  node.name = unique_name(editor.state(), "effect");
+  node.effect.emplace();
+  node.effect->radius = std::clamp(0.5 * size, 1e-3, 1.0);
+  node.effect->range = std::clamp(0.25 * size, 1e-3, 1.0);
+  node.local.translation = middle(box);
+  add(editor, "Add an effect", std::move(node));
+}
+
 void add_light(Editor& editor) {
   const Box box = around(editor);
   LevelNode node;

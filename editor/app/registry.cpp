@@ -184,6 +184,7 @@ std::vector<Action> make_actions(App& app) {
   all.back().group = "Play";
   add({"add.empty", "Add", "Empty node", "", [](Editor& e) { add_empty(e); }});
   add({"add.probe", "Add", "Probe with a device", "", [](Editor& e) { add_probe(e); }});
+  add({"add.effect", "Add", "Effect in space", "", [](Editor& e) { add_effect(e); }});
   add({"add.light", "Add", "Light", "", [](Editor& e) { add_light(e); }});
   add({"add.camera", "Add", "Camera, from here", "", [](Editor& e) { add_camera(e); }});
   shared("help.keys", "Help", [&app](Editor&) { app.show_panel("Keys"); });

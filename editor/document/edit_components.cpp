@@ -34,6 +34,7 @@ void remove_from(LevelNode& node, const std::string& extension) {
   if (extension == "handle") node.handle.reset();
   if (extension == "rigid_body") node.rigid_body.reset();
   if (extension == "motion") node.motion.reset();
+  if (extension == "effect") node.effect.reset();
 }
 
 Result<const Key*> find_both(const std::string& extension, const std::string& key) {

@@ -17,6 +17,7 @@ std::vector<std::string> named_files(const State& state) {
   for (const auto& each : state.nodes) {
     const LevelNode& node = each->node;
     if (node.motion) add(node.motion->script);
+    if (node.effect) add(node.effect->path);
     if (node.device) add(node.device->file);
     if (node.soft_body) add(node.soft_body->mesh);
   }

@@ -135,6 +135,32 @@ void draw_device(SignPen& pen, dvec3 at, const dmat3& turn, double small) {
   pen.line(at + 0.8 * x + 0.5 * y, at + 1.2 * x - 0.3 * y);
 }
 
+// Where an effect acts, and what it pulls to.
+void draw_effect(SignPen& pen, const Effect& effect, dvec3 at, const dmat3& turn, double small) {
+  dmat4 frame(turn);
+  frame[3] = glm::dvec4(at, 1.0);
+  const auto square = [&](double x, double z) { pen.box(frame, {vec3(dvec3(-x, 0, -z)), vec3(dvec3(x, 0, z))}); };
+  if (reads_key(effect.kind, "region")) {
+    if (effect.region == EffectRegion::kSphere) pen.sphere(at, turn, effect.radius);
+    if (effect.region == EffectRegion::kBox && !effect.box.empty()) pen.box(frame, effect.box);
+    if (effect.region == EffectRegion::kHalfSpace) square(6.0 * small, 6.0 * small);
+  }
+  if (reads_key(effect.kind, "target")) {
+    const bool plane = effect.target == EffectTarget::kPlane;
+    const dvec3 end = at + (effect.target == EffectTarget::kSegment ? effect.length : 0.0) * turn[1];
+    const auto half = [&](double size) { return size > 0.0 ? 0.5 * size : 6.0 * small; };
+    plane ? square(half(effect.size[0]), half(effect.size[1])) : pen.line(at, end);
+    if (!plane) pen.sphere(at, turn, effect.range);
+    if (end != at) pen.sphere(end, turn, effect.range);
+  }
+  if (effect.kind == EffectKind::kGravity) {
+    const double size = length(effect.force);
+    if (size > 0.0) pen.line(at, at + 3.0 * small / size * (turn * effect.force));
+  }
+  if (effect.kind == EffectKind::kDetents) pen.line(at - 3.0 * small * turn[1], at + 3.0 * small * turn[1]);
+  pen.cross(at, turn, 0.5 * small);
+}
+
 }  // namespace
 
 void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const std::vector<bool>& shown,
@@ -157,6 +183,7 @@ void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const 
         SignPen of_probe(lines, selected[i] ? colors.selected : vec4(glm::max(own, vec3(0.3f)), 1.0f));
         draw_probe(of_probe, *node.probe, at, turn, small);
       }
+      if (node.effect) draw_effect(pen, *node.effect, at, turn, small);
       if (node.light) draw_light(pen, *node.light, at, turn, small);
       if (node.camera) draw_camera(pen, *node.camera, at, turn, small);
       if (node.device && !node.probe) draw_device(pen, at, turn, small);

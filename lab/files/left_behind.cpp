@@ -13,6 +13,7 @@ void say_left_behind(const Level& level, const std::filesystem::path& out) {
   if (level.environment) names.insert(level.environment->panorama);
   for (const LevelNode& node : level.nodes) {
     if (node.device && node.device->driver == DriverKind::kScript) names.insert(node.device->file);
+    if (node.effect) names.insert(node.effect->path);
     if (node.motion) names.insert(node.motion->script);
     if (node.soft_body) names.insert(node.soft_body->mesh);
   }

@@ -4,6 +4,7 @@
 
 #include "player/run/tool_words.h"
 #include "systems/device/hands.h"
+#include "systems/effects/felt_effects.h"
 #include "systems/soft/soft_state.h"
 
 namespace pliant {
@@ -31,6 +32,8 @@ std::vector<Note> explain_run(RunFigures& figures, DeviceLinks& devices) {
     figures.misses.emplace_back();
     if (summary.contact_ticks == 0 && devices.never_ready(hand)) {
       // its device reports the reason
+    } else if (summary.contact_ticks == 0 && summary.max_force > 0.0 && figures.world.registry.has<FeltEffects>(hand)) {
+      // it felt effects in space
     } else if (summary.contact_ticks == 0 && !is_moved(figures, i)) {
       notes.push_back({fmt::format("{} `{}` never touched anything: nothing moves it", summary.tool ? "tool" : "probe",
                                    summary.name),

@@ -108,6 +108,7 @@ void leave_out_missing_files(Level& level) {
     if (node.device && is_missing(node.device->file))
       node.device->driver = DriverKind::kNull, node.device->file.clear();
     if (node.motion && is_missing(node.motion->script)) node.motion.reset();
+    if (node.effect && is_missing(node.effect->path)) node.effect.reset();
     if (node.soft_body && is_missing(node.soft_body->mesh)) {
       node.soft_body.reset();
       if (!node.rigid_body) node.handle.reset();

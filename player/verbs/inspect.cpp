@@ -193,6 +193,7 @@ OrderedJson describe(const Level& level, const std::vector<ObjectReport>& object
     if (node.handle) extensions.insert("PLIANT_handle");
     if (node.rigid_body) extensions.insert("PLIANT_rigid_body");
     if (node.motion) extensions.insert("PLIANT_motion");
+    if (node.effect) extensions.insert("PLIANT_effect");
   }
   if (level.environment) extensions.insert("PLIANT_environment");
 

@@ -5,6 +5,7 @@
 
 #include "components/soft_body.h"
 #include "systems/device/devices.h"
+#include "systems/effects/felt_effects.h"
 #include "systems/soft/body/coupling.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/feed/contacts_of.h"
@@ -59,6 +60,13 @@ void add_contacts(const World& world, Entity probe, Slopes& slopes) {
   });
 }
 
+void add_effects(const World& world, Entity probe, Slopes& slopes) {
+  const FeltEffects* const felt = world.registry.find<FeltEffects>(probe);
+  if (!felt) return;
+  slopes.stiffness += felt->stiffness;
+  slopes.damping += dmat3(felt->damping);
+}
+
 // Remaining part of a slope matrix, applied on both sides, where the safety layer reduced the force.
 struct Passed {
   double share = 1.0;  // [1]
@@ -108,12 +116,14 @@ DeviceModel device_model(const World& world, Entity effector, Entity entity, Tic
       }
     if (turning) model.max_torque = torque_limits(device, HandleParameters{}).force;
     add_contacts(world, effector, slopes);
+    add_effects(world, effector, slopes);
     slopes.of = surface_displacement(world, effector, tick.dt) / tick.dt;
     model.carried = slopes.of / scale;
     if (tool) add_coupling(world, *tool, slopes);
     slopes.wanted_force = probe->force + (tool ? linear(tool->device_wrench) : dvec3(0));
     slopes.wanted_torque = probe->torque;
     slopes.velocity = probe->velocity;
+    if (pushing) model.weight = pushing->weight;
   } else if (tool) {
     pushing = &tool->force_safety;
     turning = &tool->torque_safety;

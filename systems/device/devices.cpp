@@ -8,6 +8,8 @@
 #include "systems/device/path.h"
 #include "systems/device/softening.h"
 #include "systems/device/tissue_account.h"
+#include "systems/effects/effect_account.h"
+#include "systems/effects/felt_effects.h"
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/feed/contacts_of.h"
@@ -100,6 +102,7 @@ void write_probe(World& world, ProbeState& state, Tick tick) {
   SafetyLimits limits = force_limits(device), turning = torque_limits(device, HandleParameters{});
   limits.touched = soften(world, state.entity, device, state.safety);
   limits.carried = surface_displacement(world, state.entity, tick.elapsed());
+  limits.weight = effects_beside(world, state.entity, state.safety.share);
   const ToolTouchState* const among_bodies = find_tool(world, state.entity);
   if (among_bodies) limits.ease = turning.ease = ease_of_tool(tick.skipped);
   const dvec3 pressed = with_own(
@@ -111,6 +114,7 @@ void write_probe(World& world, ProbeState& state, Tick tick) {
   write_wrench(world, device, {state.safety, state.has_torque ? &state.torque_safety : nullptr, state.turned}, limits,
                turning, known ? rendered(pressed, device.can.renders_force) : unknown,
                known ? rendered(state.safety.share * probe.torque, device.can.renders_torque) : unknown, tick);
+  keep_account(world, state.entity, state.safety, state.safety.share);
 }
 
 }  // namespace
@@ -127,6 +131,10 @@ dvec3 surface_displacement(const World& world, Entity probe, double dt) {
     const dvec3 at = registry.get<Pose>(contact.object).to_world(contact.foot);
     sum += force * dt * surface_velocity(registry, contact.object, at);
   });
+  if (const FeltEffects* const felt = registry.find<FeltEffects>(probe)) {
+    forces += length(felt->drag);
+    sum += dt * felt->carried;
+  }
   return forces > 0.0 ? sum / forces : dvec3(0);
 }
 

@@ -10,8 +10,8 @@ namespace pliant {
 void read_devices(World& world, Tick tick);   // HapticDevice -> Probe pose and velocity
 void write_devices(World& world, Tick tick);  // Probe force, tool wrench -> safety -> HapticDevice
 
-// Displacement of the touched surfaces by prescribed motions in this tick, at the contacts: mean over the probe's
-// contacts, weighted by force. [m] world
+// Displacement of the touched surfaces by prescribed motions in this tick, at the contacts, and of viscous regions: mean
+// over those of the probe, weighted by force. [m] world
 dvec3 surface_displacement(const World& world, Entity probe, double dt);
 
 // Called when control of this probe or tool passes to another source; no earlier state of the hand is valid. Its gate

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "components/soft_body.h"
+#include "systems/effects/felt_effects.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/feed/contacts_of.h"
 
@@ -40,7 +41,9 @@ double stiffness_of(const World& world, Entity effector, const Stiffness& of) {
 }  // namespace
 
 double felt_stiffness(const World& world, Entity effector) {
-  return stiffness_of(world, effector, [](const Contact& contact) { return contact.stiffness; });
+  const FeltEffects* const effects = world.registry.find<FeltEffects>(effector);
+  return stiffness_of(world, effector, [](const Contact& contact) { return contact.stiffness; }) +
+         (effects ? at_least_largest(effects->stiffness) : 0.0);
 }
 
 double soften(const World& world, Entity effector, const HapticDevice& device, SafetyState& state) {

@@ -13,7 +13,7 @@
 namespace pliant {
 
 // [N/m] per metre of the world: upper bound of the stiffness that this probe or tool feels. Probe: the laws of its
-// contacts along their normals; bristles are left out, since friction bounds their force. Tool: its coupling.
+// contacts along their normals, and effects; bristles are left out, since friction bounds their force. Tool: its coupling.
 double felt_stiffness(const World& world, Entity effector);
 
 // Writes state.share for this tick. Before the force goes into the safety layer. Returns

@@ -138,11 +138,11 @@ TEST(Generate, ShippedFilesAreWhatTheGeneratorMakes) {
                            "glass_heart_b.csv",     "glass_heart_c.csv",    "chrome_cushion_a.csv",
                            "chrome_cushion_b.csv",  "turning_ball_a.csv",   "hand.csv",
                            "hand_crowd.csv",        "hand_squeeze.csv",     "stack_stylus.csv",
-                           "instrument_stylus.csv", "instrument_finger.csv"})
+                           "instrument_stylus.csv", "instrument_finger.csv", "fields_finger.csv", "fields_rail.csv"})
     EXPECT_EQ(bytes_of(folder.path / "levels" / name), bytes_of(kShipped / "levels" / name)) << name;
   for (const char* name :
        {"three_probes.glb", "inclusion.glb", "glass_heart.glb", "chrome_cushion.glb", "turning_ball.glb", "hand.glb",
-        "hand_crowd.glb", "hand_squeeze.glb", "stack.glb", "instrument.glb"}) {
+        "hand_crowd.glb", "hand_squeeze.glb", "stack.glb", "instrument.glb", "fields.glb"}) {
     const Result<Level> made = load_level(folder.path / "levels" / name),
                         shipped = load_level(kShipped / "levels" / name);
     ASSERT_TRUE(made.ok()) << made.error().message();

@@ -86,6 +86,7 @@ struct Bare {
     node.handle = Handle6{};
     node.rigid_body = RigidBody{};
     node.motion = NodeMotion{};
+    node.effect = Effect{};
     level.environment = LevelEnvironment{};
   }
   void* owner(const Extension& extension) { return extension.on_scene ? static_cast<void*>(&level) : &node; }
@@ -162,6 +163,10 @@ TEST(KeyTable, EveryEnumeratorHasAWordOfItsOwn) {
   expect(Attachment::kSlave, 2);
   expect(ToolForce::kContacts, 3);
   expect(SolverKind::kDense, 6);
+  expect(EffectKind::kDetents, 6);
+  expect(EffectRegion::kHalfSpace, 4);
+  expect(EffectTarget::kPlane, 3);
+  expect(DetentAxis::kAround, 2);
 }
 
 // --set N.EXT.KEY=TEXT against {"KEY": TEXT} in a file: both accept it or both reject it, with the same result.

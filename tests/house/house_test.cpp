@@ -49,9 +49,10 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
 const std::map<std::string, std::set<std::string>> kRooms{
     {"systems/safety", {}},
     {"systems/touch", {"systems/safety"}},
+    {"systems/effects", {"systems/safety", "systems/touch"}},
     {"systems/soft", {"systems/safety", "systems/touch"}},
     {"systems/tool", {"systems/safety", "systems/touch", "systems/soft"}},
-    {"systems/device", {"systems/safety", "systems/touch", "systems/soft", "systems/tool"}},
+    {"systems/device", {"systems/safety", "systems/touch", "systems/effects", "systems/soft", "systems/tool"}},
     {"systems/visual", {"systems/touch"}},
     {"content/gltf/form", {}},
     {"content/gltf/check", {"content/gltf/form"}},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "components/effect.h"
 #include "systems/touch/collide/seams.h"
 #include "systems/touch/prepare/prepare.h"
 #include "systems/touch/prepare/touch_state.h"
@@ -58,7 +59,7 @@ void place_object(World& world, const MovingNode& node, double dt) {
 }
 
 bool carries_something(const Registry& registry, Entity entity) {
-  return registry.has<Deformable>(entity) || registry.has<Drawable>(entity);
+  return registry.has<Deformable>(entity) || registry.has<Drawable>(entity) || registry.has<Effect>(entity);
 }
 
 }  // namespace

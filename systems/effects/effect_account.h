@@ -1,0 +1,26 @@
+// The energy of a probe's effects, between the potentials and the safety layer.
+//
+// A potential gives back what the hand has put in, and what it held where the hand came to it: a probe may begin above
+// a magnet. The passivity observer would take the second for energy that is made, and withhold it. So the force of the
+// potentials is beside the observer, as a tool's weight is: it fades in once the gate is open, and its work is not
+// counted there. It has an account of its own, the reserve T, in the potentials' U >= 0:
+//
+//   T += s (U - U before) + (rise of the gate's share) U,   0 <= T <= U,
+//
+// where s is the mean share of the force that was sent. While all of it is sent T = U. Where less was sent on the way
+// up than would be on the way down (a limit that has risen, missed ticks), T is spent before U is, and the rest of the
+// force goes to the observer as any other force does. So the hand gets at most what it gave and what the potentials
+// held where they let it in. The work of a moving effect is the motion's. Drag is always the observer's.
+#pragma once
+
+#include "components/world.h"
+#include "systems/safety/safety.h"
+
+namespace pliant {
+
+// [N] Part of the probe's wanted force that is beside the observer: of what is sent at the share `share`.
+dvec3 effects_beside(const World& world, Entity probe, double share);
+// After make_safe with that part as SafetyLimits::weight.
+void keep_account(World& world, Entity probe, const SafetyState& safety, double share);
+
+}  // namespace pliant
