@@ -58,6 +58,7 @@ void begin_contact(const ContactSearch& s, const ProbeTip& tip, const Foot& foot
   contact.load = contact.share = contact.normal_force = 0.0;
   contact.bristle = dvec3(0);
   contact.sliding = false;
+  contact.effects = {};
   put_contact(*source, contact, contact_place(s.object, s.mesh, foot, x), x);
   HeightState surface = recovering(s, foot);
   // Beside others of its tip the surface does not recover: the tip is on it, and has left that dent itself.

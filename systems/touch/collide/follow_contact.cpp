@@ -51,6 +51,7 @@ AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source,
     after.bristle = turn * before.bristle;
     after.sliding = before.sliding;
     after.load = before.load;
+    after.effects = before.effects;
     hand_over_dents(touch, static_cast<std::uint32_t>(&s.object - touch.objects.data()), source, seam.object, *to);
   }
   drop_contact(source, contact);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <type_traits>
 
@@ -14,7 +15,9 @@
 #include "systems/touch/model/contact_law.h"
 #include "systems/touch/model/field_kernels.h"
 #include "systems/touch/model/friction.h"
+#include "systems/touch/model/relief.h"
 #include "systems/touch/model/smooth_paint.h"
+#include "systems/touch/model/texture.h"
 #include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
@@ -39,6 +42,9 @@ struct Pressing {
   Painted stiffness;
   double slope = 0.0;  // [N/m] of the stored energy's force
   ContactLaw law;
+  Raised raised;      // by roughness and relief
+  dvec3 gradient{0};  // [1] of the felt height by the tip's centre
+  dvec3 velocity{0};  // [m/s] of the tip on the surface, object frame
 };
 
 // y: free recovery of the surface towards rest.
@@ -74,12 +80,72 @@ Painted relaxed_depth(const FootBlend& place, const Mesh& mesh, const Motion& mo
   return sum;
 }
 
+// Velocity of a contact's tip on the surface, object frame. [m/s]
+dvec3 velocity_on(const Registry& registry, const Pose& pose, const Contact& contact, const Tip& tip, Tick tick) {
+  const Probe& probe = registry.get<Probe>(contact.probe);
+  const dvec3 at = tip_position(probe, tip);
+  const dvec3 moving =
+      (at - tip_position_before(probe, tip)) / tick.elapsed() - surface_velocity(registry, contact.object, at);
+  return glm::conjugate(pose.rotation) * moving;
+}
+
+// Height of roughness and drawn relief at a contact, without what passes too fast to be felt.
+Raised raise(World& world, const ObjectState& object, const Deformable& deformable, const Mesh& mesh,
+             const Pressing& pressing, Tick tick) {
+  const FootBlend& place = pressing.source->place;
+  const dvec3 v = pressing.velocity, n = pressing.contact->normal;
+  double& finest = pressing.contact->effects.finest;
+  finest = finest_felt(finest, length(v - dot(v, n) * n), tick.elapsed());
+  Raised out;
+  if (const Texture& texture = object.texture; texture.count > 0) {
+    const double share = detail_share(texture.wavelength, finest);
+    const double rides = riding_share(deformable.texture_amplitude * std::numbers::sqrt2, texture.wavelength,
+                                      pressing.source->tip.radius);
+    const Raised wave = texture.at(place.p, share);
+    out.height += rides * wave.height;
+    out.gradient += rides * (glm::transpose(place.moves) * wave.gradient);
+    if (share < 1) world.dropped |= kDroppedDetail;
+  }
+  if (mesh.relief && deformable.relief > 0) {
+    const FeltRelief felt = felt_relief(*mesh.relief, place, finest);
+    out.height += deformable.relief * felt.height;
+    out.gradient += deformable.relief * felt.gradient;
+    if (felt.faded) world.dropped |= kDroppedDetail;
+  }
+  return out;
+}
+
+// A knock: a decaying sinusoid along the normal that an impact starts. Its amplitude is in proportion to the speed of
+// the impact (Okamura, Cutkosky & Dennerlein 2001). It gives back no more than the hand has put into it, as seen one
+// tick later. Returns it outwards, `normal` [N] what it is added to; `inward` [m/s].
+double knock(ContactEffects& now, const Deformable& deformable, double inward, double normal, double dt) {
+  now.knock_account += now.knock_force * inward * dt;
+  const double left = now.knock * std::exp(-deformable.transient_decay * now.knock_time);
+  if (!now.pressed && deformable.transient_amplitude * inward > left &&
+      deformable.transient_frequency * dt <= kMostKnock) {
+    now.knock = deformable.transient_amplitude * inward;
+    now.knock_time = 0.0;
+  } else if (left < 1e-6) {  // [N]
+    now.knock = 0.0;
+  }
+  now.knock_force = 0.0;
+  if (now.knock == 0.0) return 0.0;
+  now.knock_time += dt;
+  const double t = now.knock_time;
+  double force = now.knock * std::exp(-deformable.transient_decay * t) *
+                 std::sin(2 * std::numbers::pi * deformable.transient_frequency * t);
+  const double gives = -force * inward * dt;
+  if (gives > now.knock_account) force *= std::max(0.0, now.knock_account / gives);
+  now.knock_force = std::max(-normal, force);
+  return now.knock_force;
+}
+
 // Stored energy of one contact as if it were alone, and its gradient.
 bool store(const ObjectState& object, const Deformable& deformable, const Mesh& mesh, const HeightField& field,
            Pressing& pressing, LoadedContact& out) {
   const FootBlend& place = pressing.source->place;
   const Contact& contact = *pressing.contact;
-  const double depth = -contact.height;
+  const double depth = pressing.raised.height - contact.height;
   const bool flush = !object.flush_stiffness.empty() && !object.neighbours.empty();
   pressing.stiffness = smooth_painted(place, mesh, flush ? object.flush_stiffness : object.felt_stiffness);
   ContactLaw law = contact_law(deformable, object.motion, pressing.stiffness.value, pressing.source->tip.radius);
@@ -100,7 +166,7 @@ bool store(const ObjectState& object, const Deformable& deformable, const Mesh& 
   out.energy = pressing.stored.energy;
   // W is proportional to the painted stiffness; its dependence on q adds q's slope, that of the arm's own paint its
   // slope.
-  out.pull = pressing.stored.force * place.gradient -
+  out.pull = pressing.stored.force * pressing.gradient -
              (pressing.stored.energy / std::max(pressing.stiffness.value, 1e-12)) * pressing.stiffness.gradient -
              pressing.stored.by_relaxed * relaxed.gradient -
              pressing.stored.by_arm * (law.arm / std::max(relaxation.value, 1e-12)) * relaxation.gradient;
@@ -171,15 +237,18 @@ class SharedDents {
 
   static bool shared(std::span<const Pressing> pressing, const Pair& pair, const Ridge& ridge, SharedDent& dent) {
     const Pressing &a = pressing[pair.a], &b = pressing[pair.b];
-    const StoredEnergy at_a = a.law.stored(ridge.depth), at_b = b.law.stored(ridge.depth);
+    // Never deeper than one of them: both are lower by their roughness.
+    const Raised& raised = a.raised.height < b.raised.height ? a.raised : b.raised;
+    const double depth = ridge.depth + raised.height;
+    const dvec3 deeper = ridge.slope + raised.gradient;
+    const StoredEnergy at_a = a.law.stored(depth), at_b = b.law.stored(depth);
     if (!(at_a.energy > 0 && at_b.energy > 0)) return false;
     dent.a = pair.a;
     dent.b = pair.b;
     dent.part = std::sqrt(at_a.energy / a.stored.energy * (at_b.energy / b.stored.energy));
     dent.slope = 0.5 * dent.part *
-                 ((at_a.force / at_a.energy + at_b.force / at_b.energy) * ridge.slope +
-                  a.stored.force / a.stored.energy * a.source->place.gradient +
-                  b.stored.force / b.stored.energy * b.source->place.gradient);
+                 ((at_a.force / at_a.energy + at_b.force / at_b.energy) * deeper +
+                  a.stored.force / a.stored.energy * a.gradient + b.stored.force / b.stored.energy * b.gradient);
     return true;
   }
 
@@ -238,33 +307,40 @@ void feel(World& world, const Deformable& deformable, const Mesh& mesh, const Ob
   const double rate = (contact.previous_height - contact.height) / tick.elapsed();
   const double damped = std::max(-normal, loaded.share * c * rate);
   normal += damped;
-  dvec3 force = loaded.force + (along > 0 ? damped / along : 0.0) * place.gradient;
+  double beside = damped;
+  if (deformable.transient_amplitude > 0) {
+    beside += knock(contact.effects, deformable, along > 0 ? -dot(pressing.velocity, place.gradient) / along : 0.0,
+                    normal, tick.elapsed());
+    normal += contact.effects.knock_force;
+  }
+  contact.effects.pressed = true;
+  dvec3 force = loaded.force + (along > 0 ? beside / along : 0.0) * place.gradient;
   contact.load = loaded.load;
   contact.share = loaded.share;
   contact.normal_force = normal;
   contact.state = normal > 0 ? ContactState::kTouching : ContactState::kInside;
 
-  Probe& probe = registry.get<Probe>(contact.probe);
-  const Tip& tip = pressing.source->tip;
-  const dvec3 at = tip_position(probe, tip);
   // Friction in the tangent plane of this tick; the last tick's deflection is projected onto it.
-  const dvec3 moving =
-      (at - tip_position_before(probe, tip)) / tick.elapsed() - surface_velocity(registry, contact.object, at);
-  const dvec3 velocity = glm::conjugate(pose.rotation) * moving;
   const double factor = painted(place, mesh, mesh.friction_factor).value;
   const double K = kBristleStiffness * deformable.stiffness * pressing.stiffness.value, B = K * kBristleDampingTime;
   Bristle bristle{contact.bristle - dot(contact.bristle, contact.normal) * contact.normal, contact.sliding};
-  force -= step_bristle(bristle, velocity - dot(velocity, contact.normal) * contact.normal, K, B,
-                        factor * deformable.friction_static * normal, factor * deformable.friction_sliding * normal,
+  const dvec3 slip = pressing.velocity - dot(pressing.velocity, contact.normal) * contact.normal;
+  const SlidingFriction friction{deformable.friction_static, deformable.friction_sliding, deformable.friction_stribeck,
+                                 deformable.friction_viscous};
+  const double speed = friction.stribeck > 0 || friction.viscous > 0 ? length(slip) : 0.0;
+  const double sliding = factor * friction.at(speed) * normal;
+  force -= step_bristle(bristle, slip, K, B, std::max(factor * deformable.friction_static * normal, sliding), sliding,
                         tick.elapsed());
   contact.bristle = bristle.deflection;
   contact.sliding = bristle.sliding;
   contact.force = pose.rotation * force;
-  contact.gradient = pose.rotation * place.gradient;
+  contact.gradient = pose.rotation * pressing.gradient;
   contact.stiffness = loaded.share * pressing.slope;
   contact.damping = damped > -(normal - damped) ? loaded.share * c : 0.0;
   contact.bristle_stiffness = bristle.sliding ? 0.0 : K;
-  contact.bristle_damping = bristle.sliding ? 0.0 : B;
+  contact.bristle_damping = bristle.sliding ? factor * normal * std::max(0.0, friction.slope(speed)) : B;
+  Probe& probe = registry.get<Probe>(contact.probe);
+  const dvec3 at = tip_position(probe, pressing.source->tip);
   probe.force += contact.force;
   probe.torque += cross(at - probe.position, contact.force);
 }
@@ -275,6 +351,7 @@ void release(Contact& contact) {
   contact.force = contact.bristle = contact.gradient = dvec3(0);
   contact.stiffness = contact.damping = contact.bristle_stiffness = contact.bristle_damping = 0.0;
   contact.sliding = false;
+  contact.effects = {.finest = contact.effects.finest};
 }
 
 }  // namespace
@@ -287,6 +364,8 @@ void friction_feedback(World& world, Tick tick) {
     const Deformable& deformable = registry.get<Deformable>(object.entity);
     const Mesh& mesh = world.meshes[deformable.mesh];
     const HeightField& field = world.fields[deformable.field];
+    const Pose& pose = registry.get<Pose>(object.entity);
+    const bool uneven = object.texture.count > 0 || (mesh.relief && deformable.relief > 0);
     std::vector<LoadedContact>& loaded = world.touch->loaded;
     Pressed pressed;
     const std::span<Pressing> pressing = pressed.pressing;
@@ -298,7 +377,12 @@ void friction_feedback(World& world, Tick tick) {
         if (!source.tracked || source.settled != settled) continue;
         Contact& contact = registry.get<Contact>(source.contact);
         advance_free_surface(contact, source.place, mesh, object.motion);
-        pressing[count] = {&source, &contact, {}, {}, 0.0, {}};
+        pressing[count] = {&source, &contact, {}, {}, 0.0, {}, {}, source.place.gradient, {}};
+        if (contact.height < 0) pressing[count].velocity = velocity_on(registry, pose, contact, source.tip, tick);
+        if (contact.height < 0 && uneven) {
+          pressing[count].raised = raise(world, object, deformable, mesh, pressing[count], tick);
+          pressing[count].gradient -= pressing[count].raised.gradient;
+        }
         const bool stores =
             contact.height < 0 && (settled ? store(object, deformable, mesh, field, pressing[count], loaded[count])
                                            : settle(object, deformable, mesh, field, pressed, loaded));
@@ -319,7 +403,6 @@ void friction_feedback(World& world, Tick tick) {
       world.dropped |= kDroppedNonFinite;
       object.stored = 0.0;
     }
-    const Pose& pose = registry.get<Pose>(object.entity);
     for (std::size_t i = 0; i < count; ++i) {
       if (loaded[i].share > 0) {
         feel(world, deformable, mesh, object, pose, loaded[i], pressing[i], tick);
