@@ -1,17 +1,10 @@
 #include "content/level/spawn_mesh.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "content/mesh/mesh_finer.h"
-#include "content/mesh/relief_map.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kFadedRelief = 0.02;     // [1] share of the area from which on it is said
-constexpr double kUnevenRelief = 1.5;     // [1] stretch from which on it is said
 constexpr std::size_t kRefinedNamed = 3;  // refined meshes named in the note
 
 mat4 matrix_of(const TouchShape& shape) {
@@ -87,7 +80,6 @@ Result<BakedMesh> MeshBaker::bake(std::size_t n) {
   if (!built) return state_.around(n, built.error());
   note_winding(node.mesh, *built);
   note_refinement(node, *built);
-  if (shape.touchable && feels_relief(node.mesh)) add_relief(node, *built);
   wanted.refined = built->report.refined_from != 0;
   if (wanted.refined)
     if (Status s = state_.count_triangles(n, static_cast<double>(built->mesh.triangles.size())); !s) return s.error();
@@ -98,28 +90,6 @@ Result<BakedMesh> MeshBaker::bake(std::size_t n) {
   wanted.draw = state_.world.draw_meshes.add(std::move(built->draw));
   known.push_back(wanted);
   return wanted;
-}
-
-bool MeshBaker::feels_relief(std::int32_t mesh) const {
-  return std::any_of(state_.level.nodes.begin(), state_.level.nodes.end(), [mesh](const LevelNode& node) {
-    return node.in_scene && node.mesh == mesh && node.deformable && node.deformable->relief > 0.0;
-  });
-}
-
-void MeshBaker::add_relief(const LevelNode& node, BuiltMesh& built) {
-  const ReliefMaps found = relief_maps(built.mesh, built.draw, state_.level.materials, state_.level.images);
-  built.mesh.relief = found.relief;
-  if (found.faded > kFadedRelief)
-    state_.notes.push_back(
-        fmt::format("`{}`: its relief fades out towards the seams of its texture coordinates, on {:.0f} % of it; a "
-                    "finer mesh there "
-                    "or fewer seams keep more",
-                    node.name, 100 * found.faded));
-  if (found.uneven > kUnevenRelief)
-    state_.notes.push_back(fmt::format(
-        "`{}`: its texture coordinates stretch up to {:.1f} times their mean: there its relief is felt {:.1f} times as "
-        "flat as a normal map draws it; unwrap it more evenly",
-        node.name, found.uneven, found.uneven));
 }
 
 void MeshBaker::note_winding(std::int32_t mesh, const BuiltMesh& built) {

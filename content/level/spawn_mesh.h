@@ -54,8 +54,6 @@ class MeshBaker {
  private:
   TouchShape shape_of(std::size_t n) const;
   bool serves(const BakedMesh& built, const BakedMesh& wanted) const;
-  bool feels_relief(std::int32_t mesh) const;  // a node with it does
-  void add_relief(const LevelNode& node, BuiltMesh& built);
   void note_refinement(const LevelNode& node, const BuiltMesh& built);
 
   SpawnState& state_;

@@ -103,7 +103,7 @@ std::vector<Features> feel_all(const Scene& scene, const Stroke& stroke) {
   }
   std::vector<Features> out;
   for (const std::vector<dvec3>& f : force) {
-    const Shaking rough = shaking(f, at.slow_from + 0.1, at.slow_to, 2 * kHalf);
+    const Shaking rough = shaking(f, at.fast_from, at.fast_to, 2 * kHalf);
     const Shaking struck = shaking(f, at.touches + stroke.depth / stroke.strike, at.slow_from, kSettled);
     out.push_back({ratio(f, at.slow_from, at.slow_to), ratio(f, at.fast_from, at.fast_to), std::log(rough.size + 1e-3),
                    std::log(rough.crossings + 10), std::log(struck.size + 1e-3)});
