@@ -26,7 +26,7 @@ void visit_members(auto& io, auto& of, const BuiltMesh*) {
 void visit_members(auto& io, auto& of, const Mesh*) {
   auto& [name, vertex_count, px, py, pz, nx, ny, nz, area, triangles, across, tree, zone_box, zone_neighbour_first,
          zone_neighbours, crease, split_normals, corner_normal, stiffness_factor, friction_factor, damping_factor,
-         relaxation_factor, of_source, box, mean_edge, closed] = of;
+         relaxation_factor, relief, of_source, box, mean_edge, closed] = of;  // no relief: tissue has none
   io(name, vertex_count, px, py, pz, nx, ny, nz, area, triangles, across, tree, zone_box, zone_neighbour_first,
      zone_neighbours, crease, split_normals, corner_normal, stiffness_factor, friction_factor, damping_factor,
      relaxation_factor, of_source, box, mean_edge, closed);

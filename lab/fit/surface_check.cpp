@@ -34,7 +34,8 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
                                                               const std::vector<PressedPlace>& places) {
   Scene scene;
   DeformableParameters smooth = surface;
-  smooth.friction_static = smooth.friction_sliding = 0.0;
+  smooth.friction_static = smooth.friction_sliding = smooth.friction_viscous = 0.0;
+  smooth.texture_amplitude = smooth.transient_amplitude = smooth.relief = 0.0;
   scene.add_surface("surface", data_of(primitives), smooth);
   DeviceParameters device;
   device.max_force = 1e3;

@@ -19,11 +19,11 @@ constexpr double kUnexplained = 0.1;
 // Two feet of a tip closer than this are the same. [1] of the mean edge
 constexpr double kSameFoot = 1e-6;
 
-// A foot at a seam moves to the other surface, with the contact's whole state, or waits between both. `own` [m]: its
-// distance.
+// A foot at a seam moves to the other surface, with the contact's whole state, or waits between both. `distance` [m]:
+// its distance.
 enum class AtSeam { kStays, kBetween, kCarried };
 AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source, Contact& contact, dvec3 world,
-                  double own) {
+                  double distance) {
   TouchState& touch = *s.world.touch;
   ObjectState& object = touch.objects[seam.object];
   const ProbeTip tip{contact.probe, contact.tip, source.tip};
@@ -33,7 +33,7 @@ AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source,
   const dvec3 x = pose.to_local(world);
   Foot foot = there.downhill(seam.triangle, closest_on_triangle(there.mesh, seam.triangle, x).barycentric, x);
   // Over the crack it stays with the nearer side.
-  if (seam_at(object, foot) && std::abs(foot.height) >= own) return AtSeam::kBetween;
+  if (seam_at(object, foot) && std::abs(foot.height) >= distance) return AtSeam::kBetween;
   if (foot.height >= tip.tip.radius * (1 + kAhead) || (foot.height < 0) != (source.place.height < 0))
     return AtSeam::kStays;
   if (!is_known(there, tip, foot)) {
@@ -55,6 +55,7 @@ AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source,
     after.bristle = turn * before.bristle;
     after.sliding = before.sliding;
     after.load = before.load;
+    after.effects = before.effects;
     hand_over_dents(touch, static_cast<std::uint32_t>(&s.object - touch.objects.data()), source, seam.object, *to);
   }
   drop_contact(source, contact);

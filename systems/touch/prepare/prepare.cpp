@@ -220,6 +220,7 @@ ObjectState make_object(World& world, Entity entity, const Pose& pose, double dt
   }
   object.motion = motion(deformable, dt);
   object.painted = paint_motion(object.motion, mesh);
+  object.texture = texture_of(deformable);
   const double reach = std::max(deformable.reach, kLeastReach * static_cast<double>(mesh.mean_edge));
   const double contact = contact_radius(deformable, reach);
   object.kernel = share_kernel(deformable.shape, reach, deformable.volume, contact / reach);

@@ -17,6 +17,7 @@
 #include "systems/touch/model/local_model.h"
 #include "systems/touch/model/painted_motion.h"
 #include "systems/touch/model/shape.h"
+#include "systems/touch/model/texture.h"
 #include "systems/touch/prepare/move_objects.h"
 
 namespace pliant {
@@ -169,6 +170,7 @@ struct ObjectState {
   std::vector<std::uint32_t> closed;        // edges of seams, from both sides, ascending: no foot crosses them
   BoxTree crease_boxes;                     // of `creases`, object frame
   std::vector<std::uint32_t> creases;       // convex ones, from both sides: 3 * triangle + edge
+  Texture texture;                          // roughness; no waves: none
   ShareKernel kernel;                       // sharing of the load between contacts
   Box world_box;                            // of the rest surface, for the broad phase
   std::uint32_t probe_sources = 0;          // number of `sources` for probes; presses follow
