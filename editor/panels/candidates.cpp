@@ -29,9 +29,9 @@ double cost_of(const ModelCandidate& it) {
   return std::max(it.cost, kLeastCost);
 }
 
-ui::PlotAxis axis_over(const std::vector<double>& values, const char* unit) {
+PlotAxis axis_over(const std::vector<double>& values) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  return {*least / kAir, *most * kAir, unit, 1.0, true};
+  return {*least / kAir, *most * kAir, true};
 }
 
 void tell(const ModelCandidate& it, const char* more) {
@@ -125,8 +125,7 @@ void CandidateView::plot(const ModelChoice& choice, float wide, float high, bool
     errors.push_back(error_of(it));
     costs.push_back(cost_of(it));
   }
-  ui::Plot plot("Error against cost", "Error [1]", {wide, high}, axis_over(costs, "\u00b5s a tick"),
-                axis_over(errors, ""));
+  ui::Plot plot("Error against cost", "Error [1]", {wide, high}, axis_over(costs), "\u00b5s a tick", axis_over(errors));
   // The Pareto front, as steps from the cheapest on.
   std::vector<dvec2> front;
   for (const ModelCandidate& it : choice.tried)
