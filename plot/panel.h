@@ -44,8 +44,8 @@ struct LineStyle {
   bool dashed = false;
   double alpha = 1.0;
 };
-// What has no place on its axes (not finite, or not above 0 on a logarithmic one) breaks the line; parts outside are
-// clipped.
+// A point without a place on the axes (not finite, or not above 0 on a logarithmic one) breaks the line; parts outside
+// are clipped.
 void draw_line(Pen& pen, const PlotPanel& panel, std::span<const PlotPoint> points, const LineStyle& style);
 void draw_dots(Pen& pen, const PlotPanel& panel, std::span<const PlotPoint> points, Color color, double radius,
                bool filled, double alpha = 1.0);

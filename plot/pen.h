@@ -1,5 +1,5 @@
-// What a plot is drawn with: lines, areas, text and clipping. The back ends are plot/cairo_pen.h, for files, and
-// viewer/ui/imgui_pen.h, for windows.
+// The interface that plots are drawn through: lines, areas, text and clipping. The back ends are plot/cairo_pen.h, for
+// files, and viewer/ui/imgui_pen.h, for windows.
 #pragma once
 
 #include <functional>

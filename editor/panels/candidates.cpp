@@ -34,7 +34,7 @@ PlotAxis axis_over(const std::vector<double>& values) {
   return {*least / kAir, *most * kAir, true};
 }
 
-void tell(const ModelCandidate& it, const char* more) {
+void draw_tooltip(const ModelCandidate& it, const char* more) {
   ImGui::BeginTooltip();
   ImGui::TextUnformatted(it.label.c_str());
   std::string figures = fmt::format("Error {:.3g}, about {:.3g} \u00b5s a tick", it.error, it.cost);
@@ -100,9 +100,9 @@ void CandidateView::table(const ModelChoice& choice, float high, bool faded) {
     ui::known_as(it.label);
     if (ImGui::IsItemHovered()) {
       points_ = i;
-      tell(it, !chosen         ? ""
-               : choice.within ? "\nChosen: the cheapest within the budget"
-                               : "\nChosen: the nearest; none is within the budget");
+      draw_tooltip(it, !chosen         ? ""
+                       : choice.within ? "\nChosen: the cheapest within the budget"
+                                       : "\nChosen: the nearest; none is within the budget");
     }
     const auto figure = [&](const std::string& text) {
       ImGui::TableNextColumn();
@@ -158,7 +158,7 @@ void CandidateView::plot(const ModelChoice& choice, float wide, float high, bool
       points_ = i;
     }
   }
-  if (plot.hovered() && points_) tell(choice.tried[*points_], "");
+  if (plot.hovered() && points_) draw_tooltip(choice.tried[*points_], "");
 }
 
 }  // namespace pliant

@@ -220,12 +220,13 @@ int fit_press(const FitOptions& options) {
   const Result<PressRecord> record = read_press(options.in, options.probe);
   if (!record) return fail(kFailed, record.error());
   for (const std::string& sentence : record->notes) note(sentence);
-  RecordFitOptions wish;
-  wish.law = options.law;
-  wish.model = {options.radius, options.poisson < 0 ? 0.45 : options.poisson, options.damping, options.contact};
-  wish.hold_out = options.hold_out;
-  wish.confidence = options.confidence;
-  const Result<RecordFit> fit = fit_record(*record, wish);
+  RecordFitOptions record_options;
+  record_options.law = options.law;
+  record_options.model = {options.radius, options.poisson < 0 ? 0.45 : options.poisson, options.damping,
+                          options.contact};
+  record_options.hold_out = options.hold_out;
+  record_options.confidence = options.confidence;
+  const Result<RecordFit> fit = fit_record(*record, record_options);
   if (!fit) return fail(kFailed, fit.error());
   const LawFit& best = fit->laws[fit->best];
   std::optional<Level> level;

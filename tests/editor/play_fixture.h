@@ -57,7 +57,7 @@ class PlayTest : public ::testing::Test {
     }
     return nlohmann::json::parse(std::ifstream(folder / "out" / "report.json"))["hash"];
   }
-  // What moves the probe `tip` by such rows.
+  // Options of a run in which a script of such rows moves the probe `tip`.
   PlayOptions pressing(const std::string& rows) const {
     PlayOptions options;
     options.sources = {{"tip", script(folder, rows)}};

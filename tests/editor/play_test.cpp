@@ -163,7 +163,7 @@ TEST_F(PlayTest, ASlowPressLiesOnTheCurveOfTheAuthoredLaw) {
   }
 }
 
-TEST(LiveEdits, TellWhatASessionTakesFromWhatWaits) {
+TEST(LiveEdits, SeparateWhatASessionTakesFromWhatWaits) {
   const State before = pressed_sheet({});
   const NodeId sheet = before.find("sheet")->id;
   const auto set = [&](const State& from, const std::string& key, const Json& value) {

@@ -1,4 +1,4 @@
-// What a run keeps of a tool and of soft steps: work, and what was late, with its cure.
+// The figures that a run keeps of a tool and of soft steps: work, late ticks and steps, with their cure.
 #include "player/record/keeper.h"
 
 #include <gtest/gtest.h>

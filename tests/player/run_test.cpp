@@ -144,7 +144,7 @@ TEST_F(Run, AnOrbitFindsARingRoundAnEmptyMiddle) {
   EXPECT_GT(report("out")["probes"][0]["contact_ticks"].get<int>(), 1000);
 }
 
-TEST_F(Run, AProbeThatStaysInAnothersDentIsToldSo) {
+TEST_F(Run, AProbeThatStaysInAnothersDentIsReported) {
   write_text(folder / "a.csv", "time_s,x,y,z\n0,0,0.01,0\n0.3,0,-0.006,0\n2,0,-0.006,0\n");
   write_text(folder / "b.csv", "time_s,x,y,z\n0,0.002,0.01,0\n0.5,0.002,0.01,0\n1,0.002,-0.001,0\n2,0.002,0.01,0\n");
   const Said said = pliant(

@@ -57,9 +57,9 @@ TEST(ToolFeedback, AToolWhoseDeviceIsLostWaitsAndIsTakenUpAgainWithoutAJump) {
     EXPECT_EQ(stage.state().handle.pose.position, held.position) << i;
     EXPECT_EQ(stage.state().handle.pose.rotation, held.rotation) << i;
     stage.state().input.acquire();
-    const ToolInput& told = stage.state().input.read();
-    EXPECT_EQ(told.status, DeviceStatus::kLost);
-    EXPECT_EQ(told.device.velocity.norm() + told.handle.velocity.norm(), 0.0) << i;
+    const ToolInput& input = stage.state().input.read();
+    EXPECT_EQ(input.status, DeviceStatus::kLost);
+    EXPECT_EQ(input.device.velocity.norm() + input.handle.velocity.norm(), 0.0) << i;
   });
 
   hand.status = DeviceStatus::kReady;

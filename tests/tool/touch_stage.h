@@ -46,7 +46,7 @@ struct TouchStage {
     state().model.write() = model;
     state().model.publish();
   }
-  // What the model of every kind of force says.
+  // The force of the next model, of every kind.
   void press(double newton) { model.force[1] = model.linear.force[1] = model.contacts.tissue_force[1] = newton; }
   void tick() {
     const Tick now{ticks, kTick, static_cast<double>(ticks) * kTick};

@@ -310,7 +310,7 @@ Status study_hand(OutputFolder& out, StudySize size, const Interrupt& interrupt)
       full ? std::vector<std::string>{"three_probes", "inclusion", "glass_heart", "chrome_cushion", "turning_ball"}
            : std::vector<std::string>{"three_probes"};
   // The organ as shipped, and one that is too stiff for the device.
-  const std::vector<std::pair<double, double>> wishes{{1e-3, 0.0}, {10e-3, 0.0}, {10e-3, kTooStiff}};
+  const std::vector<std::pair<double, double>> cases{{1e-3, 0.0}, {10e-3, 0.0}, {10e-3, kTooStiff}};
   const std::size_t profiles = size == StudySize::kSmall ? 2 : kDeviceProfiles;
   Progress progress("study hand");
   std::vector<HandRun> plotted, table;
@@ -321,10 +321,10 @@ Status study_hand(OutputFolder& out, StudySize size, const Interrupt& interrupt)
     auto run = run_hand(level, profile, delay, guarded, seconds, stiffness);
     if (!run) return run.error();
     to.push_back(std::move(run).value());
-    progress.update(static_cast<double>(++done) / static_cast<double>(2 * wishes.size() + levels.size() * profiles));
+    progress.update(static_cast<double>(++done) / static_cast<double>(2 * cases.size() + levels.size() * profiles));
     return Done{};
   };
-  for (const auto& [delay, stiffness] : wishes)
+  for (const auto& [delay, stiffness] : cases)
     for (const bool guarded : {false, true})
       if (const Status s = add(plotted, "three_probes", kPlotted, delay, guarded, stiffness); !s) return s;
   for (const std::string& level : levels)
