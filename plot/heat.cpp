@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kSeam = 0.4;  // [pixel] overlap of neighbours, so that no gap is visible
+constexpr double kSeam = 1.0;  // [pixel] a cell reaches below the next one, so that no gap is visible
 constexpr std::size_t kSlices = 100;
 
 }  // namespace
@@ -26,13 +26,13 @@ Color heat(double share) {
 void draw_cells(Pen& pen, const PlotArea& area, std::size_t columns, std::size_t rows,
                 const std::function<std::optional<Color>(std::size_t, std::size_t)>& color) {
   const double w = area.w / static_cast<double>(columns), h = area.h / static_cast<double>(rows);
-  for (std::size_t row = 0; row < rows; ++row)
+  for (std::size_t row = rows; row-- > 0;)
     for (std::size_t column = 0; column < columns; ++column) {
       const std::optional<Color> of = color(column, row);
       if (!of) continue;
       pen.color(*of);
       pen.rectangle(area.x + w * static_cast<double>(column), area.y + area.h - h * static_cast<double>(row + 1),
-                    w + kSeam, h + kSeam);
+                    column + 1 < columns ? w + kSeam : w, row > 0 ? h + kSeam : h);
     }
 }
 

@@ -7,8 +7,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kMerged = 0.5;                                   // [pixel] points of a line that are nearer are one
-constexpr double kMarkLong = 1.8, kMarkGap = 0.55, kApart = 1.5;  // [1] of a legend's text size
+constexpr double kRounding = 0.5;  // [pixel]
+constexpr double kMerged = 0.5;    // [pixel] points of a line that are nearer are one
+constexpr double kMarkLong = 1.8, kMarkShort = 0.9, kMarkGap = 0.55, kApart = 1.5;  // [1] of a legend's text size
 
 bool has_place(const PlotAxis& axis, double value) {
   return std::isfinite(value) && (!axis.log || value > 0.0);
@@ -30,17 +31,37 @@ void draw_grid_line(Pen& pen, const PlotPanel& panel, const AxesStyle& style, co
     pen.line(panel.x, at, panel.x + panel.w, at, 1);
 }
 
+double apart(const AxesStyle& style) {
+  return 0.45 * style.number;
+}
+
+// As many as the numbers below the panel have room for.
+std::vector<AxisTick> ticks_across(Pen& pen, const PlotPanel& panel, const AxesStyle& style) {
+  for (int most = style.most_across; most > 1 && style.numbers_across; --most) {
+    std::vector<AxisTick> ticks = axis_ticks(panel.across, most);
+    double free_from = -1e9;
+    bool fit = true;
+    for (const AxisTick& tick : ticks) {
+      const double at = panel.px(tick.value), half = 0.5 * pen.width(style.number, tick.words);
+      fit = fit && at - half >= free_from;
+      free_from = at + half + apart(style);
+    }
+    if (fit) return ticks;
+  }
+  return axis_ticks(panel.across, style.numbers_across ? 1 : style.most_across);
+}
+
 void draw_numbers_across(Pen& pen, const PlotPanel& panel, const AxesStyle& style, const std::vector<AxisTick>& ticks) {
-  const double base = panel.y + panel.h + style.gap + style.number, apart = 0.45 * style.number;
+  const double base = panel.y + panel.h + style.gap + style.number;
   double free_from = -1e9, free_to = 1e9;
   pen.color(style.ink);
   if (!style.unit.empty())
-    free_to = panel.x + panel.w - pen.text(panel.x + panel.w, base, style.number, 1.0, style.unit) - apart;
+    free_to = panel.x + panel.w - pen.text(panel.x + panel.w, base, style.number, 1.0, style.unit) - apart(style);
   for (const AxisTick& tick : ticks) {
     const double at = panel.px(tick.value), half = 0.5 * pen.width(style.number, tick.words);
     if (at - half < free_from || at + half > free_to) continue;
     pen.text(at, base, style.number, 0.5, tick.words);
-    free_from = at + half + apart;
+    free_from = at + half + apart(style);
   }
 }
 
@@ -58,6 +79,10 @@ double draw_numbers_up(Pen& pen, const PlotPanel& panel, const AxesStyle& style,
   return widest;
 }
 
+double mark_width(const PlotKey& key, const KeyStyle& style) {
+  return style.size * (key.mark < KeyMark::kDot ? kMarkLong : kMarkShort);
+}
+
 }  // namespace
 
 double PlotPanel::px(double value) const {
@@ -68,8 +93,7 @@ double PlotPanel::py(double value) const {
 }
 
 double draw_axes(Pen& pen, const PlotPanel& panel, const AxesStyle& style) {
-  const std::vector<AxisTick> across = axis_ticks(panel.across, style.most_across),
-                              up = axis_ticks(panel.up, style.most_up);
+  const std::vector<AxisTick> across = ticks_across(pen, panel, style), up = axis_ticks(panel.up, style.most_up);
   for (const AxisTick& tick : across) draw_grid_line(pen, panel, style, tick, true);
   for (const AxisTick& tick : up) draw_grid_line(pen, panel, style, tick, false);
   if (style.numbers_across) draw_numbers_across(pen, panel, style, across);
@@ -87,7 +111,7 @@ void draw_axes(Pen& pen, const PlotPanel& panel, const std::string& across, cons
   const double widest = draw_axes(pen, panel, style);
   const double below = style.gap + style.number + 9 + style.title;
   pen.text(panel.x + panel.w / 2, panel.y + panel.h + below, style.title, 0.5, across);
-  const std::vector<std::string> lines = pen.lines(style.title, up, 1.3 * panel.h);
+  const std::vector<std::string> lines = pen.lines(style.title, up, 1.15 * panel.h);
   double x = panel.x - widest - style.gap - 16;
   for (auto line = lines.rbegin(); line != lines.rend(); ++line, x -= 1.25 * style.title)
     pen.upright_text(x, panel.y + panel.h / 2, style.title, *line);
@@ -170,7 +194,7 @@ void draw_arrow(Pen& pen, double x, double y, double radius, bool up) {
 }
 
 double key_width(Pen& pen, const PlotKey& key, const KeyStyle& style) {
-  return (kMarkLong + kMarkGap) * style.size + pen.width(style.size, key.words) + kApart * style.size;
+  return mark_width(key, style) + kMarkGap * style.size + pen.width(style.size, key.words) + kApart * style.size;
 }
 
 double keys_width(Pen& pen, std::span<const PlotKey> keys, const KeyStyle& style) {
@@ -180,7 +204,7 @@ double keys_width(Pen& pen, std::span<const PlotKey> keys, const KeyStyle& style
 }
 
 void draw_key(Pen& pen, double x, double y, const PlotKey& key, const KeyStyle& style) {
-  const double s = style.size, end = x + kMarkLong * s, middle = y - 0.36 * s, centre = 0.5 * (x + end);
+  const double s = style.size, end = x + mark_width(key, style), middle = y - 0.36 * s, centre = 0.5 * (x + end);
   pen.color(key.color, key.mark == KeyMark::kBand ? 0.45 : 1.0);
   switch (key.mark) {
     case KeyMark::kLine:
@@ -215,7 +239,7 @@ std::vector<PlotPoint> place_keys(Pen& pen, double x, double y, double right, st
   PlotPoint at{x, y};
   for (const PlotKey& key : keys) {
     const double width = key_width(pen, key, style);
-    if (at.x > x && at.x + width - kApart * style.size > right) at = {x, at.y + 1.45 * style.size};
+    if (at.x > x && at.x + width - kApart * style.size > right + kRounding) at = {x, at.y + 1.45 * style.size};
     out.push_back(at);
     at.x += width;
   }

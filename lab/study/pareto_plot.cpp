@@ -17,6 +17,7 @@ constexpr double kParetoWidth = 1240, kParetoHeight = 900;          // [pixel]
 constexpr double kParetoLeft = 112, kParetoRight = 40, kEdge = 30;  // [pixel] margins of the axes and of text
 constexpr double kSmallText = 15, kRadius = 5.5;                    // [pixel]
 constexpr double kLabelText = 18, kText = 17, kLine = 22.0;         // [pixel] titles and axes; legend and sentences
+constexpr double kAboveMost = 12;  // [pixel] between the largest error and the upper edge
 constexpr KeyStyle kKeys{.size = kText};
 constexpr double kParetoApart = 5;  // [pixel] between labels beside each other
 constexpr Color kFront{0.62, 0.62, 0.62};
@@ -45,6 +46,7 @@ struct Plot {
   std::vector<std::string> groups;
   std::vector<std::string> title, foot;
   PlotPanel axes{};
+  double most = 0.0;  // [1] error; failures are above it, on the upper edge
 
   Color color(const ParetoRow& row) const {
     const auto found = std::find(groups.begin(), groups.end(), row.group);
@@ -55,13 +57,13 @@ struct Plot {
   // 1: above the axis range, -1: below it or zero, 0: inside.
   int beyond(const ParetoRow& row) const {
     if (failed(row)) return 0;
-    return row.resolved() > axes.up.high ? 1 : row.resolved() < axes.up.low ? -1 : 0;
+    return row.resolved() > most ? 1 : row.resolved() < axes.up.low ? -1 : 0;
   }
   double right() const { return axes.x + axes.w; }
   double bottom() const { return axes.y + axes.h; }
   double px(const ParetoRow& row) const { return std::clamp(axes.px(row.cost), axes.x, right()); }
   double py(const ParetoRow& row) const {
-    return failed(row) ? axes.y - 12 : std::clamp(axes.py(row.resolved()), axes.y, bottom());
+    return failed(row) ? axes.y : std::clamp(axes.py(std::min(row.resolved(), most)), axes.y, bottom());
   }
 };
 
@@ -106,11 +108,13 @@ Plot plot_of(Pen& pen, const ParetoTable& table) {
   for (const std::string& sentence : table.sentences)
     for (std::string& line : pen.lines(kText, sentence, kParetoWidth - 2 * kEdge)) plot.foot.push_back(std::move(line));
   plot.axes.across = axis_of(costs);
-  plot.axes.up = axis_of(errors);  // the range determines which legend entries there are
+  plot.axes.up = axis_of(errors);
+  plot.most = plot.axes.up.high;  // the range determines which legend entries there are
   const double keys = 80 + kLine * static_cast<double>(plot.title.size());
-  const double top = place_keys(pen, kEdge, keys, kParetoWidth - kEdge, keys_of(plot), kKeys).back().y + 54;
+  const double top = place_keys(pen, kEdge, keys, kParetoWidth - kEdge, keys_of(plot), kKeys).back().y + 42;
   plot.axes.x = kParetoLeft, plot.axes.w = kParetoWidth - kParetoRight - kParetoLeft;
   plot.axes.y = top, plot.axes.h = kParetoHeight - 76 - kLine * static_cast<double>(plot.foot.size()) - top;
+  plot.axes.up.high = plot.axes.up.at(1.0 + kAboveMost / (plot.axes.h - kAboveMost));
   return plot;
 }
 
@@ -226,7 +230,7 @@ void draw_labels(Pen& pen, const Plot& plot) {
         const Stretch lead{x, y, std::clamp(x, box.x0, box.x1), std::clamp(y, box.y0, box.y1)};
         if (std::hypot(lead.x1 - x, lead.y1 - y) > kLed)
           for (const LabelBox& other : placed) cost += 3.0 * lead.crosses(other);
-        if (box.x0 < kParetoLeft + 3 || box.x1 > kParetoWidth - 4 || box.y0 < plot.axes.y - 46 ||
+        if (box.x0 < kParetoLeft + 3 || box.x1 > kParetoWidth - 4 || box.y0 < plot.axes.y - 34 ||
             box.y1 > plot.bottom() - 2)
           cost += 1e4;
         for (const Stretch& line : lines) cost += 0.6 * line.crosses(box);

@@ -34,7 +34,7 @@ void draw_panel(Pen& pen, double left, double top, const GrowthPanel& panel) {
     for (const double cost : curve.cost) least = std::fmin(least, cost), most = std::fmax(most, cost);
   const auto [smallest, largest] = std::minmax_element(panel.size.begin(), panel.size.end());
   const PlotPanel axes{left, top, kPanelW, kPanelH, growth_axis(*smallest, *largest), growth_axis(least, most)};
-  draw_axes(pen, axes, panel.across, panel.up, {.number = kGrowthTickText, .title = 16});
+  draw_axes(pen, axes, panel.across, panel.up, {.number = kGrowthTickText, .title = 16, .most_up = 8});
   pen.text(left, top - 14, 17, 0, panel.title, true);
   // Curve names beside their last points, without overlap.
   std::vector<std::size_t> order(panel.curves.size());
