@@ -14,6 +14,7 @@ namespace pliant {
 namespace {
 
 constexpr double kBar = 16, kBarRoom = 86;  // [pixel]
+constexpr double kUsualLabel = 48;          // [pixel] width of labels beside a map that its margin has room for
 // Above this number of dots a vector file embeds them as pixels, since each dot takes some 300 bytes. Above kMostDots
 // they are subsampled.
 constexpr std::size_t kMostVectorDots = 500;
@@ -114,7 +115,11 @@ void draw_curve(Pen& pen, const PlotArea& area, const Figure& figure, const Axis
 
 void draw_map(Pen& pen, PlotArea area, const Figure& figure, const AxisValues& across, const AxisValues& up,
               bool sampled) {
-  area.w -= kBarRoom;
+  double widest = kUsualLabel;
+  for (const std::string& word : (sampled ? up.scale : words_axis(up.names)).words)
+    widest = std::max(widest, pen.width(kSweepAxes.number, word));
+  area.x += widest - kUsualLabel;
+  area.w -= widest - kUsualLabel + kBarRoom;
   const std::size_t w = across.steps.size(), h = up.steps.size();
   const std::vector<Cell> cells = cells_of(figure, across, up, sampled);
   const Cell span = span_of(cells);
