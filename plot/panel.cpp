@@ -7,8 +7,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 0.5;  // [pixel]
-constexpr double kMerged = 0.5;    // [pixel] points of a line that are nearer are one
+constexpr double kLegendRoom = 0.5;  // [pixel] by which rounding may exceed the room
+constexpr double kMerged = 0.5;      // [pixel] points of a line that are nearer are one
 constexpr double kMarkLong = 1.8, kMarkShort = 0.9, kMarkGap = 0.55, kApart = 1.5;  // [1] of a legend's text size
 
 bool has_place(const PlotAxis& axis, double value) {
@@ -239,7 +239,7 @@ std::vector<PlotPoint> place_keys(Pen& pen, double x, double y, double right, st
   PlotPoint at{x, y};
   for (const PlotKey& key : keys) {
     const double width = key_width(pen, key, style);
-    if (at.x > x && at.x + width - kApart * style.size > right + kRounding) at = {x, at.y + 1.45 * style.size};
+    if (at.x > x && at.x + width - kApart * style.size > right + kLegendRoom) at = {x, at.y + 1.45 * style.size};
     out.push_back(at);
     at.x += width;
   }
