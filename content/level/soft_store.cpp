@@ -18,7 +18,7 @@ fs::path g_soft_store;
 
 constexpr std::uint64_t kBegin = 0x32746f6f66546c50, kEnd = ~kBegin;  // of a file
 
-// A structured binding names every member: who adds one to these is told here.
+// A structured binding names every member: a new one stops the build here.
 void visit_members(auto& io, auto& of, const BuiltMesh*) {
   auto& [mesh, draw, report, pinned, handle] = of;
   io(mesh, draw, report, pinned, handle);

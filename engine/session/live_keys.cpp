@@ -36,7 +36,7 @@ constexpr Fixed kFixed[] = {
     {"handle.attachment", "the tissue's unknowns are laid out when the session opens"},
     {"handle.carried", "the tool's weight is laid out when the session opens"},
     {"handle.force", "its reduced model is laid out when the session opens"},
-    {"haptic_device.scale", "it goes with the driver, which is told its workspace when it is connected"},
+    {"haptic_device.scale", "it goes with the driver, whose workspace is set when it is connected"},
 };
 
 }  // namespace

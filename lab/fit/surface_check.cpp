@@ -74,7 +74,7 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
       PressedTissue& state = out[i].emplace_back();
       state.depth = depth;
       state.force = dot(force, places[i].place.normal);
-      if (const Status told = session->stream("surface", stream); !told) return told.error();
+      if (const Status streamed = session->stream("surface", stream); !streamed) return streamed.error();
       for (const SurfaceSample& seen : places[i].seen) {
         const uvec3 t = built.triangles[seen.triangle];
         double& height = state.height.emplace_back(0.0);

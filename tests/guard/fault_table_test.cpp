@@ -162,13 +162,13 @@ std::vector<Fault> faults() {
   all.push_back(
       {"saturation: the hand pushes through", [](WallRig&) {},
        [](WallRig& rig, double since) { rig.device.hand.wants = -0.006 - 0.024 * std::min(1.0, since / 0.3); }});
-  all.push_back({"delay of 20 ms, told by the samples' time",
+  all.push_back({"delay of 20 ms, shown by the samples' time",
                  sensing([line = Line{}](DeviceSample& s) mutable {
                    s = line.pass(s, 20);
                    return true;
                  }),
                  {}});
-  all.push_back({"delay of 20 ms, told by nothing", sensing([line = Line{}](DeviceSample& s) mutable {
+  all.push_back({"delay of 20 ms, shown by nothing", sensing([line = Line{}](DeviceSample& s) mutable {
                    const double now = s.time;
                    s = line.pass(s, 20);
                    s.time = now;
@@ -317,7 +317,7 @@ TEST(FaultTable, EveryFaultEndsWithoutForceOrWithinTheLimitsAndTheTableSaysHow) 
     table += in_table(row);
     EXPECT_LE(row.largest, 3.3 * (1 + 1e-9)) << row.name;
     // No sample shows a delay that is not reported.
-    EXPECT_LT(row.given, std::string(fault.name).find("told by nothing") == std::string::npos ? 25.0 : 150.0)
+    EXPECT_LT(row.given, std::string(fault.name).find("shown by nothing") == std::string::npos ? 25.0 : 150.0)
         << row.name << " [mJ]";
   }
   // Those that need processes, or cannot occur here: each has its own test in process_fault_test.cpp.
