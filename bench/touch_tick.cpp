@@ -208,9 +208,8 @@ struct Many {
   std::vector<std::pair<std::string, double>> systems;  // [us] median of each
 };
 
-Many measure_many(int objects, int probes) {
+Many measure_many(int objects, int probes, Deformable d = {}) {
   Stage stage;
-  Deformable d;
   d.reach = 0.005;
   const Entity surface = stage.add(scenes::sheet(probes > 1 ? 160 : 40, 0.16), d);
   const int side = static_cast<int>(std::ceil(std::sqrt(objects)));
@@ -306,6 +305,25 @@ int main(int argc, char** argv) {
     json += fmt::format(
         "{}\n    {{\"objects\": {}, \"contacts\": {}, \"awake\": {}, \"p50_us\": {:.3f}, \"p99_us\": {:.3f}}}",
         objects == 1 && probes == 1 ? "" : ",", m.objects, m.contacts, m.awake, m.p50, m.p99);
+  }
+  json += "\n  ],\n  \"effects\": [";
+  fmt::print("\none contact on one object\n{:>10} {:>9} {:>9}\n", "effect", "p50 us", "p99 us");
+  const auto with = [](auto change) {
+    Deformable d;
+    change(d);
+    return d;
+  };
+  const std::pair<const char*, Deformable> effects[] = {
+      {"none", {}},
+      {"stribeck", with([](Deformable& d) { d.friction_stribeck = 0.05, d.friction_viscous = 0.5; })},
+      {"texture", with([](Deformable& d) { d.texture_amplitude = 1e-5; })},
+      {"transient", with([](Deformable& d) { d.transient_amplitude = 5.0, d.transient_decay = 1.0; })}};
+  for (const auto& [name, d] : effects) {
+    const Many m = measure_many(1, 1, d);
+    fmt::print("{:>10} {:>9.2f} {:>9.2f}\n", name, m.p50, m.p99);
+    print_systems(m.systems);
+    json += fmt::format("{}\n    {{\"effect\": \"{}\", \"p50_us\": {:.3f}, \"p99_us\": {:.3f}}}",
+                        &d == &effects[0].second ? "" : ",", name, m.p50, m.p99);
   }
   json += fmt::format(
       "\n  ],\n  \"ratio_1e6_to_1e4\": {:.3f},\n  \"all_awake\": {{\"vertices\": {}, \"step_ms\": {:.3f}, \"copy_ms\": "

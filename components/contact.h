@@ -17,6 +17,17 @@ enum class ContactState : std::uint8_t {
   kTouching  // the probe presses
 };
 
+// State of what is felt beside the law: a knock and the fading of detail. Written by friction_feedback; all zero while
+// neither is asked for.
+struct ContactEffects {
+  bool pressed = false;        // it pressed in the last tick
+  double knock = 0.0;          // [N]   amplitude of the knock when it began; 0: none
+  double knock_time = 0.0;     // [s]   since it began
+  double knock_force = 0.0;    // [N]   sent in the last tick, outwards
+  double knock_account = 0.0;  // [J] >= 0: work that the hand has done on it and has not got back
+  double finest = 0.0;         // [m]   finest wavelength of texture and relief that is felt at this speed
+};
+
 struct Contact {
   Entity probe;                   // has a Probe; kNoEntity: unused, or tissue presses here (systems/touch/feed/press.h)
   std::uint8_t tip = 0;           // index into ProbeState::tips
@@ -50,7 +61,9 @@ struct Contact {
   double stiffness = 0.0;          // [N/m]   along the gradient
   double damping = 0.0;            // [N s/m] the same
   double bristle_stiffness = 0.0;  // [N/m]   tangential; zero while it slides
-  double bristle_damping = 0.0;    // [N s/m] the same
+  double bristle_damping = 0.0;    // [N s/m] the same; while it slides, the rise of friction with speed
+
+  ContactEffects effects;
 
   // Field. Written by force_field.
   double amplitude = 0.0;  // [m]  alpha >= 0: the field's target at distance r is -alpha f(r)

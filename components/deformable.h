@@ -17,17 +17,26 @@ struct Deformable : DeformableParameters {
 
 // Bounds of the parameters: of the keys of PLIANT_deformable and of the values that the touch clock accepts.
 struct DeformableRange {
-  static constexpr Range kStiffness{1e-6, 1e7};           // [N/m]
-  static constexpr Range kCubic{0.0, 1e15};               // [N/m3]
-  static constexpr Range kStiffening{-1e5, 1e5};          // [1/m] < 0: softens
-  static constexpr Range kRelaxationStiffness{0.0, 1e7};  // [N/m]
-  static constexpr Range kRelaxationTime{1e-6, 1e6};      // [s]
-  static constexpr Range kDampingRatio{0.0, 100.0};       // [1]
-  static constexpr Range kSettlingTime{1e-4, 100.0};      // [s]
-  static constexpr Range kContactDamping{0.0, 1e6};       // [N s/m]
-  static constexpr Range kReach{0.0, 1e6};                // [m]
-  static constexpr Range kVolume{0.0, 1.0};               // [1]
-  static constexpr Range kContactRadius{0.0, 1e6};        // [m]
+  static constexpr Range kStiffness{1e-6, 1e7};            // [N/m]
+  static constexpr Range kCubic{0.0, 1e15};                // [N/m3]
+  static constexpr Range kStiffening{-1e5, 1e5};           // [1/m] < 0: softens
+  static constexpr Range kRelaxationStiffness{0.0, 1e7};   // [N/m]
+  static constexpr Range kRelaxationTime{1e-6, 1e6};       // [s]
+  static constexpr Range kDampingRatio{0.0, 100.0};        // [1]
+  static constexpr Range kSettlingTime{1e-4, 100.0};       // [s]
+  static constexpr Range kContactDamping{0.0, 1e6};        // [N s/m]
+  static constexpr Range kReach{0.0, 1e6};                 // [m]
+  static constexpr Range kVolume{0.0, 1.0};                // [1]
+  static constexpr Range kContactRadius{0.0, 1e6};         // [m]
+  static constexpr Range kStribeck{0.0, 100.0};            // [m/s]
+  static constexpr Range kViscous{0.0, 100.0};             // [s/m]
+  static constexpr Range kTextureAmplitude{0.0, 0.01};     // [m]
+  static constexpr Range kTextureWavelength{1e-6, 1.0};    // [m]
+  static constexpr Range kTextureSeed{0.0, 4294967295.0};  // [1]
+  static constexpr Range kTransientAmplitude{0.0, 1000};   // [N s/m]
+  static constexpr Range kTransientFrequency{1.0, 5000};   // [Hz]
+  static constexpr Range kTransientDecay{1.0, 10000.0};    // [1/s]
+  static constexpr Range kRelief{0.0, 10.0};               // [1]
 };
 
 // Whether a shape is that of an indenter on a half-space, so that `contact_radius` has an effect.
@@ -35,6 +44,8 @@ bool depends_on_contact(Shape shape);
 // Whether a law has the Maxwell arm of the standard linear solid: `relaxation.*`, and a memory per vertex.
 bool has_arm(SpringLaw law);
 
+// A knock above this share of the touch rate would alias: there is none. [1]
+inline constexpr double kMostKnock = 0.4;
 inline constexpr double kMostContactShare = 0.95;  // [1] of the reach: upper bound of contact_radius
 inline constexpr double kDefaultReach = 0.08;      // [1] of the diagonal of the object's box
 // [m] The reach of a deformable that gives none.

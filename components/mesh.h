@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,8 @@ struct TriangleTree {
   float bulge = 0.0f;  // [m] largest distance of a curved patch's control point from its triangle
 };
 
+struct Relief;  // components/relief.h
+
 struct Mesh {
   std::string name;
 
@@ -78,6 +81,8 @@ struct Mesh {
   std::vector<float> friction_factor;    // [1] _FRICTION
   std::vector<float> damping_factor;     // [1] _DAMPING: of damping_ratio and contact_damping
   std::vector<float> relaxation_factor;  // [1] _RELAXATION: of relaxation.stiffness (standard linear solid)
+
+  std::shared_ptr<const Relief> relief;  // of its materials, to be felt; null: none, or nobody asked for it
 
   // Touch vertex of each source vertex, primitives end to end; kBorder: no touched triangle uses it.
   std::vector<std::uint32_t> of_source;

@@ -35,6 +35,12 @@ std::vector<Note> explain_dropped(std::uint32_t dropped) {
       {kDroppedMotion, "dropped.motion", "a body's motion was not a number and it was stopped", "reduce `soft_step`"},
       {kDroppedJump, "dropped.jump", "a device jumped farther than a hand can move, and its force went to zero",
        "check its tracking, or slow the script down"},
+      {kDroppedInside, "dropped.inside",
+       "a probe was inside an object at its first pose, and that depth makes no force until it has left",
+       "begin outside: move the probe, the object or the script's first row"},
+      {kDroppedDetail, "dropped.detail",
+       "a texture passed a probe faster than the touch rate resolves (0.4 of it), and was smoothed there",
+       "raise `touch_rate`, move slower, or give a longer `texture.wavelength`"},
       {kDroppedSetBack, "dropped.set_back",
        "a tool separated from its device (more than 2 m, or faster than 50 m/s) and was reset to the device's pose",
        "reduce `soft_step`, or move slower"}};

@@ -40,6 +40,8 @@ enum DroppedBit : std::uint32_t {  // 8 was used by an earlier bit and stays unu
   kDroppedMotion = 128,   // a body's motion was not a number and it was stopped: reduce `soft_step`
   kDroppedStale = 16,     // a device's pose was stale and its force went to zero: check its connection
   kDroppedJump = 256,  // a device jumped farther than a hand can move, and its force went to zero: check its tracking
+  kDroppedInside = 2048,  // a probe began inside an object, and gets no force until it has left: move it
+  kDroppedDetail = 1024,  // a texture passed faster than the touch rate resolves, and was smoothed: raise `touch_rate`
   kDroppedSetBack = 512,  // a tool got away from its device and was set back to it: reduce `soft_step`
 };
 

@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "content/files/exr.h"
+#include "content/level/spawn_relief.h"
 #include "content/level_file.h"
 
 namespace pliant {
@@ -20,7 +21,9 @@ Result<World> spawn(const Level& level, std::vector<std::string>* notes) {
 Result<World> spawn_moving_images(Level& level, std::vector<std::string>* notes) {
   std::vector<Image> images = std::exchange(level.images, {});
   Result<World> world = spawn(level, notes);
-  if (world) world->images = std::move(images);
+  if (!world) return world;
+  world->images = std::move(images);
+  add_relief(*world, notes);
   return world;
 }
 

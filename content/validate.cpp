@@ -15,6 +15,7 @@
 #include "content/level/device_use.h"
 #include "content/level/script.h"
 #include "content/level/spawn_soft.h"
+#include "content/level/unfelt_relief.h"
 #include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
@@ -184,6 +185,8 @@ void find_idle(const Level& level, Findings& findings) {
     std::replace(pointer.begin(), pointer.end(), '.', '/');  // dots in keys are nested objects
     findings.push_back({Severity::kNote, std::move(pointer), key.what, key.cure, "key.unused"});
   }
+  if (const std::optional<Note> relief = unfelt_relief(level))
+    findings.push_back(finding_of(*relief, Severity::kNote, scene_pointer(level)));
   for (const DeviceFault& idle : find_unmoved_probes(level))
     findings.push_back(finding_of(idle.what, Severity::kNote, pointer_of(level, idle.node)));
 }

@@ -21,9 +21,9 @@ bool senses_a_pose(const DeviceInfo& device) {
   return device.can.senses_position && device.can.senses_rotation;
 }
 
-// The device with the wrappers of the wish.
-std::string wrapped(std::string device, const DeviceSpec& wish) {
-  for (const std::string& wrapper : wish.wrappers) device += "|" + wrapper;
+// The device with the wrappers of the request.
+std::string wrapped(std::string device, const DeviceSpec& request) {
+  for (const std::string& wrapper : request.wrappers) device += "|" + wrapper;
   return device;
 }
 
@@ -55,18 +55,18 @@ Result<const DeviceInfo*> of_kind(const std::string& kind, std::span<const Devic
 }
 
 // Of a driver by name, including devices that cannot be listed.
-Result<DeviceChoice> by_name(const DeviceSpec& wish, std::span<const DeviceInfo> there) {
+Result<DeviceChoice> by_name(const DeviceSpec& request, std::span<const DeviceInfo> there) {
   const std::vector<std::string> names = driver_names();
-  if (std::find(names.begin(), names.end(), wish.driver) == names.end())
-    return Error{wish.driver, "no driver has that name", fmt::format("drivers are: {}", fmt::join(names, ", "))};
+  if (std::find(names.begin(), names.end(), request.driver) == names.end())
+    return Error{request.driver, "no driver has that name", fmt::format("drivers are: {}", fmt::join(names, ", "))};
   const DeviceInfo* missing = nullptr;
   for (const DeviceInfo& device : there) {
-    if (device.driver != wish.driver || (!wish.id.empty() && device.id != wish.id)) continue;
-    if (device.missing.empty()) return DeviceChoice{wrapped(full_id(device), wish), device.name, {}};
+    if (device.driver != request.driver || (!request.id.empty() && device.id != request.id)) continue;
+    if (device.missing.empty()) return DeviceChoice{wrapped(full_id(device), request), device.name, {}};
     if (!missing) missing = &device;
   }
-  if (missing) return Error{wish.device(), fmt::format("{}: {}", missing->name, missing->missing)};
-  return DeviceChoice{wish.words(), wish.device(), {}};  // open() reports it if it is missing
+  if (missing) return Error{request.device(), fmt::format("{}: {}", missing->name, missing->missing)};
+  return DeviceChoice{request.words(), request.device(), {}};  // open() reports it if it is missing
 }
 
 }  // namespace
@@ -75,12 +75,12 @@ std::string full_id(const DeviceInfo& device) {
   return device.id.empty() ? device.driver : device.driver + ":" + device.id;
 }
 
-Result<DeviceChoice> choose_device(const std::string& wish, std::span<const DeviceInfo> there) {
+Result<DeviceChoice> choose_device(const std::string& request, std::span<const DeviceInfo> there) {
   std::vector<std::string> notes;
-  for (const DeviceSpec& one : parse_device_specs(wish)) {
+  for (const DeviceSpec& one : parse_device_specs(request)) {
     Result<DeviceChoice> chosen = Error{"", ""};
     if (one.driver.empty()) {
-      chosen = Error{wish, "names no device", "write a driver, DRIVER:ID, any-force, any-pose, any or mouse"};
+      chosen = Error{request, "names no device", "write a driver, DRIVER:ID, any-force, any-pose, any or mouse"};
     } else if (one.device() == "mouse") {
       chosen = DeviceChoice{"", "mouse", {}};
     } else if (!one.has_id && (one.driver == "any" || one.driver == "any-force" || one.driver == "any-pose")) {
@@ -98,7 +98,7 @@ Result<DeviceChoice> choose_device(const std::string& wish, std::span<const Devi
     const Error& why = chosen.error();
     notes.push_back(why.where.empty() ? why.sentence() : fmt::format("`{}`: {}", why.where, why.sentence()));
   }
-  return Error{"device:" + wish, fmt::format("{}", fmt::join(notes, "; ")), "`pliant devices` lists what there is"};
+  return Error{"device:" + request, fmt::format("{}", fmt::join(notes, "; ")), "`pliant devices` lists what there is"};
 }
 
 }  // namespace pliant

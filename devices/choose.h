@@ -1,6 +1,6 @@
-// Resolves a wish (a level's `id`, or `--probe NAME=device:WISH`) to one of the available devices.
+// Resolves a request (a level's `id`, or `--probe NAME=device:REQUEST`) to one of the available devices.
 //
-// A wish is one or more alternatives, separated by ";". The first one that can be opened is used. Each is
+// A request is one or more alternatives, separated by ";". The first one that can be opened is used. Each is
 //   DRIVER or DRIVER:ID     a driver's first device, or the one with that id (as `pliant devices` prints it)
 //   any-force               a device that renders force in three axes, the strongest first
 //   any-pose                a device that senses position and rotation
@@ -28,6 +28,6 @@ struct DeviceChoice {
 // "falcon:0"; for a driver with a single device, its name.
 std::string full_id(const DeviceInfo& device);
 // The error tells for every alternative why it is not available.
-Result<DeviceChoice> choose_device(const std::string& wish, std::span<const DeviceInfo> there);
+Result<DeviceChoice> choose_device(const std::string& request, std::span<const DeviceInfo> there);
 
 }  // namespace pliant

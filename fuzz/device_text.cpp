@@ -1,5 +1,6 @@
-// Text about devices: pose files, profiles and keys of a simulated device, wrappers, wishes, driver options. The first
-// byte selects the parser. Accepted values must be finite, in range and usable; rejected ones must give a sentence.
+// Text about devices: pose files, profiles and keys of a simulated device, wrappers, requests, driver options. The
+// first byte selects the parser. Accepted values must be finite, in range and usable; rejected ones must give a
+// sentence.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -95,7 +96,7 @@ void wrappers(const std::string& text) {
   chain->driver->close();
 }
 
-void wish(const std::string& text) {
+void request(const std::string& text) {
   static const std::vector<DeviceInfo> there = [] {
     register_simulated();
     std::vector<DeviceInfo> all = list_devices();
@@ -136,7 +137,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       wrappers(text);
       break;
     case 3:
-      wish(text);
+      request(text);
       break;
     case 4:
       words(text);

@@ -1,152 +1,258 @@
 #include "plot/panel.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "plot/ticks.h"
-
 namespace pliant {
 namespace {
 
-constexpr int kMostTicks = 6;
+constexpr double kLegendRoom = 0.5;  // [pixel] by which rounding may exceed the room
+constexpr double kMerged = 0.5;      // [pixel] points of a line that are nearer are one
+constexpr double kMarkLong = 1.8, kMarkShort = 0.9, kMarkGap = 0.55, kApart = 1.5;  // [1] of a legend's text size
 
-double share_of(const PanelRange& range, double value) {
-  if (range.log) return std::log(std::max(value, 1e-300) / range.low) / std::log(range.high / range.low);
-  return (value - range.low) / (range.high - range.low);
+bool has_place(const PlotAxis& axis, double value) {
+  return std::isfinite(value) && (!axis.log || value > 0.0);
+}
+bool has_place(const PlotPanel& panel, const PlotPoint& at) {
+  return has_place(panel.across, at.x) && has_place(panel.up, at.y);
 }
 
-struct AxisTick {
-  double value;
-  std::string words;
-};
-std::vector<AxisTick> ticks_of(const PanelRange& range) {
-  std::vector<AxisTick> out;
-  if (range.log) {
-    const double decades = std::log10(range.high / range.low);
-    const int every = std::max(1, static_cast<int>(std::ceil(decades / 8.0)));
-    for (int e = static_cast<int>(std::ceil(std::log10(range.low) - 1e-9)); e <= std::log10(range.high) + 1e-9;
-         e += every)
-      out.push_back({std::pow(10.0, e), decade_number(std::pow(10.0, e))});
-    return out;
+void clip_to(Pen& pen, const PlotPanel& panel) {
+  pen.clip(panel.x - 1, panel.y - 2, panel.w + 3, panel.h + 4);
+}
+
+void draw_grid_line(Pen& pen, const PlotPanel& panel, const AxesStyle& style, const AxisTick& tick, bool across) {
+  if (style.grid_alpha <= 0.0) return;
+  pen.color(style.grid, tick.decade ? style.grid_alpha : 0.5 * style.grid_alpha);
+  if (const double at = across ? panel.px(tick.value) : panel.py(tick.value); across)
+    pen.line(at, panel.y, at, panel.y + panel.h, 1);
+  else
+    pen.line(panel.x, at, panel.x + panel.w, at, 1);
+}
+
+double apart(const AxesStyle& style) {
+  return 0.45 * style.number;
+}
+
+// As many as the numbers below the panel have room for.
+std::vector<AxisTick> ticks_across(Pen& pen, const PlotPanel& panel, const AxesStyle& style) {
+  for (int most = style.most_across; most > 1 && style.numbers_across; --most) {
+    std::vector<AxisTick> ticks = axis_ticks(panel.across, most);
+    double free_from = -1e9;
+    bool fit = true;
+    for (const AxisTick& tick : ticks) {
+      const double at = panel.px(tick.value), half = 0.5 * pen.width(style.number, tick.words);
+      fit = fit && at - half >= free_from;
+      free_from = at + half + apart(style);
+    }
+    if (fit) return ticks;
   }
-  const double step = tick_step(range.high - range.low, kMostTicks);
-  const double large = std::max(std::abs(range.low), std::abs(range.high));
-  for (const double value : tick_values(range.low, range.high, step))
-    out.push_back({value, large >= 1e6 || large < 1e-3 ? fmt::format("{:.3g}", value) : number(value, step)});
-  return out;
+  return axis_ticks(panel.across, style.numbers_across ? 1 : style.most_across);
 }
 
-void clip(Pen& pen, const PlotPanel& panel) {
-  cairo_save(pen.get());
-  cairo_rectangle(pen.get(), panel.x - 1, panel.y - 2, panel.w + 3, panel.h + 4);
-  cairo_clip(pen.get());
-  cairo_new_path(pen.get());
+void draw_numbers_across(Pen& pen, const PlotPanel& panel, const AxesStyle& style, const std::vector<AxisTick>& ticks) {
+  const double base = panel.y + panel.h + style.gap + style.number;
+  double free_from = -1e9, free_to = 1e9;
+  pen.color(style.ink);
+  if (!style.unit.empty())
+    free_to = panel.x + panel.w - pen.text(panel.x + panel.w, base, style.number, 1.0, style.unit) - apart(style);
+  for (const AxisTick& tick : ticks) {
+    const double at = panel.px(tick.value), half = 0.5 * pen.width(style.number, tick.words);
+    if (at - half < free_from || at + half > free_to) continue;
+    pen.text(at, base, style.number, 0.5, tick.words);
+    free_from = at + half + apart(style);
+  }
+}
+
+double draw_numbers_up(Pen& pen, const PlotPanel& panel, const AxesStyle& style, const std::vector<AxisTick>& ticks) {
+  double widest = 0.0, free_below = 1e9;
+  pen.color(style.ink);
+  for (const AxisTick& tick : ticks) {
+    double base = panel.py(tick.value) + 0.36 * style.number;
+    if (style.numbers_between) base = std::clamp(base, panel.y + 0.8 * style.number, panel.y + panel.h);
+    if (base > free_below) continue;
+    free_below = base - 1.1 * style.number;
+    const double at = style.right ? panel.x + panel.w + style.gap + 2 : panel.x - style.gap - 2;
+    widest = std::max(widest, pen.text(at, base, style.number, style.right ? 0.0 : 1.0, tick.words));
+  }
+  return widest;
+}
+
+double mark_width(const PlotKey& key, const KeyStyle& style) {
+  return style.size * (key.mark < KeyMark::kDot ? kMarkLong : kMarkShort);
 }
 
 }  // namespace
 
-PanelRange range_of(double least, double most, bool with_zero) {
-  if (!(least <= most) || !std::isfinite(least) || !std::isfinite(most)) return {};
-  if (with_zero) least = std::min(least, 0.0), most = std::max(most, 0.0);
-  if (is_flat(least, most))
-    return {least - 0.5 * std::max(std::abs(least), 1e-9), most + 0.5 * std::max(std::abs(most), 1e-9)};
-  const double step = tick_step(most - least, kMostTicks), room = 0.03 * (most - least);
-  PanelRange out{step * std::floor((least - room) / step), step * std::ceil((most + room) / step)};
-  if (with_zero && least == 0.0) out.low = 0.0;
-  if (with_zero && most == 0.0) out.high = 0.0;
+double PlotPanel::px(double value) const {
+  return x + w * std::clamp(across.share(value), -10.0, 10.0);
+}
+double PlotPanel::py(double value) const {
+  return y + h * (1.0 - std::clamp(up.share(value), -10.0, 10.0));
+}
+
+double draw_axes(Pen& pen, const PlotPanel& panel, const AxesStyle& style) {
+  const std::vector<AxisTick> across = ticks_across(pen, panel, style), up = axis_ticks(panel.up, style.most_up);
+  for (const AxisTick& tick : across) draw_grid_line(pen, panel, style, tick, true);
+  for (const AxisTick& tick : up) draw_grid_line(pen, panel, style, tick, false);
+  if (style.numbers_across) draw_numbers_across(pen, panel, style, across);
+  const double widest = draw_numbers_up(pen, panel, style, up);
+  if (!style.lines) return widest;
+  const double bottom = panel.y + panel.h, side = style.right ? panel.x + panel.w : panel.x;
+  pen.color(style.ink);
+  pen.line(side, panel.y, side, bottom, 1.5);
+  pen.line(panel.x, bottom, panel.x + panel.w, bottom, 1.5);
+  return widest;
+}
+
+void draw_axes(Pen& pen, const PlotPanel& panel, const std::string& across, const std::string& up,
+               const AxesStyle& style) {
+  const double widest = draw_axes(pen, panel, style);
+  const double below = style.gap + style.number + 9 + style.title;
+  pen.text(panel.x + panel.w / 2, panel.y + panel.h + below, style.title, 0.5, across);
+  const std::vector<std::string> lines = pen.lines(style.title, up, 1.15 * panel.h);
+  double x = panel.x - widest - style.gap - 16;
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line, x -= 1.25 * style.title)
+    pen.upright_text(x, panel.y + panel.h / 2, style.title, *line);
+}
+
+void draw_line(Pen& pen, const PlotPanel& panel, std::span<const PlotPoint> points, const LineStyle& style) {
+  clip_to(pen, panel);
+  pen.color(style.color, style.alpha);
+  std::vector<PlotPoint> line;
+  const auto finish = [&] {
+    if (line.size() > 1) pen.polyline(line, style.width, style.dashed);
+    line.clear();
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!has_place(panel, points[i])) {
+      finish();
+      continue;
+    }
+    const PlotPoint at = panel.on(points[i]);
+    const bool ends = i + 1 == points.size() || !has_place(panel, points[i + 1]);
+    if (!ends && line.size() > 1 && std::abs(at.x - line.back().x) < kMerged &&
+        std::abs(at.y - line.back().y) < kMerged)
+      continue;
+    line.push_back(at);
+  }
+  finish();
+  pen.unclip();
+}
+
+void draw_dots(Pen& pen, const PlotPanel& panel, std::span<const PlotPoint> points, Color color, double radius,
+               bool filled, double alpha) {
+  pen.color(color, alpha);
+  for (const PlotPoint& point : points) {
+    if (!has_place(panel, point)) continue;
+    const PlotPoint at = panel.on(point);
+    if (at.x < panel.x - 1 || at.x > panel.x + panel.w + 1 || at.y < panel.y - 1 || at.y > panel.y + panel.h + 1)
+      continue;
+    filled ? pen.disc(at.x, at.y, radius) : pen.ring(at.x, at.y, radius, 1.5);
+  }
+}
+
+void draw_band(Pen& pen, const PlotPanel& panel, std::span<const PlotPoint> low, std::span<const PlotPoint> high,
+               Color color, double alpha) {
+  std::vector<PlotPoint> below, above;
+  for (std::size_t i = 0; i < std::min(low.size(), high.size()); ++i) {
+    if (!has_place(panel, low[i]) || !has_place(panel, high[i])) continue;
+    below.push_back(panel.on(low[i]));
+    above.push_back(panel.on(high[i]));
+  }
+  clip_to(pen, panel);
+  pen.color(color, alpha);
+  pen.fill(below, above);
+  pen.unclip();
+}
+
+void draw_level(Pen& pen, const PlotPanel& panel, double y, const LineStyle& style) {
+  clip_to(pen, panel);
+  pen.color(style.color, style.alpha);
+  pen.line(panel.x, panel.py(y), panel.x + panel.w, panel.py(y), style.width, style.dashed);
+  pen.unclip();
+}
+
+void draw_upright(Pen& pen, const PlotPanel& panel, double x, const LineStyle& style) {
+  clip_to(pen, panel);
+  pen.color(style.color, style.alpha);
+  pen.line(panel.px(x), panel.y, panel.px(x), panel.y + panel.h, style.width, style.dashed);
+  pen.unclip();
+}
+
+std::vector<PlotPoint> points_of(std::span<const double> x, std::span<const double> y) {
+  std::vector<PlotPoint> out;
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) out.push_back({x[i], y[i]});
   return out;
 }
 
-PanelRange log_range_of(double least, double most) {
-  if (!(least > 0) || !(most >= least) || !std::isfinite(most)) return {1e-3, 1.0, true};
-  const double low = std::pow(10.0, std::floor(std::log10(least))), high = std::pow(10.0, std::ceil(std::log10(most)));
-  return {low, high > low ? high : 10.0 * low, true};
+void draw_arrow(Pen& pen, double x, double y, double radius, bool up) {
+  const double tip = (up ? -1.5 : 1.5) * radius, base = y - 0.5 * tip;
+  const PlotPoint point{x, y + tip};
+  pen.fill(std::array{point, PlotPoint{x - 1.2 * radius, base}}, std::array{point, PlotPoint{x + 1.2 * radius, base}});
 }
 
-double PlotPanel::px(double value) const {
-  return x + w * std::clamp(share_of(across, value), -10.0, 10.0);
-}
-double PlotPanel::py(double value) const {
-  return y + h * (1.0 - std::clamp(share_of(up, value), -10.0, 10.0));
+double key_width(Pen& pen, const PlotKey& key, const KeyStyle& style) {
+  return mark_width(key, style) + kMarkGap * style.size + pen.width(style.size, key.words) + kApart * style.size;
 }
 
-void draw_axes(Pen& pen, const PlotPanel& panel, const std::string& across, const std::string& up) {
-  const double bottom = panel.y + panel.h, right = panel.x + panel.w;
-  for (const AxisTick& tick : ticks_of(panel.across)) {
-    pen.color(kFaint);
-    pen.line(panel.px(tick.value), panel.y, panel.px(tick.value), bottom, 1);
-    pen.color(kInk);
-    pen.text(panel.px(tick.value), bottom + 20, 14, 0.5, tick.words);
-  }
-  double widest = 0.0;
-  for (const AxisTick& tick : ticks_of(panel.up)) {
-    pen.color(kFaint);
-    pen.line(panel.x, panel.py(tick.value), right, panel.py(tick.value), 1);
-    pen.color(kInk);
-    widest = std::max(widest, pen.text(panel.x - 8, panel.py(tick.value) + 5, 14, 1.0, tick.words));
-  }
-  pen.line(panel.x, panel.y, panel.x, bottom, 1.5);
-  pen.line(panel.x, bottom, right, bottom, 1.5);
-  pen.text(panel.x + panel.w / 2, bottom + 44, 15, 0.5, across);
-  pen.upright_text(panel.x - widest - 22, panel.y + panel.h / 2, 15, up);
+double keys_width(Pen& pen, std::span<const PlotKey> keys, const KeyStyle& style) {
+  double width = 0.0;
+  for (const PlotKey& key : keys) width += key_width(pen, key, style);
+  return width - kApart * style.size;
 }
 
-void draw_line(Pen& pen, const PlotPanel& panel, const std::vector<double>& x, const std::vector<double>& y,
-               Color color, double width) {
-  clip(pen, panel);
-  pen.color(color, 0.9);
-  cairo_set_line_width(pen.get(), width);
-  cairo_set_line_join(pen.get(), CAIRO_LINE_JOIN_ROUND);
-  bool begun = false;
-  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
-    const bool shown =
-        std::isfinite(x[i]) && std::isfinite(y[i]) && (!panel.up.log || y[i] > 0) && (!panel.across.log || x[i] > 0);
-    if (shown && begun) cairo_line_to(pen.get(), panel.px(x[i]), panel.py(y[i]));
-    if (shown && !begun) cairo_move_to(pen.get(), panel.px(x[i]), panel.py(y[i]));
-    begun = shown;
+void draw_key(Pen& pen, double x, double y, const PlotKey& key, const KeyStyle& style) {
+  const double s = style.size, end = x + mark_width(key, style), middle = y - 0.36 * s, centre = 0.5 * (x + end);
+  pen.color(key.color, key.mark == KeyMark::kBand ? 0.45 : 1.0);
+  switch (key.mark) {
+    case KeyMark::kLine:
+    case KeyMark::kDashed:
+      pen.line(x, middle, end, middle, style.line, key.mark == KeyMark::kDashed);
+      break;
+    case KeyMark::kBand:
+      pen.line(x, middle, end, middle, 0.6 * s);
+      break;
+    case KeyMark::kBox:
+      pen.rectangle(x, y - 0.86 * s, end - x, s);
+      break;
+    case KeyMark::kDot:
+      pen.disc(centre, middle, 0.36 * s);
+      break;
+    case KeyMark::kRing:
+      pen.ring(centre, middle, 0.36 * s, 1.5);
+      break;
+    case KeyMark::kUp:
+    case KeyMark::kDown:
+      draw_arrow(pen, centre, middle, 0.36 * s, key.mark == KeyMark::kUp);
+      break;
   }
-  cairo_stroke(pen.get());
-  cairo_restore(pen.get());
+  pen.color(style.ink);
+  const double text = end + kMarkGap * s;
+  style.over ? pen.text_over(text, y, s, 0, key.words) : pen.text(text, y, s, 0, key.words);
 }
 
-void draw_dots(Pen& pen, const PlotPanel& panel, const std::vector<double>& x, const std::vector<double>& y,
-               Color color, double radius, bool filled) {
-  clip(pen, panel);
-  pen.color(color, filled ? 0.75 : 1.0);
-  cairo_set_line_width(pen.get(), 1.3);
-  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
-    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
-    cairo_new_path(pen.get());
-    cairo_arc(pen.get(), panel.px(x[i]), panel.py(y[i]), radius, 0, 6.283185307179586);
-    filled ? cairo_fill(pen.get()) : cairo_stroke(pen.get());
+std::vector<PlotPoint> place_keys(Pen& pen, double x, double y, double right, std::span<const PlotKey> keys,
+                                  const KeyStyle& style) {
+  std::vector<PlotPoint> out;
+  PlotPoint at{x, y};
+  for (const PlotKey& key : keys) {
+    const double width = key_width(pen, key, style);
+    if (at.x > x && at.x + width - kApart * style.size > right + kLegendRoom) at = {x, at.y + 1.45 * style.size};
+    out.push_back(at);
+    at.x += width;
   }
-  cairo_restore(pen.get());
+  return out;
 }
 
-void draw_keys(Pen& pen, double x, double y, double right, const std::vector<PanelKey>& keys) {
-  const double begin = x;
-  for (const PanelKey& key : keys) {
-    const double width = 34 + pen.width(14, key.words) + 22;
-    if (x > begin && x + width > right) x = begin, y += 20;
-    pen.color(key.color);
-    if (key.dot) {
-      cairo_new_path(pen.get());
-      cairo_arc(pen.get(), x + 13, y - 5, 5, 0, 6.283185307179586);
-      cairo_fill(pen.get());
-    } else {
-      pen.line(x, y - 5, x + 26, y - 5, 4);
-    }
-    pen.color(kInk);
-    pen.text(x + 34, y, 14, 0, key.words);
-    x += width;
-  }
+double draw_keys(Pen& pen, double x, double y, double right, const std::vector<PlotKey>& keys, const KeyStyle& style) {
+  const std::vector<PlotPoint> places = place_keys(pen, x, y, right, keys, style);
+  for (std::size_t i = 0; i < keys.size(); ++i) draw_key(pen, places[i].x, places[i].y, keys[i], style);
+  return places.empty() ? y : places.back().y;
 }
 
 Color series_color(std::size_t number) {
-  constexpr Color kSky{0.337, 0.706, 0.914};
   constexpr std::array kColors{kBlue, kVermilion, kGreen, kOrange, kPurple, kSky, kInk, Color{0.55, 0.55, 0.0}};
   return kColors[number % kColors.size()];
 }

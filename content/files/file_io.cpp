@@ -43,7 +43,7 @@ Result<Bytes> read_beginning(const fs::path& path, const Limit& limit, std::uint
   if (error || !fs::exists(status)) return Error{path.string(), "no such file", "check the path"};
   if (!fs::is_regular_file(status)) return Error{path.string(), "is not a regular file", "name a file"};
   const std::uint64_t size = std::min<std::uint64_t>(fs::file_size(path, error), wanted);
-  if (error) return Error{path.string(), "its size cannot be told: " + error.message(), "check the path"};
+  if (error) return Error{path.string(), "its size cannot be read: " + error.message(), "check the path"};
   if (size > most(limit))
     return error_at(path.string(), beyond("has", limit, static_cast<double>(size), "use a smaller file"));
   const File file(std::fopen(path.c_str(), "rb"));

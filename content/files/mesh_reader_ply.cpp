@@ -12,7 +12,7 @@ namespace {
 
 enum class Kind { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
-// What a property of a vertex is.
+// Kinds of a vertex property.
 enum class Use { kNothing, kX, kY, kZ, kNormalX, kNormalY, kNormalZ, kU, kV };
 constexpr std::size_t kUses = 9;
 

@@ -1,4 +1,4 @@
-// The level of effects in space.
+// `effects`: six plates that can be told apart blind, each stroked by a finger of its own.
 #pragma once
 
 #include <filesystem>
@@ -7,10 +7,8 @@
 
 namespace pliant::generate {
 
-// A probe goes along a row of effects, one of each kind, and presses the board below them.
-Level effects_level();
-
-// The level, its script and its path.
-Status write_effects_level(const std::filesystem::path& folder);
+Level effects();
+// The level and its scripts.
+Status write_effects(const std::filesystem::path& folder);
 
 }  // namespace pliant::generate

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "content/generate/effects_level.h"
+#include "content/generate/fields_level.h"
 #include "content/generate/instrument_levels.h"
 #include "content/generate/lattice_sphere.h"
 #include "content/generate/minimal.h"
@@ -165,6 +166,7 @@ Level three_probes(const Detail& detail) {
   node.deformable->stiffness = 300.0;
   node.deformable->reach = 0.022;
   node.deformable->shape = Shape::kVolume;
+  node.stated.insert("deformable.relief");  // its bumps are drawn alone: wet tissue is smooth
   add_probe(level, "probe_a", 0.004, kCoral);
   add_probe(level, "probe_b", 0.003, kTeal);
   add_probe(level, "probe_c", 0.0, kGold);
@@ -296,7 +298,8 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   if (Status s = save_strokes(ball_level, ridged_ball(), ball_strokes(), levels); !s) return s;
   if (Status s = write_tool_levels(levels); !s) return s;
   if (Status s = write_instrument_levels(levels); !s) return s;
-  if (Status s = write_effects_level(levels); !s) return s;
+  if (Status s = write_fields_level(levels); !s) return s;
+  if (Status s = write_effects(levels); !s) return s;
   return write_minimal(levels);
 }
 

@@ -176,6 +176,25 @@ std::vector<Key> deformable_keys() {
     it.friction_static = it.friction_sliding = value.get<double>();
   };
   keys.push_back(both);
+  keys.push_back(number("friction_stribeck", "m/s", {R::kStribeck, {1e-4, 1.0}}, d(&D::friction_stribeck),
+                        "speed over which friction falls from static to sliding, as exp(-(v/v_s)^2); 0: at once"));
+  keys.push_back(number("friction_viscous", "s/m", {R::kViscous, {0.01, 10.0}}, d(&D::friction_viscous),
+                        "rise of the coefficient of sliding friction with speed"));
+  keys.push_back(number("texture.amplitude", "m", {R::kTextureAmplitude, {1e-6, 1e-3}}, d(&D::texture_amplitude),
+                        "roughness that is felt, its root mean square; 0: smooth"));
+  keys.push_back(number("texture.wavelength", "m", {R::kTextureWavelength, {1e-4, 0.05}}, d(&D::texture_wavelength),
+                        "length of its waves"));
+  keys.push_back(number("texture.seed", "1", R::kTextureSeed, d(&D::texture_seed),
+                        "another number: another roughness of the same kind"));
+  keys.push_back(number("transient.amplitude", "N s/m", {R::kTransientAmplitude, {0.1, 100.0}},
+                        d(&D::transient_amplitude), "force of the knock of an impact, per its speed; 0: none"));
+  keys.push_back(number("transient.frequency", "Hz", {R::kTransientFrequency, {20.0, 400.0}},
+                        d(&D::transient_frequency), "of the knock; above 0.4 of `touch_rate` there is none"));
+  keys.push_back(
+      number("transient.decay", "1/s", {R::kTransientDecay, {5.0, 1000.0}}, d(&D::transient_decay), "of the knock"));
+  keys.push_back(number("relief", "1", {R::kRelief, {0.01, 2.0}}, d(&D::relief),
+                        "share of the materials' drawn relief (normal and height maps) that is felt: 1 as drawn, 0 "
+                        "none"));
   keys.push_back(number(
       "crease_angle", "rad", {0.0, 3.1416}, d(&D::crease_angle),
       fmt::format("edges whose faces turn by more are creases; 0: where the file's own normals are split, else {}",

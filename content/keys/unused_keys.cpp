@@ -8,6 +8,7 @@
 
 #include "components/registered.h"
 #include "content/keys/extension_table.h"
+#include "content/level/unfelt_relief.h"
 
 namespace pliant {
 
@@ -43,6 +44,14 @@ ShapeParameter parameter_of(const LevelNode& node) {
   return row_of(node.deformable->shape).parameter;
 }
 
+bool no_texture(const LevelNode& n) {
+  return !(n.deformable->texture_amplitude > 0.0);
+}
+bool no_transient(const LevelNode& n) {
+  return !(n.deformable->transient_amplitude > 0.0);
+}
+constexpr const char* kGiveOrRemove = "give that too, or remove the key";
+
 const UnusedRow kRows[] = {
     {"deformable", "cubic", [](const LevelNode& n) { return is_law_without("cubic", n); }, laws_with("cubic")},
     {"deformable", "stiffening", [](const LevelNode& n) { return is_law_without("stiffening", n); },
@@ -63,6 +72,14 @@ const UnusedRow kRows[] = {
      "thickness",
      [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
      {"is read with `young` only", "give that too, or remove the key"}},
+    {"deformable",
+     "friction_stribeck",
+     [](const LevelNode& n) { return !(n.deformable->friction_static > n.deformable->friction_sliding); },
+     {"is a fall from `friction_static` to `friction_sliding`, which are equal", "raise one, or remove the key"}},
+    {"deformable", "texture.wavelength", no_texture, {"is read with `texture.amplitude` only", kGiveOrRemove}},
+    {"deformable", "texture.seed", no_texture, {"is read with `texture.amplitude` only", kGiveOrRemove}},
+    {"deformable", "transient.frequency", no_transient, {"is read with `transient.amplitude` only", kGiveOrRemove}},
+    {"deformable", "transient.decay", no_transient, {"is read with `transient.amplitude` only", kGiveOrRemove}},
     {"probe",
      "coupling",
      [](const LevelNode& n) { return n.probe->meets == ProbeMeets::kSurfaces; },
@@ -155,6 +172,16 @@ void find_in_node(const Level& level, std::size_t n, std::vector<UnusedKey>& fou
       if (const auto words = unused_of_effect(*node.effect, key.name); words && is_set(extension, key, node))
         found.push_back({static_cast<std::int32_t>(n), "PLIANT_effect/" + key.name, words->what, words->cure});
   }
+  if (node.deformable && node.deformable->relief > 0.0 && !draws_relief(level, node))
+    found.push_back({static_cast<std::int32_t>(n), "PLIANT_deformable/relief",
+                     "is of normal and height maps, and no material of the mesh has one with texture coordinates",
+                     "add one, or remove the key"});
+  if (const auto& d = node.deformable;
+      d && d->transient_amplitude > 0.0 && d->transient_frequency > kMostKnock * level.simulation.touch_rate)
+    found.push_back({static_cast<std::int32_t>(n), "PLIANT_deformable/transient.amplitude",
+                     fmt::format("makes no knock: {:g} Hz is above {:g} of the touch rate, {:g} Hz",
+                                 d->transient_frequency, kMostKnock, level.simulation.touch_rate),
+                     "lower `transient.frequency`, or raise `touch_rate`"});
   // An error budget chooses the law of a sphere by it.
   if (!node.deformable || !(node.deformable->young > 0.0) || !(node.deformable->thickness > 0.0) ||
       node.deformable->error > 0.0)

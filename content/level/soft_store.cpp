@@ -18,7 +18,7 @@ fs::path g_soft_store;
 
 constexpr std::uint64_t kBegin = 0x32746f6f66546c50, kEnd = ~kBegin;  // of a file
 
-// A structured binding names every member: who adds one to these is told here.
+// A structured binding names every member: a new one stops the build here.
 void visit_members(auto& io, auto& of, const BuiltMesh*) {
   auto& [mesh, draw, report, pinned, handle] = of;
   io(mesh, draw, report, pinned, handle);
@@ -26,7 +26,7 @@ void visit_members(auto& io, auto& of, const BuiltMesh*) {
 void visit_members(auto& io, auto& of, const Mesh*) {
   auto& [name, vertex_count, px, py, pz, nx, ny, nz, area, triangles, across, tree, zone_box, zone_neighbour_first,
          zone_neighbours, crease, split_normals, corner_normal, stiffness_factor, friction_factor, damping_factor,
-         relaxation_factor, of_source, box, mean_edge, closed] = of;
+         relaxation_factor, relief, of_source, box, mean_edge, closed] = of;  // no relief: tissue has none
   io(name, vertex_count, px, py, pz, nx, ny, nz, area, triangles, across, tree, zone_box, zone_neighbour_first,
      zone_neighbours, crease, split_normals, corner_normal, stiffness_factor, friction_factor, damping_factor,
      relaxation_factor, of_source, box, mean_edge, closed);

@@ -12,6 +12,7 @@
 #include "content/level/spawn_device.h"
 #include "content/level/spawn_effect.h"
 #include "content/level/spawn_mesh.h"
+#include "content/level/spawn_relief.h"
 #include "content/level/spawn_soft.h"
 #include "content/level/spawn_state.h"
 
@@ -183,7 +184,9 @@ Result<World> spawn_level(const Level& level, std::vector<std::string>* notes) {
   Spawner spawner(level);
   if (Status s = spawner.run(); !s) return s.error();
   if (notes) notes->insert(notes->end(), spawner.notes().begin(), spawner.notes().end());
-  return spawner.take();
+  World world = spawner.take();
+  if (!world.images.empty()) add_relief(world, notes);  // else they come later, or never
+  return world;
 }
 
 }  // namespace pliant

@@ -82,11 +82,11 @@ class SplitNormals {
   }
 
  private:
-  // A unit vector in the tangent plane, along `wish` if possible.
-  static vec3 across(vec3 normal, vec3 wish) {
+  // A unit vector in the tangent plane, along `preferred` if possible.
+  static vec3 across(vec3 normal, vec3 preferred) {
     const vec3 x = std::abs(normal.x) < 0.9f ? vec3(1, 0, 0) : vec3(0, 1, 0);
     const vec3 any = normalize(x - normal * dot(x, normal));
-    return unit_or(dvec3(wish - normal * dot(wish, normal)), any);
+    return unit_or(dvec3(preferred - normal * dot(preferred, normal)), any);
   }
 
   const Mesh& mesh_;

@@ -22,20 +22,20 @@ using Place = glm::ivec3;  // half cells from the lattice's origin
 // Steps from a node to its edge neighbours: six long ones of a cell, eight short ones of sqrt(3)/2 cells. Step i and
 // step 13 - i are opposite.
 inline constexpr std::size_t kSteps = 14;
-inline const std::array<Place, kSteps> kStep{{{-2, 0, 0},
-                                              {0, -2, 0},
-                                              {0, 0, -2},
-                                              {-1, -1, -1},
-                                              {-1, -1, 1},
-                                              {-1, 1, -1},
-                                              {-1, 1, 1},
-                                              {1, -1, -1},
-                                              {1, -1, 1},
-                                              {1, 1, -1},
-                                              {1, 1, 1},
-                                              {0, 0, 2},
-                                              {0, 2, 0},
-                                              {2, 0, 0}}};
+inline const std::array<Place, kSteps> kNeighbours{{{-2, 0, 0},
+                                                    {0, -2, 0},
+                                                    {0, 0, -2},
+                                                    {-1, -1, -1},
+                                                    {-1, -1, 1},
+                                                    {-1, 1, -1},
+                                                    {-1, 1, 1},
+                                                    {1, -1, -1},
+                                                    {1, -1, 1},
+                                                    {1, 1, -1},
+                                                    {1, 1, 1},
+                                                    {0, 0, 2},
+                                                    {0, 2, 0},
+                                                    {2, 0, 0}}};
 inline constexpr std::size_t opposite(std::size_t step) {
   return kSteps - 1 - step;
 }

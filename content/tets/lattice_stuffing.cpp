@@ -97,12 +97,12 @@ class Stuffer {
       if (side_[node] != kInside) continue;
       const Place p = grid_.place(node);
       for (std::uint32_t step = 0; step < kSteps; ++step)
-        if (side_[grid_.index(p + kStep[step])] == kOutside) cuts_.push_back({node, step, 0.0});
+        if (side_[grid_.index(p + kNeighbours[step])] == kOutside) cuts_.push_back({node, step, 0.0});
     }
     parallel_for(cuts_.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Place p = grid_.place(cuts_[i].node);
-        cuts_[i].share = region_.crossing(grid_.position(p), grid_.position(p + kStep[cuts_[i].step]));
+        cuts_[i].share = region_.crossing(grid_.position(p), grid_.position(p + kNeighbours[cuts_[i].step]));
       }
     });
     report();
@@ -118,7 +118,7 @@ class Stuffer {
 
   dvec3 position(const Cut& c) const {
     const Place p = grid_.place(c.node);
-    return glm::mix(grid_.position(p), grid_.position(p + kStep[c.step]), c.share);
+    return glm::mix(grid_.position(p), grid_.position(p + kNeighbours[c.step]), c.share);
   }
 
   // Lattice nodes too close to the surface move onto it; the cuts on their other edges are discarded.
@@ -126,7 +126,7 @@ class Stuffer {
     std::vector<std::uint32_t> near;
     for (const Cut& c : cuts_) {
       near.push_back(c.node);
-      near.push_back(grid_.index(grid_.place(c.node) + kStep[c.step]));
+      near.push_back(grid_.index(grid_.place(c.node) + kNeighbours[c.step]));
     }
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
@@ -135,7 +135,7 @@ class Stuffer {
       const Cut* closest = nullptr;
       double distance = 0.0;
       for (std::size_t step = 0; step < kSteps; ++step) {
-        const std::uint32_t other = grid_.index(p + kStep[step]);
+        const std::uint32_t other = grid_.index(p + kNeighbours[step]);
         if (side_[other] != -side_[node]) continue;
         const Cut& c = side_[node] == kInside ? cut(node, step) : cut(other, opposite(step));
         const double share = side_[node] == kInside ? c.share : 1.0 - c.share;
@@ -185,7 +185,8 @@ class Stuffer {
     return output_[index];
   }
   std::uint32_t node_between(Place in, Place out) {
-    const auto step = static_cast<std::size_t>(std::find(kStep.begin(), kStep.end(), out - in) - kStep.begin());
+    const auto step =
+        static_cast<std::size_t>(std::find(kNeighbours.begin(), kNeighbours.end(), out - in) - kNeighbours.begin());
     Cut& c = cut(grid_.index(in), step);
     if (c.output == 0xffffffffu) {
       c.output = static_cast<std::uint32_t>(out_.nodes.size());

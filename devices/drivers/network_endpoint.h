@@ -1,5 +1,5 @@
 // The device side of driver "network", for the program of such a device (examples/network_device is the same in one
-// file, without Pliant). It serves one engine at a time; another one is told who uses the device.
+// file, without Pliant). It serves one engine at a time; another one gets the name of the one that uses the device.
 #pragma once
 
 #include <functional>

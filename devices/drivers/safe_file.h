@@ -1,5 +1,5 @@
 // A second name of a driver's line, for Driver::safe_line(): it keeps its number while the driver's thread opens the
-// line anew, and a guard process is told of it from another thread.
+// line anew, and a guard process gets it from another thread.
 #pragma once
 
 #include <fcntl.h>

@@ -34,7 +34,7 @@ class Watchman {
   pid_t child_ = -1;
 };
 
-// The guard process of one driver that is open, told of the line that holds now.
+// The guard process of one driver that is open, with the line that holds now.
 class LineWatch {
  public:
   // A sentence for a person, where nothing outside this program can end a force that the driver renders; may be empty.

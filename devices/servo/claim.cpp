@@ -53,10 +53,10 @@ std::string holder(const LockAddress& lock) {
   if (asking < 0) return {};
   ucred who{};
   socklen_t size = sizeof who;
-  const bool told = ::connect(asking, lock.raw(), lock.size) == 0 &&
-                    ::getsockopt(asking, SOL_SOCKET, SO_PEERCRED, &who, &size) == 0 && who.pid > 0;
+  const bool known = ::connect(asking, lock.raw(), lock.size) == 0 &&
+                     ::getsockopt(asking, SOL_SOCKET, SO_PEERCRED, &who, &size) == 0 && who.pid > 0;
   ::close(asking);
-  return told ? fmt::format(" (process {})", who.pid) : std::string();
+  return known ? fmt::format(" (process {})", who.pid) : std::string();
 }
 
 }  // namespace

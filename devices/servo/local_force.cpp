@@ -87,7 +87,7 @@ double model_radius(const DeviceModel& model, double most) {
   return std::min(kFarthestModel, room / slope);
 }
 
-DeviceModel told_elsewhere(const DeviceModel& model, const DeviceWrench& sent, double share, double most) {
+DeviceModel rendered_elsewhere(const DeviceModel& model, const DeviceWrench& sent, double share, double most) {
   DeviceModel out;
   out.position = model.position;
   out.rotation = model.rotation;

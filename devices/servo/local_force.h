@@ -23,7 +23,7 @@ double stiffness_along(const dmat3& by_position, dvec3 wanted);
 // pose. The force varies with position only, by `share` [1] of the slope; along the force the slope is limited so that
 // it stays below `most` [N]. Rotation and velocity terms are omitted, because they have no bound when frames are lost.
 // For a moving object the slope is omitted too: it would not be where the model puts it, and the force stays constant.
-DeviceModel told_elsewhere(const DeviceModel& model, const DeviceWrench& sent, double share, double most);
+DeviceModel rendered_elsewhere(const DeviceModel& model, const DeviceWrench& sent, double share, double most);
 
 // [m] Range within which a model may vary: its force stays below `most` [N]; 0: below kUsualForce. Beyond it the force
 // is that at this distance.

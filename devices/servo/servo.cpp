@@ -69,7 +69,7 @@ void Servo::adopt() {
   if (!guard_to_the_last(*inner_)) note_ = "more devices are open than a crash handler knows";
   if (const std::string sentence = watch_.start(*inner_, can_); !sentence.empty()) note_ = sentence;
   not_ready_ = 0;
-  tell();
+  publish_report();
 }
 
 // [s] Real time while a thread runs, else the virtual time of advance().
@@ -122,7 +122,7 @@ void Servo::close() {
   let_go_of(*inner_);
   watch_.end();
   inner_->close();
-  tell();
+  publish_report();
 }
 
 Status Servo::can_advance() const {
@@ -199,7 +199,7 @@ void Servo::put(const GuardInput& wanted, const DeviceWrench& wrench, bool make_
       model.rotation = guard_.rotation();
       const double square = dot(wanted.wrench.force, wanted.wrench.force);
       const double share = square > 0.0 ? std::clamp(dot(wrench.force, wanted.wrench.force) / square, 0.0, 1.0) : 0.0;
-      model = told_elsewhere(model, wrench, share, guard_.report().max_force);
+      model = rendered_elsewhere(model, wrench, share, guard_.report().max_force);
     }
     if (!inner_->write_model(model, wrench)) inner_->write(wrench);
     failed_ = false;
@@ -260,10 +260,10 @@ void Servo::measure(double now, bool sampled) {
   if (now > reported_at_) f.rate = static_cast<double>(f.periods - reported_periods_) / (now - reported_at_);
   reported_at_ = now;
   reported_periods_ = f.periods;
-  tell();
+  publish_report();
 }
 
-void Servo::tell() {
+void Servo::publish_report() {
   figures_.period_p50 = periods_.percentile_us(0.5);
   figures_.period_p99 = periods_.percentile_us(0.99);
   figures_.period_max = periods_.max_us();
@@ -329,7 +329,7 @@ void Servo::end_thread() {
   guard_.close(seconds(CLOCK_MONOTONIC));
   state_ = guard_.state();
   put({}, {}, true);
-  tell();
+  publish_report();
 }
 
 void Servo::halt() noexcept {

@@ -74,7 +74,7 @@ class Servo final : public Driver {
   GuardInput input(double now);
   void put(const GuardInput& wanted, const DeviceWrench& wrench, bool make_safe);
   void measure(double now, bool sampled);
-  void tell();
+  void publish_report();
   void run();
   void end_thread();
   bool slept();

@@ -105,7 +105,7 @@ class App {
   bool as_played() const;               // the picture comes from the renderer
   double orthographic() const;          // [m]; the renderer has only perspective
   void draw_toasts();
-  // `shown` [point]: the drawn size, possibly smaller than the wished one; a drag starts from it.
+  // `shown` [point]: the drawn size, possibly smaller than the requested one; a drag starts from it.
   void splitter(const char* name, double& place, double shown, bool vertical, ImVec2 low, ImVec2 high, double sign);
   void order_picture();
   void draw_opening();  // what takes long to open can be given up

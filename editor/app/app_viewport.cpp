@@ -83,7 +83,7 @@ void App::move_camera(const ViewportInput& in, bool active, bool taken) {
   if (in.over && wheel != 0 && !taken) editor.camera.zoom(static_cast<double>(wheel));
 }
 
-// The next picture tells which object is under the mouse; a click selects it.
+// The next picture says which object is under the mouse; a click selects it.
 void App::pick(const ViewportInput& in, bool taken) {
   if (in.released && !taken && !moved_since_press_) {
     asked_ = dvec2(in.x, in.y);

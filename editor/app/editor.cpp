@@ -285,7 +285,7 @@ void Editor::look_for_devices() {
              [](const Jobs::Stop&) { return [found = list_devices()](Editor& editor) { editor.devices = found; }; });
 }
 
-std::vector<std::string> Editor::device_wishes() const {
+std::vector<std::string> Editor::device_requests() const {
   std::vector<std::string> all{"any-force", "any-force; mouse", "any-pose", "any-pose; mouse", "any"};
   for (const DeviceInfo& device : devices)
     if (device.missing.empty() && !device.id.empty()) all.push_back(full_id(device));

@@ -127,7 +127,7 @@ class Editor {
   std::vector<DeviceInfo> devices;
   bool devices_looked_for = false;
   void look_for_devices();
-  std::vector<std::string> device_wishes() const;  // possible values of an `id`: kinds, then available ids
+  std::vector<std::string> device_requests() const;  // possible values of an `id`: kinds, then available ids
 
   Jobs jobs;
   std::string tool = "Select";          // the viewport's active tool

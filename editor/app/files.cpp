@@ -68,7 +68,7 @@ void Files::update() {
 
 void Files::choose(const FileRequest& request, std::function<void(const fs::path&)> then) {
   request_ = request;
-  ++wishes_;
+  ++requests_;
   then_ = std::move(then);
   if (request_.folder.empty()) {
     std::error_code failed;

@@ -46,8 +46,8 @@ class Files {
   void choose(const FileRequest& request, std::function<void(const std::filesystem::path&)> then);
   // For the built-in browser: the current request.
   const FileRequest& request() const { return request_; }
-  std::uint64_t wishes() const { return wishes_; }  // number of requests so far
-  void chosen(const std::filesystem::path& file);   // by the built-in browser
+  std::uint64_t requests() const { return requests_; }  // number of requests so far
+  void chosen(const std::filesystem::path& file);       // by the built-in browser
   void given_up() { then_ = nullptr; }
 
  private:
@@ -71,7 +71,7 @@ class Files {
   App& app_;
   bool native_;
   FileRequest request_;
-  std::uint64_t wishes_ = 0;
+  std::uint64_t requests_ = 0;
   std::function<void(const std::filesystem::path&)> then_;
   std::unique_ptr<FileLock> lock_;  // of the document's file; locked or not
   std::uint64_t locked_document_ = ~std::uint64_t{0};

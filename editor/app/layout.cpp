@@ -15,13 +15,13 @@ constexpr float kLeastLeft = 160, kLeastRight = 300, kLeastBottom = 90, kLeastVi
 
 }  // namespace
 
-// The wished size, reduced in a small window so that the viewport keeps its space.
+// The requested size, reduced in a small window so that the viewport keeps its space.
 Layout App::layout() const {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float rows = top_has_two_rows() ? kTopBar + kTopRow : kTopBar;
   const ImVec2 points(size.x / ui::scale(), size.y / ui::scale());
-  const auto shown = [](double wish, float least, float most) {
-    return std::clamp(wish, static_cast<double>(least), static_cast<double>(std::max(most, least)));
+  const auto shown = [](double requested, float least, float most) {
+    return std::clamp(requested, static_cast<double>(least), static_cast<double>(std::max(most, least)));
   };
   const float view = std::clamp(points.x - kLeastLeft - kLeastRight, kLeastView, kGoodView);
   Layout at;

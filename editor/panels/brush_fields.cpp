@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "viewer/ui/imgui_pen.h"
 #include "viewer/ui/widgets.h"
 
 namespace pliant {
@@ -52,20 +53,19 @@ void draw_falloff(const Brush& brush) {
   ui::known_as("falloff curve");
   ui::hint("Effect across the brush, rim to rim");
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 high(low.x + size.x, low.y + size.y);
-  list.AddRectFilled(low, high, ui::color(p.field), ui::px(4));
+  list.AddRectFilled(low, {low.x + size.x, low.y + size.y}, ui::color(p.field), ui::px(4));
   constexpr int kPoints = 64;
-  std::vector<ImVec2> line;
   const float pad = ui::px(5);
+  const PlotPanel panel{low.x + pad, low.y + pad, size.x - 2 * pad, size.y - 2 * pad, {-1.0, 1.0}, {}};
+  std::vector<PlotPoint> base, line;
   for (int i = 0; i <= kPoints; ++i) {
-    const double x = 2.0 * i / kPoints - 1.0, y = brush.strength * falloff_at(brush.falloff, std::abs(x));
-    line.emplace_back(low.x + pad + (size.x - 2 * pad) * static_cast<float>(i) / kPoints,
-                      high.y - pad - (size.y - 2 * pad) * static_cast<float>(y));
+    const double x = 2.0 * i / kPoints - 1.0;
+    base.push_back({x, 0.0});
+    line.push_back({x, brush.strength * falloff_at(brush.falloff, std::abs(x))});
   }
-  for (std::size_t i = 0; i + 1 < line.size(); ++i)
-    list.AddQuadFilled({line[i].x, high.y - pad}, line[i], line[i + 1], {line[i + 1].x, high.y - pad},
-                       ui::color(p.accent, 0.22f));
-  list.AddPolyline(line.data(), static_cast<int>(line.size()), ui::color(p.accent), 0, ui::px(1.5f));
+  ui::ImGuiPen pen(list, p.field);
+  draw_band(pen, panel, base, line, ui::plot_color(p.accent), 0.22);
+  draw_line(pen, panel, line, {ui::plot_color(p.accent), ui::px(1.5f)});
 }
 
 }  // namespace

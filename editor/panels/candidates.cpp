@@ -29,12 +29,12 @@ double cost_of(const ModelCandidate& it) {
   return std::max(it.cost, kLeastCost);
 }
 
-ui::PlotAxis axis_over(const std::vector<double>& values, const char* unit) {
+PlotAxis axis_over(const std::vector<double>& values) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  return {*least / kAir, *most * kAir, unit, 1.0, true};
+  return {*least / kAir, *most * kAir, true};
 }
 
-void tell(const ModelCandidate& it, const char* more) {
+void draw_tooltip(const ModelCandidate& it, const char* more) {
   ImGui::BeginTooltip();
   ImGui::TextUnformatted(it.label.c_str());
   std::string figures = fmt::format("Error {:.3g}, about {:.3g} \u00b5s a tick", it.error, it.cost);
@@ -100,9 +100,9 @@ void CandidateView::table(const ModelChoice& choice, float high, bool faded) {
     ui::known_as(it.label);
     if (ImGui::IsItemHovered()) {
       points_ = i;
-      tell(it, !chosen         ? ""
-               : choice.within ? "\nChosen: the cheapest within the budget"
-                               : "\nChosen: the nearest; none is within the budget");
+      draw_tooltip(it, !chosen         ? ""
+                       : choice.within ? "\nChosen: the cheapest within the budget"
+                                       : "\nChosen: the nearest; none is within the budget");
     }
     const auto figure = [&](const std::string& text) {
       ImGui::TableNextColumn();
@@ -125,8 +125,7 @@ void CandidateView::plot(const ModelChoice& choice, float wide, float high, bool
     errors.push_back(error_of(it));
     costs.push_back(cost_of(it));
   }
-  ui::Plot plot("Error against cost", "Error [1]", {wide, high}, axis_over(costs, "\u00b5s a tick"),
-                axis_over(errors, ""));
+  ui::Plot plot("Error against cost", "Error [1]", {wide, high}, axis_over(costs), "\u00b5s a tick", axis_over(errors));
   // The Pareto front, as steps from the cheapest on.
   std::vector<dvec2> front;
   for (const ModelCandidate& it : choice.tried)
@@ -159,7 +158,7 @@ void CandidateView::plot(const ModelChoice& choice, float wide, float high, bool
       points_ = i;
     }
   }
-  if (plot.hovered() && points_) tell(choice.tried[*points_], "");
+  if (plot.hovered() && points_) draw_tooltip(choice.tried[*points_], "");
 }
 
 }  // namespace pliant

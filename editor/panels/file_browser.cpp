@@ -26,8 +26,8 @@ class FileBrowser : public Panel {
 
   void draw(Editor& editor) override {
     const FileRequest& request = app_.files().request();
-    if (app_.files().wishes() != of_) {  // another request
-      of_ = app_.files().wishes();
+    if (app_.files().requests() != of_) {  // another request
+      of_ = app_.files().requests();
       name_ = request.name;
       begins_ = true;
       go(editor, request.folder);

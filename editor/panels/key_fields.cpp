@@ -67,13 +67,13 @@ bool node_field(Editor& editor, const Key& key, Json& value) {
   return true;
 }
 
-// The key for the device's id: wishes can be picked from a list.
+// The key for the device's id: requests can be picked from a list.
 const Key* device_id_key() {
   static const Key* const key = find_key(*find_extension("haptic_device"), "id");
   return key;
 }
 
-bool pick_device(Editor& editor, std::string& wish) {
+bool pick_device(Editor& editor, std::string& request) {
   if (!editor.devices_looked_for) editor.look_for_devices();
   const bool open = ImGui::BeginCombo("##pick", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_PopupAlignLeft);
   ui::known_as("Pick device");
@@ -84,9 +84,9 @@ bool pick_device(Editor& editor, std::string& wish) {
   bool picked = false;
   {
     const ui::Scope scope("Pick device");
-    for (const std::string& each : editor.device_wishes())
-      if (ui::selectable(each.c_str(), each == wish)) {
-        wish = each;
+    for (const std::string& each : editor.device_requests())
+      if (ui::selectable(each.c_str(), each == request)) {
+        request = each;
         picked = true;
       }
   }

@@ -52,8 +52,8 @@ void draw_law_plot(const Play& play, const PlayTrace& trace, const PlayTrace* be
     for (const auto* curve : {&law.slow, &law.fast})
       if (!curve->empty()) force = std::max(force, std::min(curve->back().y, 1.6 * force));
   }
-  ui::Plot plot("Law plot", "Force [N]", size, {0.0, kLawBeyond * depth, "mm deep", 1e3},
-                {0.0, ui::round_above(1.05 * force), "", 1.0});
+  ui::Plot plot("Law plot", "Force [N]", size, {0.0, kLawBeyond * depth, false, 1e3}, "mm deep",
+                {0.0, round_above(1.05 * force)});
   if (before) {
     const auto [a, b] = samples_between(*before, end - kPlotSeconds, end);
     draw_loop(plot, *before, a, b, p.faint, 1.0f);

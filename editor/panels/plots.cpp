@@ -106,8 +106,8 @@ class PlotsPanel : public Panel {
     const auto most = static_cast<std::size_t>(std::max(size.x, 10.0f));
     const auto strip = [&](const char* address, const char* title, double top, double shown, float high, bool labels,
                            const ImVec4& color, auto value) {
-      ui::Plot plot(address, title, {size.x, high}, {begin, end, "s", 1.0},
-                    {0.0, ui::round_above(1.05 * top), "", shown}, labels);
+      ui::Plot plot(address, title, {size.x, high}, {begin, end}, labels ? "s" : nullptr,
+                    {0.0, round_above(1.05 * top), false, shown});
       if (before) {
         const auto points = columns(*before, begin, end, most, value);
         plot.curve(

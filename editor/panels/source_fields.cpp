@@ -58,7 +58,7 @@ void SourceFields::draw(Editor& editor, Play& play) {
   const std::vector<std::string> names = effector_names(editor, play);
   std::vector<std::string> choices{kLevel, kMouseSource, kScript, kOrbit, kNoSource};
   if (!editor.devices_looked_for) editor.look_for_devices();
-  for (const std::string& wish : editor.device_wishes()) choices.push_back(wish);
+  for (const std::string& request : editor.device_requests()) choices.push_back(request);
   if (names.empty()) ui::dim("The level has no probe and no tool.");
   for (const std::string& name : names) draw_source(play, name, choices);
   if (!play.on())

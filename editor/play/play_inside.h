@@ -21,7 +21,7 @@ struct PlayRun::Inside {
   std::vector<TickRow> rows;
   KeptRecording* kept = nullptr;  // the session's recorder fills and owns it; null: no probe and no tool
   std::vector<PlayHold> holds;    // so far
-  PlayStatus status;              // as told last
+  PlayStatus status;              // as reported last
   std::vector<std::array<std::uint64_t, 4>> limited;
   std::vector<std::string> notes;
 
@@ -57,13 +57,13 @@ struct PlayRun::Inside {
   dquat held{1, 0, 0, 0};  // its rotation while dragged
 
   void say(const std::string& note) { notes.push_back(note); }
-  void tell();  // publishes `status`
+  void report();  // publishes `status`
   PlayPast past() const;
   Level remember(const SessionEffector& effector) const;
   void bring_back(SessionEffector& effector, const Level& level);
   void apply(const std::string& name, const PlaySource& source);
   // Connects a device, or the mouse if there is none.
-  Status connect(const SessionEffector& effector, const std::string& wish, bool& by_mouse);
+  Status connect(const SessionEffector& effector, const std::string& id, bool& by_mouse);
   bool feels() const;  // a real device, or one that cannot be stepped
   void view(DevicesView& out) const;
   void apply_all();

@@ -33,21 +33,21 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
   if (!effector) return;
   const auto index = static_cast<std::size_t>(effector - inner->effectors.data());
   PlaySource::Kind kind = source.kind;
-  std::string wish = source.what;
+  std::string id = source.what;
   if (kind == PlaySource::Kind::kLevel && of_level[index].driver == DriverKind::kMouse) kind = PlaySource::Kind::kMouse;
   if (kind == PlaySource::Kind::kLevel && of_level[index].driver == DriverKind::kExternal &&
       !of_level[index].id.empty()) {
     kind = PlaySource::Kind::kDriver;
-    wish = of_level[index].id;
-    if (!run.options_.allowed.contains(wish)) {
-      DeviceRequest request = device_request(wish);
+    id = of_level[index].id;
+    if (!run.options_.allowed.contains(id)) {
+      DeviceRequest request = device_request(id);
       for (const std::string& sentence : request.refused)
         say(
             fmt::format("`{}`: the level asks for more than it may: {}; pick the device in the tab Devices, or press "
                         "Play and allow it",
                         name, sentence));
-      wish = std::move(request.allowed);
-      if (wish.empty()) kind = PlaySource::Kind::kNone;
+      id = std::move(request.allowed);
+      if (id.empty()) kind = PlaySource::Kind::kNone;
     }
   }
   if (moved == name) {
@@ -69,7 +69,7 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
   }
   if (kind == PlaySource::Kind::kDriver) {
     bool by_mouse = false;
-    if (const Status done = connect(*effector, wish, by_mouse); !done) {
+    if (const Status done = connect(*effector, id, by_mouse); !done) {
       say(fmt::format("`{}`: {}", name, done.error().message()));
       sources[index] = {PlaySource::Kind::kNone, {}};
       static_cast<void>(session->release(name));
@@ -135,9 +135,9 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
   if (kind != PlaySource::Kind::kNone) static_cast<void>(session->release(name));
 }
 
-Status PlayRun::Inside::connect(const SessionEffector& effector, const std::string& wish, bool& by_mouse) {
+Status PlayRun::Inside::connect(const SessionEffector& effector, const std::string& id, bool& by_mouse) {
   if (there.empty()) there = list_devices();
-  auto chosen = choose_device(wish, there);
+  auto chosen = choose_device(id, there);
   if (!chosen) return chosen.error();
   for (const std::string& note : chosen->notes) say(fmt::format("`{}`: {}", effector.name, note));
   by_mouse = chosen->id.empty();

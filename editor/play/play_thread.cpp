@@ -89,7 +89,7 @@ void PlayRun::run() {
   close(in);
   if (!error.empty()) in.status.error = error;
   in.status.phase = PlayPhase::kEnded;
-  in.tell();
+  in.report();
   const std::lock_guard lock(mutex_);
   ended_ = true;
   busy_ = false;
@@ -97,7 +97,7 @@ void PlayRun::run() {
   changed_.notify_all();
 }
 
-void PlayRun::Inside::tell() {
+void PlayRun::Inside::report() {
   run.reported_.write() = status;
   run.reported_.publish();
 }
@@ -367,7 +367,7 @@ void PlayRun::show(Inside& in) {
   shown.soft_step_ms = 1e3 * p.world.simulation.soft_step;
   shown.hash = still ? in.hash : std::string();
   shown.findings = in.findings;
-  in.tell();
+  in.report();
 }
 
 // Devices first, so that none keeps a force during shutdown. The session stays until no picture needs its world.

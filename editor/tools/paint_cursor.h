@@ -1,4 +1,4 @@
-// What is drawn at the mouse while painting.
+// The brush drawn at the mouse while painting.
 #pragma once
 
 #include <string>

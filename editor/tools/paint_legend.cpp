@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "editor/tools/painting.h"
+#include "plot/heat.h"
+#include "viewer/ui/imgui_pen.h"
 #include "viewer/ui/widgets.h"
 
 namespace pliant {
@@ -14,17 +16,6 @@ namespace {
 constexpr float kHigh = 150, kWide = 14;  // [point] of the ramp
 
 }  // namespace
-
-ImVec4 ramp(double t) {
-  const dvec3 c[] = {{0.2777, 0.0054, 0.3341},     {0.1051, 1.4046, 1.3846},   {-0.3309, 0.2148, 0.0951},
-                     {-4.6342, -5.7991, -19.3324}, {6.2283, 14.1799, 56.6906}, {4.7764, -13.7451, -65.3530},
-                     {-5.4355, 4.6459, 26.3124}};
-  t = std::clamp(t, 0.0, 1.0);
-  dvec3 color(0);
-  for (int i = 6; i >= 0; --i) color = c[i] + t * color;
-  const vec3 x(glm::clamp(color, dvec3(0), dvec3(1)));
-  return {x.x, x.y, x.z, 1.0f};
-}
 
 std::vector<LegendTick> legend_ticks(bool share, double low, double high) {
   if (share) return {{0.0, 0.0}, {0.25, 0.25}, {0.5, 0.5}, {0.75, 0.75}, {1.0, 1.0}};
@@ -63,13 +54,8 @@ void draw_legend(const Editor& editor, Channel channel, ImVec2 at, ImDrawList& l
   const ImVec2 top(low.x + pad, low.y + ui::px(ui::kSpace) + line + ui::px(ui::kSpace)),
       bottom(top.x + ui::px(kWide), high.y - pad);
   const float length = bottom.y - top.y;
-  constexpr int kSteps = 40;
-  for (int i = 0; i < kSteps; ++i) {
-    const float y0 = bottom.y - length * static_cast<float>(i) / kSteps, y1 = y0 - length / kSteps;
-    const ImU32 a = ui::color(ramp(static_cast<double>(i) / kSteps)),
-                b = ui::color(ramp(static_cast<double>(i + 1) / kSteps));
-    list.AddRectFilledMultiColor({top.x, y1}, {bottom.x, y0}, b, b, a, a);
-  }
+  ui::ImGuiPen pen(list, p.panel);
+  draw_color_bar(pen, {top.x, top.y, bottom.x - top.x, length}, true, heat);
   for (const LegendTick& tick : ticks) {
     const float y = bottom.y - length * static_cast<float>(tick.place);
     const bool neutral = tick.value == static_cast<double>(unpainted(channel));

@@ -7,9 +7,8 @@
 
 namespace pliant {
 
-// As editor_solid.frag colours a share `t` [1] of the range.
-ImVec4 ramp(double t);
-// Places on the ramp [1] and the values there: for a factor powers of two, for a share tenths that matter; both ends.
+// Places on the colour bar [1] and the values there: for a factor powers of two, for a share tenths that matter; both
+// ends.
 struct LegendTick {
   double place, value;
 };

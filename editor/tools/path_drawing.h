@@ -1,4 +1,4 @@
-// What the path tool draws beside its keys: the effector at each of them, and bodies where they rest.
+// Drawn by the path tool beside its keys: the effector at each of them, and bodies where they rest.
 #pragma once
 
 #include <memory>

@@ -15,7 +15,5 @@ void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const 
                const std::vector<bool>& selected, const SignColors& colors, std::vector<ViewLine>& lines,
                std::vector<ViewSign>& signs);
 inline constexpr vec4 kPinnedColor{0.36f, 0.66f, 0.95f, 1.0f}, kHandleColor{0.93f, 0.73f, 0.28f, 1.0f};  // encoded
-// [1] colour of a painted value, 0 to 1, as shaders/editor_solid.frag has it.
-vec3 ramp(float t);
 
 }  // namespace pliant

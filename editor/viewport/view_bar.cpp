@@ -9,7 +9,9 @@
 #include "editor/tools/gizmo_math.h"
 #include "editor/viewport/frames.h"
 #include "editor/viewport/signs.h"
+#include "plot/heat.h"
 #include "runtime/printable.h"
+#include "viewer/ui/imgui_pen.h"
 #include "viewer/ui/widgets.h"
 
 namespace pliant {
@@ -61,16 +63,8 @@ void draw_legend(const ViewSettings& view, const ViewportInput& in, ImDrawList& 
                      ui::color(p.raised, 0.94f), ui::px(6));
   text_at(list, low, ui::color(p.text), title);
   const float top = low.y + line + ui::px(2);
-  constexpr int kSteps = 24;
-  const auto tint = [](float t) {
-    const vec3 c = ramp(t);
-    return ImGui::ColorConvertFloat4ToU32({c.x, c.y, c.z, 1.0f});
-  };
-  for (int i = 0; i < kSteps; ++i) {
-    const float a = static_cast<float>(i) / kSteps, b = static_cast<float>(i + 1) / kSteps;
-    list.AddRectFilledMultiColor({low.x + a * wide, top}, {low.x + b * wide, top + high}, tint(a), tint(b), tint(b),
-                                 tint(a));
-  }
+  ui::ImGuiPen pen(list, {});
+  draw_color_bar(pen, {low.x, top, wide, high}, false, heat);
   const double first = share ? 0.0 : view.value_low, last = share ? 1.0 : view.value_high;
   const auto mark = [&](double value, float t) {
     const std::string text = fmt::format("{:.3g}", value);

@@ -51,7 +51,8 @@ Result<PressBench> PressBench::make(const Level& level, const PressPlaces* place
   surface.damping_ratio = 1.0;
   surface.contact_damping = 0.0;
   surface.contact_damping_material = false;
-  surface.friction_static = surface.friction_sliding = 0.0;
+  surface.friction_static = surface.friction_sliding = surface.friction_viscous = 0.0;
+  surface.texture_amplitude = surface.transient_amplitude = surface.relief = 0.0;
   bench.places_ = places ? *places : press_places(bench.mesh());
   bench.aside_ = kAside * surface.reach;
   const Pose pose = bench.world_.registry.get<Pose>(bench.object_);

@@ -110,7 +110,7 @@ void remark(double bulge, const SurfaceTruth& truth, ModelChoice& choice) {
   const ModelCandidate& it = choice.tried[choice.chosen];
   choice.remarks.push_back(fmt::format(
       "field back end: the force is the CPU's with either, the heights of the two agree to {:.2g} of the largest, so "
-      "that no budget tells them apart; `run --field gpu` spares {:.2g} KB a picture here",
+      "that no budget distinguishes them; `run --field gpu` spares {:.2g} KB a picture here",
       kGpuAgrees, kBytes * 1e-3 * it.vertices));
 }
 

@@ -44,9 +44,9 @@ bool does(const std::function<void()>& work, const std::function<bool()>& stop) 
   return true;
 }
 
-void open_wish(Opening& opening, const std::string& wish, bool list) {
+void open_request(Opening& opening, const std::string& request, bool list) {
   if (list) opening.there = list_devices();
-  opening.chosen = choose_device(wish, opening.there);
+  opening.chosen = choose_device(request, opening.there);
   if (!opening.chosen || opening.chosen->id.empty()) return;
   const std::string& id = opening.chosen->id;
   opening.made = make_device(id);
@@ -86,7 +86,7 @@ Status DeviceLinks::open(World& world, SimulatedHands& held, bool windowed, cons
     const std::string name = name_in(world, hand);
     const auto opening = std::make_shared<Opening>();
     opening->there = there;
-    if (!does([opening, wish = device.id, list = !listed] { open_wish(*opening, wish, list); }, stop)) {
+    if (!does([opening, request = device.id, list = !listed] { open_request(*opening, request, list); }, stop)) {
       gave_up_ = true;
       return Error{"probe `" + name + "`", "its device was still being opened when the run was interrupted"};
     }

@@ -78,7 +78,7 @@ std::uint8_t HandSafety::now() const {
 HandSafety find_safety(const World& world, Entity hand) {
   if (world.touch)
     for (const ProbeState& probe : world.touch->probes)
-      if (probe.entity == hand) return {&probe.safety, nullptr};
+      if (probe.entity == hand) return {&probe.safety, probe.has_torque ? &probe.torque_safety : nullptr};
   if (world.tools)
     for (const std::unique_ptr<ToolTouchState>& tool : world.tools->tools)
       if (tool->entity == hand) return {&tool->force_safety, &tool->torque_safety};
@@ -91,13 +91,15 @@ std::vector<Note> explain_limits(const World& world, Entity hand, const std::str
   const HapticDevice* device = find_device(world, hand);
   if (!safety.force || !device) return notes;
   const SafetyLimits force = force_limits(*device);
-  const std::string who = (safety.torque ? "tool `" : "probe `") + name + "`";
+  const Handle6* const handle = world.registry.find<Handle6>(hand);
+  const std::string who = (handle ? "tool `" : "probe `") + name + "`";
   explain(safety.force->tally, who, name,
           {"force", "max_force", "N", force.force, force.slew, force.stiffness / force.scale, "0.2 N"}, notes);
   if (std::optional<Note> softened = softened_note(world, hand, name, safety.force->least_share))
     notes.push_back(std::move(*softened));
   if (!safety.torque) return notes;
-  const SafetyLimits torque = torque_limits(*device, world.registry.get<Handle6>(hand));
+  const SafetyLimits torque =
+      torque_limits(*device, handle ? static_cast<const HandleParameters&>(*handle) : HandleParameters{});
   explain(safety.torque->tally, who, name, {"torque", "max_torque", "N m", torque.force, torque.slew, 0.0, "0.2 N m"},
           notes);
   return notes;

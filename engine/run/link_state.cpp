@@ -74,7 +74,7 @@ double LinkState::may_leave(const DeviceWrench& wrench, double now) {
   report_.wanted = wrench;
   report_.sent = {share * wrench.force, share * wrench.torque, share * wrench.grip};
   report_.force = length(report_.sent.force);
-  if (now - reported_at_ >= kReportEvery || !reported_ || renewed_ || !may) tell(now);
+  if (now - reported_at_ >= kReportEvery || !reported_ || renewed_ || !may) publish_report(now);
   return share;
 }
 
@@ -83,10 +83,10 @@ void LinkState::rest(const DeviceSample* sample) {
   if (sample) report_.sample = *sample;
   report_.wanted = report_.sent = {};
   report_.force = 0.0;
-  tell(now_);
+  publish_report(now_);
 }
 
-void LinkState::tell(double now) {
+void LinkState::publish_report(double now) {
   if (now - reported_at_ >= kReportEvery) {
     report_.figures.rate = static_cast<double>(report_.figures.samples - reported_samples_) / (now - reported_at_);
     reported_at_ = now;

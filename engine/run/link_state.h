@@ -39,7 +39,7 @@ class LinkState {
   enum Order : std::uint32_t { kArm = 1, kDisarm = 2, kStop = 4 };
   void to(DeviceState state, DeviceCause cause, double now);
   void follow_orders(double now);
-  void tell(double now);
+  void publish_report(double now);
   void warn(double elapsed);
 
   DeviceCapabilities can_;

@@ -20,7 +20,7 @@ struct ProbeSource {
   std::string words;   // options of the hand
 };
 
-// NAME=script:FILE.csv, NAME=orbit, NAME=hand[:WORDS], NAME=mouse or NAME=device:WISH.
+// NAME=script:FILE.csv, NAME=orbit, NAME=hand[:WORDS], NAME=mouse or NAME=device:REQUEST.
 Result<ProbeSource> parse_source(const std::string& argument);
 
 // Adds a node for each source whose name is not in the level: a point probe with its own device. Call before --set, so

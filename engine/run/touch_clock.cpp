@@ -91,7 +91,7 @@ void TouchClock::resume_devices() {
   for (auto [entity, device] : world_.registry.view<HapticDevice>()) device.status = before_pause_[i++];
 }
 
-void TouchClock::tell(double time) {
+void TouchClock::publish_figures(double time) {
   if (++count_ % (static_cast<std::uint64_t>(rate_ * kReportEvery) + 1) != 0) return;
   const std::uint64_t ns = now_ns();
   const Histogram& cost = schedule_.total();
@@ -140,7 +140,7 @@ void TouchClock::loop() {
     last_ = {index, wall.dt, static_cast<double>(index) * wall.dt,
              index > next ? static_cast<double>(index - next) * wall.dt : 0.0};
     tick(last_);
-    tell(last_.time);
+    publish_figures(last_.time);
   }
   if (standing) stood_overruns += clock.overruns() - pause_overruns;
   overruns_ = clock.overruns() - stood_overruns;

@@ -68,7 +68,7 @@ class TouchClock {
   void pause_devices();
   void end_after_error();
   void resume_devices();
-  void tell(double time);
+  void publish_figures(double time);
 
   World& world_;
   Schedule<World>& schedule_;

@@ -14,6 +14,7 @@ void take(World& world, Entity entity, const SurfaceSetting& setting) {
     if (object.entity != entity) continue;
     object.motion = setting.motion;
     object.kernel = setting.kernel;
+    object.texture = texture_of(setting.now);
   }
 }
 

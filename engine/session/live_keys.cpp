@@ -15,6 +15,7 @@ constexpr Fixed kFixed[] = {
     {"deformable.crease_angle", "the mesh is built with it"},
     {"deformable.error", "the model is chosen by it when the session opens"},
     {"deformable.carries", "what goes with it is laid out when the session opens"},
+    {"deformable.relief", "the drawn maps are made heights when the session opens"},
     {"soft_body.carries", "what goes with it is laid out when the session opens"},
     {"soft_body.under_gravity", "how the body begins is worked out when the session opens"},
     {"soft_body.density", "the tissue's masses are laid out when the session opens"},
@@ -35,7 +36,7 @@ constexpr Fixed kFixed[] = {
     {"handle.attachment", "the tissue's unknowns are laid out when the session opens"},
     {"handle.carried", "the tool's weight is laid out when the session opens"},
     {"handle.force", "its reduced model is laid out when the session opens"},
-    {"haptic_device.scale", "it goes with the driver, which is told its workspace when it is connected"},
+    {"haptic_device.scale", "it goes with the driver, whose workspace is set when it is connected"},
 };
 
 }  // namespace
@@ -70,6 +71,14 @@ const std::vector<LiveKey>& live_keys() {
       {"contact_radius", &D::contact_radius, nullptr},
       {"friction_static", &D::friction_static, nullptr},
       {"friction_sliding", &D::friction_sliding, nullptr},
+      {"friction_stribeck", &D::friction_stribeck, nullptr},
+      {"friction_viscous", &D::friction_viscous, nullptr},
+      {"texture.amplitude", &D::texture_amplitude, nullptr},
+      {"texture.wavelength", &D::texture_wavelength, nullptr},
+      {"texture.seed", &D::texture_seed, nullptr},
+      {"transient.amplitude", &D::transient_amplitude, nullptr},
+      {"transient.frequency", &D::transient_frequency, nullptr},
+      {"transient.decay", &D::transient_decay, nullptr},
       {"max_force", nullptr, &H::max_force},
       {"max_stiffness", nullptr, &H::max_stiffness},
       {"max_slew", nullptr, &H::max_slew},

@@ -92,7 +92,7 @@ class Device {
   long wrong_key() const { return wrong_key_; }  // frames
 
   // Sends the handle's position and velocity in metres, Y up.
-  void tell(const float position[3], const float velocity[3]) {
+  void send_state(const float position[3], const float velocity[3]) {
     if (engine_ == 0) return;
     Frame frame = begin(kState, engine_);
     frame.put(heard_);            // the engine's newest frame
@@ -312,7 +312,7 @@ int main(int count, char** arguments) {
   double next = now();
   for (long tick = 1;; ++tick) {
     device.hear();
-    device.tell(position, velocity);
+    device.send_state(position, velocity);
     device.render(position, velocity, force);
     for (int i = 0; i < 3; ++i) {
       const float pull = kSpring * ((i == 1 ? kGoal : 0.0f) - position[i]) - kDamping * velocity[i] + force[i];

@@ -1,5 +1,5 @@
 // The authored parameters of surfaces, bodies, probes, tools and devices. Each struct is one extension of the level
-// format; its members are the keys (docs/level-format.md, docs/reference.md).
+// format; its members are the keys (docs/level-format.md).
 #pragma once
 
 #include <array>
@@ -46,16 +46,25 @@ struct DeformableParameters {
   Response response = Response::kFollow;
   Shape shape = Shape::kVolume;
   Distance distance = Distance::kChord;
-  double reach = 0.0;             // [m] radius R of the field; 0: 0.08 of the object's diagonal
-  double volume = 1.0;            // [1] chi: share of the volume that the shape `volume` conserves
-  double contact_radius = 0.0;    // [m] a of the shapes punch, hertz, kelvinlet; 0: a fifth of the reach
-  double friction_static = 0.4;   // [1] mu_s
-  double friction_sliding = 0.3;  // [1] mu_d <= mu_s
-  double crease_angle = 0.0;      // [rad] edges with a larger angle are creases; 0: the file's normals, else 0.7
-  double young = 0.0;             // [Pa] with thickness: calibrates the stiffness, replaces `stiffness`; 0: unset
-  double poisson = 0.45;          // [1]
-  double thickness = 0.0;         // [m] 0: half-space
-  double error = 0.0;             // [1] error budget from which unset model parameters are chosen; 0: none
+  double reach = 0.0;                  // [m] radius R of the field; 0: 0.08 of the object's diagonal
+  double volume = 1.0;                 // [1] chi: share of the volume that the shape `volume` conserves
+  double contact_radius = 0.0;         // [m] a of the shapes punch, hertz, kelvinlet; 0: a fifth of the reach
+  double friction_static = 0.4;        // [1] mu_s
+  double friction_sliding = 0.3;       // [1] mu_d <= mu_s
+  double friction_stribeck = 0.0;      // [m/s] v_s: speed over which friction falls from static to sliding; 0: at once
+  double friction_viscous = 0.0;       // [s/m] rise of the coefficient of sliding friction with speed
+  double texture_amplitude = 0.0;      // [m] root mean square of the roughness felt; 0: smooth
+  double texture_wavelength = 1e-3;    // [m] of its waves
+  double texture_seed = 1.0;           // [1] another number: another roughness of the same kind
+  double transient_amplitude = 0.0;    // [N s/m] a knock's force per speed of the impact; 0: none
+  double transient_frequency = 200.0;  // [Hz]
+  double transient_decay = 80.0;       // [1/s]
+  double relief = 0.0;                 // [1] share of the drawn relief that is felt: 1 as drawn, 0 none
+  double crease_angle = 0.0;           // [rad] edges with a larger angle are creases; 0: the file's normals, else 0.7
+  double young = 0.0;                  // [Pa] with thickness: calibrates the stiffness, replaces `stiffness`; 0: unset
+  double poisson = 0.45;               // [1]
+  double thickness = 0.0;              // [m] 0: half-space
+  double error = 0.0;                  // [1] error budget from which unset model parameters are chosen; 0: none
   Carries carries = Carries::kNothing;
 };
 

@@ -19,7 +19,7 @@ fs::path data_folder() {
 }
 
 fs::path content_folder() {
-  if (const char* told = std::getenv("PLIANT_CONTENT"); told && *told) return told;
+  if (const char* folder = std::getenv("PLIANT_CONTENT"); folder && *folder) return folder;
   std::error_code no;
   return fs::weakly_canonical(data_folder() / "content", no);  // in a build tree this is a link to the sources
 }

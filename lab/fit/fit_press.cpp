@@ -16,6 +16,7 @@
 #include "lab/fit/fit_level.h"
 #include "lab/fit/fit_record.h"
 #include "lab/study/pareto.h"
+#include "plot/cairo_pen.h"
 #include "plot/panel.h"
 
 namespace pliant {
@@ -102,18 +103,16 @@ void draw_record(Pen& pen, const PressRecord& record, const RecordFit& fit, cons
     off = std::max(off, std::abs(law.force[i] - record.force[i]));
   }
   const Prefix length = prefix_of(deepest), newton = prefix_of(strongest), rest = prefix_of(off);
-  std::vector<double> depth, force, model, residual, across, held_across, held_residual, kept_across, kept_residual,
-      held_depth, held_force, kept_depth, kept_force;
+  std::vector<double> depth, force, model, residual, across;
+  std::vector<PlotPoint> held_force, held_residual, kept_force, kept_residual;
   for (std::size_t i = 0; i < record.size(); ++i) {
     depth.push_back(record.depth[i] * length.factor);
     force.push_back(record.force[i] * newton.factor);
     model.push_back(law.force[i] * newton.factor);
     residual.push_back((law.force[i] - record.force[i]) * rest.factor);
     across.push_back(record.time.empty() ? depth.back() : record.time[i]);
-    (fit.held[i] ? held_depth : kept_depth).push_back(depth.back());
-    (fit.held[i] ? held_force : kept_force).push_back(force.back());
-    (fit.held[i] ? held_across : kept_across).push_back(across.back());
-    (fit.held[i] ? held_residual : kept_residual).push_back(residual.back());
+    (fit.held[i] ? held_force : kept_force).push_back({depth.back(), force.back()});
+    (fit.held[i] ? held_residual : kept_residual).push_back({across.back(), residual.back()});
   }
   const auto range = [](const std::vector<double>& values, bool with_zero) {
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -125,25 +124,21 @@ void draw_record(Pen& pen, const PressRecord& record, const RecordFit& fit, cons
   const PlotPanel left{110, 150, 640, 500, range(depth, true), range(both, true)};
   const PlotPanel right{890, 150, 670, 500, range(across, false), range(residual, true)};
   draw_axes(pen, left, fmt::format("depth [{}m]", length.name), fmt::format("force [{}N]", newton.name));
-  draw_dots(pen, left, kept_depth, kept_force, kBlue, dot, true);
-  draw_dots(pen, left, held_depth, held_force, kOrange, dot, true);
+  draw_dots(pen, left, kept_force, kBlue, dot, true, 0.75);
+  draw_dots(pen, left, held_force, kOrange, dot, true, 0.75);
   // Without time the rows are sorted by depth, so that a line can be drawn through them.
   std::vector<std::size_t> order(record.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   if (record.time.empty())
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return depth[a] < depth[b]; });
-  std::vector<double> line_x, line_y;
-  for (const std::size_t i : order) {
-    line_x.push_back(depth[i]);
-    line_y.push_back(model[i]);
-  }
-  draw_line(pen, left, line_x, line_y, kInk, 1.8);
+  std::vector<PlotPoint> line;
+  for (const std::size_t i : order) line.push_back({depth[i], model[i]});
+  draw_line(pen, left, line, {kInk});
   draw_axes(pen, right, record.time.empty() ? fmt::format("depth [{}m]", length.name) : "time [s]",
             fmt::format("model - measured [{}N]", rest.name));
-  draw_dots(pen, right, kept_across, kept_residual, kBlue, dot, true);
-  draw_dots(pen, right, held_across, held_residual, kOrange, dot, true);
-  pen.color(kInk);
-  pen.line(right.x, right.py(0), right.x + right.w, right.py(0), 1.2);
+  draw_dots(pen, right, kept_residual, kBlue, dot, true, 0.75);
+  draw_dots(pen, right, held_residual, kOrange, dot, true, 0.75);
+  draw_level(pen, right, 0.0, {kInk, 1.2});
   const double title = pen.text(60, 46, 26, 0, "fit", true);
   pen.text(60 + title + 18, 46, 16, 0, record.name);
   double y = 74;
@@ -153,8 +148,8 @@ void draw_record(Pen& pen, const PressRecord& record, const RecordFit& fit, cons
     y += 19;
   }
   draw_keys(pen, left.x, 134, 1560,
-            {{kBlue, fmt::format("fitted rows: RMS {:.2g} % of the force", 100 * law.share), true},
-             {kOrange, fmt::format("rows held out: {:.2g} %", 100 * law.held_share), true},
+            {{kBlue, fmt::format("fitted rows: RMS {:.2g} % of the force", 100 * law.share), KeyMark::kDot},
+             {kOrange, fmt::format("rows held out: {:.2g} %", 100 * law.held_share), KeyMark::kDot},
              {kInk, law.model.law}});
   y = 722;
   for (const std::string& sentence : fit.notes)
@@ -225,12 +220,13 @@ int fit_press(const FitOptions& options) {
   const Result<PressRecord> record = read_press(options.in, options.probe);
   if (!record) return fail(kFailed, record.error());
   for (const std::string& sentence : record->notes) note(sentence);
-  RecordFitOptions wish;
-  wish.law = options.law;
-  wish.model = {options.radius, options.poisson < 0 ? 0.45 : options.poisson, options.damping, options.contact};
-  wish.hold_out = options.hold_out;
-  wish.confidence = options.confidence;
-  const Result<RecordFit> fit = fit_record(*record, wish);
+  RecordFitOptions record_options;
+  record_options.law = options.law;
+  record_options.model = {options.radius, options.poisson < 0 ? 0.45 : options.poisson, options.damping,
+                          options.contact};
+  record_options.hold_out = options.hold_out;
+  record_options.confidence = options.confidence;
+  const Result<RecordFit> fit = fit_record(*record, record_options);
   if (!fit) return fail(kFailed, fit.error());
   const LawFit& best = fit->laws[fit->best];
   std::optional<Level> level;

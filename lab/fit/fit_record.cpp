@@ -95,21 +95,21 @@ std::vector<bool> held_rows(std::size_t rows, double share) {
   return held;
 }
 
-Result<RecordFit> fit_record(const PressRecord& record, const RecordFitOptions& wish) {
+Result<RecordFit> fit_record(const PressRecord& record, const RecordFitOptions& options) {
   RecordFit out;
-  out.held = held_rows(record.size(), wish.hold_out);
+  out.held = held_rows(record.size(), options.hold_out);
   out.fitted = static_cast<std::size_t>(std::count(out.held.begin(), out.held.end(), false));
   std::string why;
   for (const std::string& law : press_laws()) {
-    if (wish.law != "auto" && wish.law != law) continue;
-    const std::optional<PressModel> model = press_model(law, record, wish.model, why);
+    if (options.law != "auto" && options.law != law) continue;
+    const std::optional<PressModel> model = press_model(law, record, options.model, why);
     if (!model) continue;
     if (out.fitted <= model->parameters.size()) {
       why = fmt::format("{} rows do not make {} parameters; measure more, or hold out fewer", out.fitted,
                         model->parameters.size());
       continue;
     }
-    out.laws.push_back(fit_law(*model, record, out.held, wish.confidence));
+    out.laws.push_back(fit_law(*model, record, out.held, options.confidence));
   }
   if (out.laws.empty()) return Error{record.name, why};
   const std::size_t unseen = record.size() - out.fitted;
@@ -121,12 +121,12 @@ Result<RecordFit> fit_record(const PressRecord& record, const RecordFitOptions& 
     if (error(fit) <= kAlike * least && (!best || fit.parameters.size() < best->parameters.size())) best = &fit;
   out.best = static_cast<std::size_t>(best - out.laws.data());
   if (unseen > 0 && unseen < kFewHeld && out.laws.size() > 1)
-    out.notes.push_back(fmt::format("{} row{} held out: too few to tell laws apart; hold out more, or measure more",
+    out.notes.push_back(fmt::format("{} row{} held out: too few to distinguish laws; hold out more, or measure more",
                                     unseen, unseen == 1 ? " is" : "s are"));
   if (!best->converged)
     out.notes.push_back("the fit of " + best->model.law + " did not converge; its intervals mean little");
   if (best->singular)
-    out.notes.push_back("the record does not tell the parameters of " + best->model.law +
+    out.notes.push_back("the record does not determine the parameters of " + best->model.law +
                         " apart, so that there are no intervals; press deeper, or at several speeds");
   for (const FittedParameter& each : best->parameters)
     if (each.on_bound)

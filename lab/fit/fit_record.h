@@ -44,6 +44,6 @@ struct RecordFit {
 // Marks the held-out rows: the given share, at least one, in evenly spaced stretches.
 std::vector<bool> held_rows(std::size_t rows, double share);
 
-Result<RecordFit> fit_record(const PressRecord& record, const RecordFitOptions& wish);
+Result<RecordFit> fit_record(const PressRecord& record, const RecordFitOptions& options);
 
 }  // namespace pliant

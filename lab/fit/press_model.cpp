@@ -60,9 +60,9 @@ ContactRange contact_range(const PressRecord& record, bool open) {
 }
 
 // [Pa] Young's modulus of a half-space on which a sphere reaches the record's largest force at its deepest place.
-double sphere_modulus(const Sizes& size, const PressModelOptions& wish) {
-  const double plane = size.force / (4.0 / 3.0 * std::sqrt(wish.radius) * std::pow(size.depth, 1.5));
-  return plane * (1 - wish.poisson * wish.poisson);
+double sphere_modulus(const Sizes& size, const PressModelOptions& options) {
+  const double plane = size.force / (4.0 / 3.0 * std::sqrt(options.radius) * std::pow(size.depth, 1.5));
+  return plane * (1 - options.poisson * options.poisson);
 }
 
 // The law of a surface; `hertz` is a linear one whose stiffness follows from a modulus.
@@ -71,9 +71,10 @@ SpringLaw spring_of(const std::string& law) {
 }
 
 // Initial guesses for a law's own parameters.
-std::vector<std::vector<double>> law_starts(const std::string& law, const Sizes& size, const PressModelOptions& wish) {
+std::vector<std::vector<double>> law_starts(const std::string& law, const Sizes& size,
+                                            const PressModelOptions& options) {
   const double k = std::clamp(size.slope, R::kStiffness.min, R::kStiffness.max), d = size.depth;
-  if (law == "hertz") return {{sphere_modulus(size, wish)}};
+  if (law == "hertz") return {{sphere_modulus(size, options)}};
   const SpringLaw spring = spring_of(law);
   if (reads_key(spring, "cubic")) return {{0.9 * k, 0.1 * k / (d * d)}, {0.3 * k, k / (d * d)}};
   if (reads_key(spring, "stiffening")) return {{0.9 * k, 0.3 / d}, {0.2 * k, 3.0 / d}, {1.3 * k, -0.5 / d}};
@@ -100,31 +101,31 @@ const std::vector<std::string>& press_laws() {
   return laws;
 }
 
-std::optional<PressModel> press_model(const std::string& law, const PressRecord& record, const PressModelOptions& wish,
-                                      std::string& why) {
-  const ContactRange contact = contact_range(record, wish.contact);
+std::optional<PressModel> press_model(const std::string& law, const PressRecord& record,
+                                      const PressModelOptions& options, std::string& why) {
+  const ContactRange contact = contact_range(record, options.contact);
   // Bounds must hold for every contact depth; initial guesses depend on it.
   const Sizes size = sizes_of(record, contact.low);
   if (has_arm(spring_of(law)) && record.time.empty()) {
     why = fmt::format("the law {} needs a column of time", law);
     return std::nullopt;
   }
-  if (wish.damping && record.time.empty()) {
+  if (options.damping && record.time.empty()) {
     why = "damping needs a column of time";
     return std::nullopt;
   }
-  if (law == "hertz" && !(wish.radius > 0)) {
+  if (law == "hertz" && !(options.radius > 0)) {
     why = "the law hertz needs the radius of a spherical indenter; say --radius";
     return std::nullopt;
   }
   PressModel model;
   model.law = law;
-  model.wish = wish;
+  model.options = options;
   auto& list = model.parameters;
   const Sizes usual = sizes_of(record, contact.starts[0]);
   const double k = std::clamp(usual.slope, R::kStiffness.min, R::kStiffness.max);
   if (law == "hertz")
-    list.push_back(parameter("young", "Pa", {1e-3, 1e12}, sphere_modulus(usual, wish)));
+    list.push_back(parameter("young", "Pa", {1e-3, 1e12}, sphere_modulus(usual, options)));
   else
     list.push_back(parameter("stiffness", "N/m", R::kStiffness, k));
   const SpringLaw spring = spring_of(law);
@@ -142,13 +143,13 @@ std::optional<PressModel> press_model(const std::string& law, const PressRecord&
         {std::max(R::kRelaxationTime.min, 0.2 * size.least_step), std::min(R::kRelaxationTime.max, 20 * size.span)},
         0.1 * size.span));
   }
-  if (wish.damping) list.push_back(parameter("contact_damping", "N s/m", R::kContactDamping, 0.01 * k * size.span));
-  if (wish.contact)
+  if (options.damping) list.push_back(parameter("contact_damping", "N s/m", R::kContactDamping, 0.01 * k * size.span));
+  if (options.contact)
     list.push_back(parameter("contact", "m", {contact.low, contact.high}, 0.1 * (contact.high - contact.low)));
   for (const double met : contact.starts)
-    for (std::vector<double> start : law_starts(law, sizes_of(record, met), wish)) {
-      if (wish.damping) start.push_back(0.1 * list[start.size()].box.scale);
-      if (wish.contact) start.push_back(met);
+    for (std::vector<double> start : law_starts(law, sizes_of(record, met), options)) {
+      if (options.damping) start.push_back(0.1 * list[start.size()].box.scale);
+      if (options.contact) start.push_back(met);
       for (std::size_t i = 0; i < list.size(); ++i) start[i] = std::clamp(start[i], list[i].box.low, list[i].box.high);
       model.starts.push_back(Eigen::Map<Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size())));
     }
@@ -158,7 +159,7 @@ std::optional<PressModel> press_model(const std::string& law, const PressRecord&
 
 Deformable PressModel::deformable(const Eigen::VectorXd& p) const {
   Deformable out;
-  out.poisson = wish.poisson;
+  out.poisson = options.poisson;
   out.spring = spring_of(law);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const std::string& key = parameters[i].key;
@@ -171,7 +172,7 @@ Deformable PressModel::deformable(const Eigen::VectorXd& p) const {
     if (key == "contact_damping") out.contact_damping = value;
     if (key == "young") {
       out.young = value;
-      out.stiffness = calibrated_stiffness(value, wish.poisson, 0.0);
+      out.stiffness = calibrated_stiffness(value, options.poisson, 0.0);
     }
   }
   return out;
@@ -179,8 +180,8 @@ Deformable PressModel::deformable(const Eigen::VectorXd& p) const {
 
 void PressModel::predict(const PressRecord& record, const Eigen::VectorXd& p, std::vector<double>& force) const {
   const Deformable surface = deformable(p);
-  const double met = wish.contact ? p[p.size() - 1] : 0.0;
-  ContactLaw contact = contact_law(surface, motion(surface, 1e-3), 1.0, wish.radius);
+  const double met = options.contact ? p[p.size() - 1] : 0.0;
+  ContactLaw contact = contact_law(surface, motion(surface, 1e-3), 1.0, options.radius);
   force.resize(record.size());
   double before = 0.0, q = 0.0;
   for (std::size_t i = 0; i < record.size(); ++i) {

@@ -26,7 +26,7 @@ struct PressModelOptions {
 
 struct PressModel {
   std::string law;  // linear, cubic, exponential, sls, hertz
-  PressModelOptions wish;
+  PressModelOptions options;
   std::vector<ModelParameter> parameters;
   std::vector<Eigen::VectorXd> starts;  // initial guesses: some laws have several local minima
 
@@ -39,7 +39,7 @@ struct PressModel {
 // Names of the laws; `hertz` needs a radius, `sls` and damping need time.
 const std::vector<std::string>& press_laws();
 // Empty if the record or the request lacks something that the law needs; `why` gives the reason.
-std::optional<PressModel> press_model(const std::string& law, const PressRecord& record, const PressModelOptions& wish,
-                                      std::string& why);
+std::optional<PressModel> press_model(const std::string& law, const PressRecord& record,
+                                      const PressModelOptions& options, std::string& why);
 
 }  // namespace pliant

@@ -34,7 +34,8 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
                                                               const std::vector<PressedPlace>& places) {
   Scene scene;
   DeformableParameters smooth = surface;
-  smooth.friction_static = smooth.friction_sliding = 0.0;
+  smooth.friction_static = smooth.friction_sliding = smooth.friction_viscous = 0.0;
+  smooth.texture_amplitude = smooth.transient_amplitude = smooth.relief = 0.0;
   scene.add_surface("surface", data_of(primitives), smooth);
   DeviceParameters device;
   device.max_force = 1e3;
@@ -73,7 +74,7 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
       PressedTissue& state = out[i].emplace_back();
       state.depth = depth;
       state.force = dot(force, places[i].place.normal);
-      if (const Status told = session->stream("surface", stream); !told) return told.error();
+      if (const Status streamed = session->stream("surface", stream); !streamed) return streamed.error();
       for (const SurfaceSample& seen : places[i].seen) {
         const uvec3 t = built.triangles[seen.triangle];
         double& height = state.height.emplace_back(0.0);

@@ -8,6 +8,7 @@
 #include "lab/fit/tissue_fit.h"
 #include "lab/study/pareto.h"
 #include "lab/study/shapes/study_shapes.h"
+#include "plot/cairo_pen.h"
 #include "plot/panel.h"
 
 namespace pliant {
@@ -137,7 +138,7 @@ std::string json_of(const TissueFit& f, const Level& level) {
 
 void draw(Pen& pen, const TissueFit& f) {
   double deepest = 0.0, strongest = 0.0;
-  std::vector<double> all_x, all_f, all_s;
+  std::vector<PlotPoint> all_f, all_s;
   for (const HeldPlace& held : f.held)
     for (std::size_t i = 0; i < std::min(held.truth.presses.size(), held.model.size()); ++i) {
       deepest = std::max(deepest, held.truth.presses[i].depth * 1e3);
@@ -150,26 +151,23 @@ void draw(Pen& pen, const TissueFit& f) {
   draw_axes(pen, left, "depth [mm]", "force [N]");
   std::size_t number = 0;
   for (const HeldPlace& held : f.held) {
-    std::vector<double> depth{0.0}, truth{0.0}, model{0.0};
+    std::vector<PlotPoint> truth{{0.0, 0.0}}, model{{0.0, 0.0}};
     for (std::size_t i = 0; i < std::min(held.truth.presses.size(), held.model.size()); ++i) {
-      depth.push_back(held.truth.presses[i].depth * 1e3);
-      truth.push_back(held.truth.presses[i].force);
-      model.push_back(held.model[i].force);
+      const double depth = held.truth.presses[i].depth * 1e3;
+      truth.push_back({depth, held.truth.presses[i].force});
+      model.push_back({depth, held.model[i].force});
     }
-    draw_line(pen, left, depth, model, series_color(number), 1.6);
-    draw_dots(pen, left, depth, truth, series_color(number), 4, true);
+    draw_line(pen, left, model, {series_color(number), 1.6});
+    draw_dots(pen, left, truth, series_color(number), 4, true, 0.75);
     ++number;
-    all_x.push_back(static_cast<double>(number) - 0.5);
-    all_f.push_back(100 * held.force_error);
-    all_s.push_back(100 * held.surface_of_depth);
+    all_f.push_back({static_cast<double>(number) - 0.5, 100 * held.force_error});
+    all_s.push_back({static_cast<double>(number) - 0.5, 100 * held.surface_of_depth});
   }
   draw_axes(pen, right, "place that the fit has not seen", "error [%]");
-  for (const auto& [goal, color] : {std::pair{kForceGoal, kVermilion}, std::pair{kSurfaceGoal, kBlue}}) {
-    pen.color(color, 0.35);
-    pen.line(right.x, right.py(100 * goal), right.x + right.w, right.py(100 * goal), 3);
-  }
-  draw_dots(pen, right, all_x, all_f, kVermilion, 6, true);
-  draw_dots(pen, right, all_x, all_s, kBlue, 6, true);
+  for (const auto& [goal, color] : {std::pair{kForceGoal, kVermilion}, std::pair{kSurfaceGoal, kBlue}})
+    draw_level(pen, right, 100 * goal, {color, 3, false, 0.35});
+  draw_dots(pen, right, all_f, kVermilion, 6, true, 0.75);
+  draw_dots(pen, right, all_s, kBlue, 6, true, 0.75);
   pen.color(kInk);
   const double title = pen.text(60, 46, 26, 0, "fit", true);
   pen.text(60 + title + 18, 46, 16, 0,
@@ -182,9 +180,10 @@ void draw(Pen& pen, const TissueFit& f) {
     y += 19;
   }
   draw_keys(pen, left.x, top - 12, left.x + left.w + 60,
-            {{kInk, "dots: finite elements", true}, {kInk, "lines: the fitted surface, in the engine", false}});
+            {{kInk, "dots: finite elements", KeyMark::kDot}, {kInk, "lines: the fitted surface, in the engine"}});
   draw_keys(pen, right.x, top - 12, 1590,
-            {{kVermilion, "force, RMS (band: 5 %)", true}, {kBlue, "deepest dent, of the depth (band: 10 %)", true}});
+            {{kVermilion, "force, RMS (band: 5 %)", KeyMark::kDot},
+             {kBlue, "deepest dent, of the depth (band: 10 %)", KeyMark::kDot}});
 }
 
 void say(const TissueFit& f) {

@@ -90,7 +90,7 @@ Result<RunSeries> read_series(const fs::path& run) {
                     contact = place("in_contact"), object = place("object"), probe = place("probe"),
                     torque = place("tx");
   std::map<std::string, bool> tools = tools_of(file.parent_path() / "report.json");
-  const bool told = !tools.empty();
+  const bool reported = !tools.empty();
   std::map<std::string, std::size_t> number;
   std::size_t row = 1;
   std::vector<std::string> cells;
@@ -121,7 +121,7 @@ Result<RunSeries> read_series(const fs::path& run) {
     if (object < cells.size() && !cells[object].empty() &&
         std::find(series.objects.begin(), series.objects.end(), cells[object]) == series.objects.end())
       series.objects.push_back(cells[object]);
-    if (!told && torque < cells.size() && number_of(cells[torque]) != 0.0 && !std::isnan(number_of(cells[torque])))
+    if (!reported && torque < cells.size() && number_of(cells[torque]) != 0.0 && !std::isnan(number_of(cells[torque])))
       series.tool = true;
   }
   if (out.series.empty()) return Error{file.string(), "has no rows", "name a run that had a probe or a tool"};

@@ -13,6 +13,7 @@
 #include "lab/files/output_folder.h"
 #include "lab/plot/force_series.h"
 #include "lab/study/pareto.h"
+#include "plot/cairo_pen.h"
 #include "plot/panel.h"
 
 namespace pliant {
@@ -55,8 +56,8 @@ RunWords run_words(const std::vector<Drawn>& all) {
 }
 
 // Keeps the minimum and maximum of every stretch, so that no peak is lost.
-void thin(const std::vector<double>& x, const std::vector<double>& y, std::vector<double>& out_x,
-          std::vector<double>& out_y) {
+std::vector<PlotPoint> thinned(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<PlotPoint> out;
   const std::size_t stretch = std::max<std::size_t>(1, 2 * x.size() / kMostDrawnPoints);
   for (std::size_t begin = 0; begin < x.size(); begin += stretch) {
     const std::size_t end = std::min(begin + stretch, x.size());
@@ -66,11 +67,11 @@ void thin(const std::vector<double>& x, const std::vector<double>& y, std::vecto
       if (y[i] > y[high]) high = i;
     }
     for (const std::size_t i : {std::min(low, high), std::max(low, high)}) {
-      out_x.push_back(x[i]);
-      out_y.push_back(y[i]);
+      out.push_back({x[i], y[i]});
       if (low == high) break;
     }
   }
+  return out;
 }
 
 struct Column {
@@ -183,22 +184,17 @@ RunPanels draw_panels(Pen& pen, const RunWords& words, const DrawnRange& range) 
 
 void draw_series(Pen& pen, const RunPanels& panels, const Drawn& drawn, Color color) {
   const ForceSeries& s = drawn.series;
-  std::vector<double> x, y, millimetres;
-  for (const double value : s.depth) millimetres.push_back(value * 1e3);
+  std::vector<PlotPoint> loop;
   const std::size_t every = 1 + s.time.size() / kMostDrawnPoints;
   for (std::size_t k = 0; k < s.time.size(); k += every) {
     // Lines are interrupted out of contact: the path through the air is not part of the law.
     const bool pressed = s.normal[k] > 0 || (k >= every && s.normal[k - every] > 0) ||
                          (k + every < s.time.size() && s.normal[k + every] > 0);
-    x.push_back(pressed ? millimetres[k] : std::nan(""));
-    y.push_back(s.normal[k]);
+    loop.push_back({pressed ? s.depth[k] * 1e3 : std::nan(""), s.normal[k]});
   }
-  draw_line(pen, panels.loop, x, y, color, 1.8);
-  x.clear();
-  y.clear();
-  thin(s.time, s.normal, x, y);
-  draw_line(pen, panels.over, x, y, color, 1.8);
-  draw_line(pen, panels.spectrum, drawn.spectrum.frequency, drawn.spectrum.density, color, 1.2);
+  draw_line(pen, panels.loop, loop, {color});
+  draw_line(pen, panels.over, thinned(s.time, s.normal), {color});
+  draw_line(pen, panels.spectrum, points_of(drawn.spectrum.frequency, drawn.spectrum.density), {color, 1.2});
 }
 
 void draw_table(Pen& pen, const std::vector<Drawn>& all, std::size_t shown, const std::string& depth_head) {
@@ -236,7 +232,7 @@ void draw(Pen& pen, const std::vector<Drawn>& all, std::size_t shown) {
   pen.text(60 + title + 18, 44, 16, 0,
            shown < all.size() ? fmt::format("the first {} of {} {}; the table has all", shown, all.size(), words.who)
                               : fmt::format("{} {}", all.size(), words.who));
-  std::vector<PanelKey> keys;
+  std::vector<PlotKey> keys;
   for (std::size_t i = 0; i < shown; ++i) keys.push_back({series_color(i), all[i].name});
   draw_keys(pen, 60, 74, 1560, keys);
   const RunPanels panels = draw_panels(pen, words, drawn_range(all, shown));

@@ -7,7 +7,7 @@
 namespace pliant {
 
 std::filesystem::path corpus_folder() {
-  if (const char* told = std::getenv("PLIANT_CORPUS"); told && *told) return told;
+  if (const char* folder = std::getenv("PLIANT_CORPUS"); folder && *folder) return folder;
   std::error_code no;
   return std::filesystem::weakly_canonical(data_folder() / "corpus", no);
 }

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "plot/pen.h"
+#include "plot/axis.h"
+#include "plot/cairo_pen.h"
+#include "plot/heat.h"
 
 namespace pliant {
 namespace {
@@ -17,25 +18,11 @@ constexpr double kMapLeft = 150, kMapRight = 20, kMapTop = 190, kMapBottom = 130
 constexpr double kGap = 10;                                                        // [pixel] between maps
 constexpr Color kFailedColor{0.80, 0.24, 0.10};
 
-// From dark to light as the error grows, in even steps of lightness (a subset of viridis).
-constexpr std::array kTones{Color{0.267, 0.005, 0.329}, Color{0.229, 0.322, 0.546}, Color{0.128, 0.567, 0.551},
-                            Color{0.369, 0.789, 0.383}, Color{0.993, 0.906, 0.144}};
-
+// From dark to light as the error grows.
 Color tone(double value, const HeatMaps& all) {
   if (!std::isfinite(value)) return kFailedColor;
   const double low = std::log10(all.low), high = std::log10(all.high);
-  const double share = std::clamp((std::log10(std::max(value, 1e-300)) - low) / (high - low), 0.0, 1.0);
-  const double at = share * (kTones.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(at), kTones.size() - 2);
-  const double t = at - static_cast<double>(i);
-  const Color &a = kTones[i], &b = kTones[i + 1];
-  return {a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b)};
-}
-
-void rectangle(Pen& pen, double x, double y, double w, double h, Color color) {
-  pen.color(color);
-  cairo_rectangle(pen.get(), x, y, w + 0.4, h + 0.4);  // no gaps between neighbours
-  cairo_fill(pen.get());
+  return heat((std::log10(std::max(value, 1e-300)) - low) / (high - low));
 }
 
 // Tick positions among the cells: powers of a thousand, or all values if there are few.
@@ -50,14 +37,14 @@ std::vector<std::size_t> ticks(const std::vector<double>& values) {
 
 void draw_key(Pen& pen, const HeatMaps& all) {
   const double y = kMapHeight - 34, x0 = 70, w = 300;
-  for (int i = 0; i < 150; ++i)
-    rectangle(pen, x0 + 2 * i, y, 2, 14, tone(all.low * std::pow(all.high / all.low, (i + 0.5) / 150), all));
+  draw_color_bar(pen, {x0, y, w, 14}, false, heat);
   pen.color(kInk);
   for (const double v : {all.low, std::sqrt(all.low * all.high), all.high})
     pen.text(x0 + w * std::log(v / all.low) / std::log(all.high / all.low), y - 5, kMapTick, 0.5, decade_number(v));
   pen.text(x0 + w + 22, y + 13, kMapText, 0, all.tone);
   const double x = x0 + w + 22 + pen.width(kMapText, all.tone) + 30;
-  rectangle(pen, x, y, 26, 14, kFailedColor);
+  pen.color(kFailedColor);
+  pen.rectangle(x, y, 26, 14);
   pen.color(kInk);
   pen.text(x + 34, y + 13, kMapText, 0, all.failed);
 }
@@ -79,10 +66,9 @@ void draw(Pen& pen, const HeatMaps& all) {
     const std::size_t column = m % all.columns, row = m / all.columns;
     const double x0 = kMapLeft + static_cast<double>(column) * (w + kGap),
                  y0 = kMapTop + static_cast<double>(row) * (h + kGap);
-    for (std::size_t j = 0; j < all.y.size(); ++j)
-      for (std::size_t i = 0; i < all.x.size(); ++i)
-        rectangle(pen, x0 + cw * static_cast<double>(i), y0 + h - ch * static_cast<double>(j + 1), cw, ch,
-                  tone(all.maps[m].values[j * all.x.size() + i], all));
+    draw_cells(pen, {x0, y0, w, h}, all.x.size(), all.y.size(), [&](std::size_t i, std::size_t j) {
+      return std::optional(tone(all.maps[m].values[j * all.x.size() + i], all));
+    });
     pen.color(kInk);
     if (row == 0) {
       const std::vector<std::string> head = pen.lines(kMapText, all.maps[m].column, w);
@@ -90,9 +76,7 @@ void draw(Pen& pen, const HeatMaps& all) {
         pen.text(x0 + w / 2, y0 - 8 - 20 * static_cast<double>(head.size() - 1 - i), kMapText, 0.5, head[i]);
     }
     if (column == 0) {
-      cairo_save(pen.get());
       pen.upright_text(72, y0 + h / 2, kMapText, all.maps[m].row);
-      cairo_restore(pen.get());
       double last = kMapHeight;
       for (const std::size_t j : ticks(all.y)) {
         const double at = y0 + h - ch * (static_cast<double>(j) + 0.5) + 4;

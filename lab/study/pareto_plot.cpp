@@ -7,7 +7,8 @@
 #include <limits>
 
 #include "lab/study/pareto.h"
-#include "plot/pen.h"
+#include "plot/cairo_pen.h"
+#include "plot/panel.h"
 
 namespace pliant {
 namespace {
@@ -16,9 +17,10 @@ constexpr double kParetoWidth = 1240, kParetoHeight = 900;          // [pixel]
 constexpr double kParetoLeft = 112, kParetoRight = 40, kEdge = 30;  // [pixel] margins of the axes and of text
 constexpr double kSmallText = 15, kRadius = 5.5;                    // [pixel]
 constexpr double kLabelText = 18, kText = 17, kLine = 22.0;         // [pixel] titles and axes; legend and sentences
-constexpr double kApart = 5;                                        // [pixel] between labels beside each other
-constexpr Color kParetoSky{0.337, 0.706, 0.914}, kFront{0.62, 0.62, 0.62};
-constexpr std::array kColors{kBlue, kVermilion, kGreen, kPurple, kOrange, kParetoSky, kInk, Color{0.55, 0.55, 0.0}};
+constexpr double kAboveMost = 12;  // [pixel] between the largest error and the upper edge
+constexpr KeyStyle kKeys{.size = kText};
+constexpr double kParetoApart = 5;  // [pixel] between labels beside each other
+constexpr Color kFront{0.62, 0.62, 0.62};
 
 struct LabelBox {
   double x0, y0, x1, y1;  // [pixel]
@@ -28,24 +30,14 @@ struct LabelBox {
   }
 };
 
-struct ParetoAxis {
-  double low = 0.0, high = 1.0;   // log10
-  double begin = 0.0, end = 1.0;  // [pixel]
-  double at(double value) const {
-    const double share = (std::log10(std::max(value, 1e-300)) - low) / (high - low);
-    return begin + (end - begin) * std::clamp(share, 0.0, 1.0);
-  }
-};
-
 // Range of the positive, finite values, rounded to quarters of decades.
-ParetoAxis axis_of(const std::vector<double>& values, double begin, double end) {
+PlotAxis axis_of(const std::vector<double>& values) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double v : values)
     if (v > 0.0 && std::isfinite(v)) low = std::min(low, std::log10(v)), high = std::max(high, std::log10(v));
   if (!(low <= high)) low = high = 0.0;
-  low = std::floor((low - 0.06) * 4.0) / 4.0;
-  high = std::ceil((high + 0.06) * 4.0) / 4.0;
-  return {low, high, begin, end};
+  return {std::pow(10.0, std::floor((low - 0.06) * 4.0) / 4.0), std::pow(10.0, std::ceil((high + 0.06) * 4.0) / 4.0),
+          true};
 }
 
 struct Plot {
@@ -53,97 +45,54 @@ struct Plot {
   std::vector<std::size_t> shown;
   std::vector<std::string> groups;
   std::vector<std::string> title, foot;
-  double top = 0.0, bottom = 0.0;  // [pixel] of the axes
-  ParetoAxis x, y;
+  PlotPanel axes{};
+  double most = 0.0;  // [1] error; failures are above it, on the upper edge
 
   Color color(const ParetoRow& row) const {
     const auto found = std::find(groups.begin(), groups.end(), row.group);
-    return kColors[static_cast<std::size_t>(found - groups.begin()) % kColors.size()];
+    return series_color(static_cast<std::size_t>(found - groups.begin()));
   }
   bool failed(const ParetoRow& row) const { return !std::isfinite(row.error); }
   bool unresolved(const ParetoRow& row) const { return !failed(row) && row.error < row.floor; }
   // 1: above the axis range, -1: below it or zero, 0: inside.
   int beyond(const ParetoRow& row) const {
     if (failed(row)) return 0;
-    const double e = std::log10(std::max(row.resolved(), 1e-300));
-    return e > y.high ? 1 : e < y.low ? -1 : 0;
+    return row.resolved() > most ? 1 : row.resolved() < axes.up.low ? -1 : 0;
   }
-  double px(const ParetoRow& row) const { return x.at(row.cost); }
-  double py(const ParetoRow& row) const { return failed(row) ? top : y.at(row.resolved()); }
+  double right() const { return axes.x + axes.w; }
+  double bottom() const { return axes.y + axes.h; }
+  double px(const ParetoRow& row) const { return std::clamp(axes.px(row.cost), axes.x, right()); }
+  double py(const ParetoRow& row) const {
+    return failed(row) ? axes.y : std::clamp(axes.py(std::min(row.resolved(), most)), axes.y, bottom());
+  }
 };
 
-struct ParetoKey {
-  enum class Mark : std::uint8_t { kPoint, kBand, kCircle, kUp, kDown } mark;
-  std::string words;
-  Color color;
-};
-std::vector<ParetoKey> keys_of(const Plot& plot) {
-  std::vector<ParetoKey> keys;
+std::vector<PlotKey> keys_of(const Plot& plot) {
+  std::vector<PlotKey> keys;
   for (const std::string& group : plot.groups) {
     ParetoRow row;
     row.group = group;
-    keys.push_back({ParetoKey::Mark::kPoint, group, plot.color(row)});
+    keys.push_back({plot.color(row), group, KeyMark::kDot});
   }
   keys.push_back(
-      {ParetoKey::Mark::kBand, plot.table.front_by_group ? "bands: each one's Pareto front" : "Pareto front", kFront});
+      {kFront, plot.table.front_by_group ? "bands: each one's Pareto front" : "Pareto front", KeyMark::kBand});
   const auto some = [&](const auto& is) {
     return std::any_of(plot.shown.begin(), plot.shown.end(), [&](std::size_t i) { return is(plot.table.rows[i]); });
   };
   if (some([&](const ParetoRow& row) { return plot.failed(row); }))
-    keys.push_back({ParetoKey::Mark::kCircle, "on the upper edge: failed", kInk});
+    keys.push_back({kInk, "on the upper edge: failed", KeyMark::kRing});
   if (some([&](const ParetoRow& row) { return plot.unresolved(row); }))
-    keys.push_back({ParetoKey::Mark::kCircle, "open: at most this; less is not resolved", kInk});
+    keys.push_back({kInk, "open: at most this; less is not resolved", KeyMark::kRing});
   if (some([&](const ParetoRow& row) { return plot.beyond(row) > 0; }))
-    keys.push_back({ParetoKey::Mark::kUp, "beyond the axis", kInk});
+    keys.push_back({kInk, "beyond the axis", KeyMark::kUp});
   if (some([&](const ParetoRow& row) { return plot.beyond(row) < 0; }))
-    keys.push_back({ParetoKey::Mark::kDown, "less than the axis shows, or none", kInk});
+    keys.push_back({kInk, "less than the axis shows, or none", KeyMark::kDown});
   return keys;
-}
-
-// A point, or an arrowhead if the value is outside the axis range.
-void draw_mark(Pen& pen, double x, double y, int beyond, double r) {
-  cairo_new_path(pen.get());
-  if (beyond == 0) {
-    cairo_arc(pen.get(), x, y, r, 0, 6.283185307179586);
-  } else {
-    const double tip = -beyond * 1.5 * r;  // the y axis points down
-    cairo_move_to(pen.get(), x, y + tip);
-    cairo_line_to(pen.get(), x - 1.2 * r, y - 0.5 * tip);
-    cairo_line_to(pen.get(), x + 1.2 * r, y - 0.5 * tip);
-    cairo_close_path(pen.get());
-  }
-}
-
-// Lays out the legend in lines from `y`, draws it if `draw`, and returns the position of the last line.
-double put_keys(Pen& pen, const Plot& plot, double y, bool draw) {
-  double x = kEdge;
-  for (const ParetoKey& key : keys_of(plot)) {
-    const double w = pen.width(kText, key.words) + 50;
-    if (x + w - 20 > kParetoWidth - kEdge && x > kEdge) x = kEdge, y += kLine + 2;
-    if (draw) {
-      pen.color(key.color, key.mark == ParetoKey::Mark::kBand ? 0.45 : 1.0);
-      if (key.mark == ParetoKey::Mark::kBand) {
-        pen.line(x, y - 5, x + 22, y - 5, 9);
-      } else {
-        draw_mark(pen, x + 11, y - 5,
-                  key.mark == ParetoKey::Mark::kUp     ? 1
-                  : key.mark == ParetoKey::Mark::kDown ? -1
-                                                       : 0,
-                  kRadius + 1);
-        cairo_set_line_width(pen.get(), 1.5);
-        key.mark == ParetoKey::Mark::kCircle ? cairo_stroke(pen.get()) : cairo_fill(pen.get());
-      }
-      pen.color(kInk);
-      pen.text(x + 28, y, kText, 0, key.words);
-    }
-    x += w;
-  }
-  return y;
 }
 
 // The text around the axes determines the space left for them.
 Plot plot_of(Pen& pen, const ParetoTable& table) {
-  Plot plot{.table = table, .shown = table.drawn, .groups = {}, .title = {}, .foot = {}, .x = {}, .y = {}};
+  Plot plot{.table = table, .shown = table.drawn, .groups = {}, .title = {}, .foot = {}};
   if (plot.shown.empty())
     for (std::size_t i = 0; i < table.rows.size(); ++i) plot.shown.push_back(i);
   std::vector<double> costs, errors;
@@ -158,40 +107,15 @@ Plot plot_of(Pen& pen, const ParetoTable& table) {
   plot.title = pen.lines(kLabelText, table.title, kParetoWidth - 2 * kEdge);
   for (const std::string& sentence : table.sentences)
     for (std::string& line : pen.lines(kText, sentence, kParetoWidth - 2 * kEdge)) plot.foot.push_back(std::move(line));
-  plot.y = axis_of(errors, 0.0, 1.0);  // the range determines which legend entries there are
-  plot.top = put_keys(pen, plot, 80 + kLine * static_cast<double>(plot.title.size()), false) + 42;
-  plot.bottom = kParetoHeight - 76 - kLine * static_cast<double>(plot.foot.size());
-  plot.x = axis_of(costs, kParetoLeft, kParetoWidth - kParetoRight);
-  plot.y = axis_of(errors, plot.bottom, plot.top + 12);
+  plot.axes.across = axis_of(costs);
+  plot.axes.up = axis_of(errors);
+  plot.most = plot.axes.up.high;  // the range determines which legend entries there are
+  const double keys = 80 + kLine * static_cast<double>(plot.title.size());
+  const double top = place_keys(pen, kEdge, keys, kParetoWidth - kEdge, keys_of(plot), kKeys).back().y + 42;
+  plot.axes.x = kParetoLeft, plot.axes.w = kParetoWidth - kParetoRight - kParetoLeft;
+  plot.axes.y = top, plot.axes.h = kParetoHeight - 76 - kLine * static_cast<double>(plot.foot.size()) - top;
+  plot.axes.up.high = plot.axes.up.at(1.0 + kAboveMost / (plot.axes.h - kAboveMost));
   return plot;
-}
-
-void draw_grid(Pen& pen, const Plot& plot) {
-  const double top = plot.top, bottom = plot.bottom, right = kParetoWidth - kParetoRight;
-  for (const bool across : {true, false}) {
-    const ParetoAxis& axis = across ? plot.x : plot.y;
-    for (int decade = static_cast<int>(std::floor(axis.low)); decade <= axis.high + 1e-9; ++decade)
-      for (const int factor : {1, 2, 5}) {
-        const double value = factor * std::pow(10.0, decade), e = std::log10(value);
-        if (e < axis.low - 1e-9 || e > axis.high + 1e-9) continue;
-        if (factor != 1 && axis.high - axis.low > 3.2) continue;
-        const double p = axis.at(value);
-        pen.color(kFaint, factor == 1 ? 1.0 : 0.5);
-        across ? pen.line(p, top, p, bottom, 1) : pen.line(kParetoLeft, p, right, p, 1);
-        pen.color(kInk);
-        const std::string words = decade_number(value);
-        across ? pen.text(p, bottom + 20, 14, 0.5, words) : pen.text(kParetoLeft - 8, p + 5, 14, 1.0, words);
-      }
-  }
-  pen.color(kInk);
-  pen.line(kParetoLeft, top, kParetoLeft, bottom, 1.5);
-  pen.line(kParetoLeft, bottom, right, bottom, 1.5);
-  pen.text((kParetoLeft + right) / 2, bottom + 44, kLabelText, 0.5, plot.table.cost_axis);
-  double x = 26;
-  for (const std::string& line : pen.lines(kLabelText, plot.table.error_axis, bottom - top)) {
-    pen.upright_text(x, (top + bottom) / 2, kLabelText, line);
-    x += kLine;
-  }
 }
 
 void draw_front(Pen& pen, const Plot& plot) {
@@ -199,50 +123,40 @@ void draw_front(Pen& pen, const Plot& plot) {
     if (front.empty()) continue;
     const ParetoRow& first = plot.table.rows[front[0]];
     plot.table.front_by_group ? pen.color(plot.color(first), 0.25) : pen.color(kFront, 0.45);
-    cairo_set_line_width(pen.get(), plot.table.front_by_group ? 5 : 9);
-    cairo_set_line_join(pen.get(), CAIRO_LINE_JOIN_ROUND);
-    cairo_new_path(pen.get());
     // Drawn as steps: between two points of the front, the dearer one is not yet affordable.
+    std::vector<PlotPoint> steps;
     double y = plot.py(first);
-    cairo_move_to(pen.get(), plot.px(first), y);
     for (const std::size_t i : front) {
       const ParetoRow& row = plot.table.rows[i];
-      cairo_line_to(pen.get(), plot.px(row), y);
-      cairo_line_to(pen.get(), plot.px(row), y = plot.py(row));
+      steps.push_back({plot.px(row), y});
+      steps.push_back({plot.px(row), y = plot.py(row)});
     }
-    cairo_line_to(pen.get(), kParetoWidth - kParetoRight, y);
-    cairo_stroke(pen.get());
+    steps.push_back({plot.right(), y});
+    pen.polyline(steps, plot.table.front_by_group ? 5 : 9);
   }
 }
 
 void draw_points(Pen& pen, const Plot& plot) {
-  for (const std::string& group : plot.groups) {
-    cairo_new_path(pen.get());
-    for (const std::size_t i : plot.shown) {
-      const ParetoRow& row = plot.table.rows[i];
-      if (row.group != group) continue;
-      pen.color(plot.color(row), 0.55);
-      if (!plot.failed(row)) cairo_line_to(pen.get(), plot.px(row), plot.py(row));
+  if (plot.table.joined)
+    for (const std::string& group : plot.groups) {
+      std::vector<PlotPoint> line;
+      for (const std::size_t i : plot.shown) {
+        const ParetoRow& row = plot.table.rows[i];
+        if (row.group != group) continue;
+        pen.color(plot.color(row), 0.55);
+        if (!plot.failed(row)) line.push_back({plot.px(row), plot.py(row)});
+      }
+      pen.polyline(line, 1.3);
     }
-    cairo_set_line_width(pen.get(), 1.3);
-    if (plot.table.joined) cairo_stroke(pen.get());
-    cairo_new_path(pen.get());
-  }
   for (const std::size_t i : plot.shown) {
     const ParetoRow& row = plot.table.rows[i];
+    const double x = plot.px(row), y = plot.py(row);
+    const bool open = plot.failed(row) || plot.unresolved(row);
+    const int beyond = plot.beyond(row);
+    pen.color(open && beyond == 0 ? kPaper : plot.color(row));
+    beyond == 0 ? pen.disc(x, y, kRadius) : draw_arrow(pen, x, y, kRadius, beyond > 0);
     pen.color(plot.color(row));
-    draw_mark(pen, plot.px(row), plot.py(row), plot.beyond(row), kRadius);
-    cairo_set_line_width(pen.get(), 1.5);
-    if (plot.failed(row) || plot.unresolved(row)) {
-      cairo_save(pen.get());
-      pen.color(kPaper);
-      cairo_fill_preserve(pen.get());
-      cairo_restore(pen.get());
-      pen.color(plot.color(row));
-      cairo_stroke(pen.get());
-    } else {
-      cairo_fill(pen.get());
-    }
+    if (open && beyond == 0) pen.ring(x, y, kRadius, 1.5);
   }
 }
 
@@ -281,7 +195,7 @@ std::vector<Stretch> drawn_lines(const Plot& plot) {
     for (std::size_t k = 0; k < front.size(); ++k) {
       const ParetoRow& row = plot.table.rows[front[k]];
       const double x = plot.px(row), y = plot.py(row);
-      const double next = k + 1 < front.size() ? plot.px(plot.table.rows[front[k + 1]]) : kParetoWidth - kParetoRight;
+      const double next = k + 1 < front.size() ? plot.px(plot.table.rows[front[k + 1]]) : plot.right();
       lines.push_back({x, y, next, y});
       if (k + 1 < front.size()) lines.push_back({next, y, next, plot.py(plot.table.rows[front[k + 1]])});
     }
@@ -312,11 +226,12 @@ void draw_labels(Pen& pen, const Plot& plot) {
         const LabelBox box{left, top, left + w, top + h};
         double cost = 0.02 * far;
         for (const LabelBox& other : taken)
-          cost += box.overlap({other.x0 - kApart, other.y0 - 1, other.x1 + kApart, other.y1 + 1});
+          cost += box.overlap({other.x0 - kParetoApart, other.y0 - 1, other.x1 + kParetoApart, other.y1 + 1});
         const Stretch lead{x, y, std::clamp(x, box.x0, box.x1), std::clamp(y, box.y0, box.y1)};
         if (std::hypot(lead.x1 - x, lead.y1 - y) > kLed)
           for (const LabelBox& other : placed) cost += 3.0 * lead.crosses(other);
-        if (box.x0 < kParetoLeft + 3 || box.x1 > kParetoWidth - 4 || box.y0 < plot.top - 34 || box.y1 > plot.bottom - 2)
+        if (box.x0 < kParetoLeft + 3 || box.x1 > kParetoWidth - 4 || box.y0 < plot.axes.y - 34 ||
+            box.y1 > plot.bottom() - 2)
           cost += 1e4;
         for (const Stretch& line : lines) cost += 0.6 * line.crosses(box);
         if (cost < least) least = cost, best = box;
@@ -341,8 +256,9 @@ void draw_heads(Pen& pen, const Plot& plot) {
   pen.text(kEdge, 44, 26, 0, plot.table.study, true);
   double y = 48;
   for (const std::string& line : plot.title) pen.text(kEdge, y += kLine + 2, kLabelText, 0, line);
-  put_keys(pen, plot, 80 + kLine * static_cast<double>(plot.title.size()), true);
-  y = plot.bottom + 76;
+  draw_keys(pen, kEdge, 80 + kLine * static_cast<double>(plot.title.size()), kParetoWidth - kEdge, keys_of(plot),
+            kKeys);
+  y = plot.bottom() + 76;
   pen.color(kInk);
   for (const std::string& line : plot.foot) {
     pen.text(kEdge, y, kText, 0, line);
@@ -356,7 +272,8 @@ Status plot_pareto(OutputFolder& out, const std::string& stem, const ParetoTable
   return draw_png_and_svg(out.stage(stem + ".png"), out.stage(stem + ".svg"), kParetoWidth, kParetoHeight,
                           [&](Pen& pen) {
                             const Plot plot = plot_of(pen, table);
-                            draw_grid(pen, plot);
+                            draw_axes(pen, plot.axes, table.cost_axis, table.error_axis,
+                                      {.title = kLabelText, .most_across = 10, .most_up = 10});
                             draw_front(pen, plot);
                             draw_points(pen, plot);
                             draw_labels(pen, plot);

@@ -22,8 +22,8 @@ constexpr std::string_view kError = "pliant: error: ";
 constexpr std::size_t kLongestSaid = 2000;  // [byte] longest message in a line
 constexpr std::size_t kMostRead = 1 << 20;  // [byte] last part of its stderr that is kept
 
-// Runs in the new process before exec: system calls only. An error is written to `told`.
-[[noreturn]] void become(char* const* argv, const char* from, int said, pid_t parent, int told) {
+// Runs in the new process before exec: system calls only. An error is written to `errors`.
+[[noreturn]] void become(char* const* argv, const char* from, int said, pid_t parent, int errors) {
   // Ends with the parent, however that ends: SIGKILL of a sweep leaves no process behind.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(1);
@@ -37,7 +37,7 @@ constexpr std::size_t kMostRead = 1 << 20;  // [byte] last part of its stderr th
     ::execv("/proc/self/exe", argv);
   }
   const int why = errno;
-  [[maybe_unused]] const ssize_t ignored = ::write(told, &why, sizeof why);
+  [[maybe_unused]] const ssize_t ignored = ::write(errors, &why, sizeof why);
   ::_exit(1);
 }
 

@@ -7,14 +7,13 @@
 #include <set>
 
 #include "content/keys/extension_table.h"
-#include "plot/pen.h"
 #include "plot/ticks.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kLogFactor = 30.0;  // [1] ratio of largest to smallest value
-constexpr int kTicks = 5;
+constexpr std::size_t kLongWord = 14;  // letters of a label
+constexpr double kLogFactor = 30.0;    // [1] ratio of largest to smallest value
 
 std::string unit_of(const std::string& name) {
   if (name == "--seconds") return "s";
@@ -30,32 +29,8 @@ std::string short_number(double value) {
   return std::abs(value) >= 1e3 && std::abs(value) < 1e6 ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
 }
 
-double PlotScale::share(double value) const {
-  if (!words.empty()) return (value + 0.5) / static_cast<double>(words.size());
-  return log ? (std::log(value) - std::log(low)) / (std::log(high) - std::log(low)) : (value - low) / (high - low);
-}
-
-std::vector<std::pair<double, std::string>> PlotScale::ticks() const {
-  std::vector<std::pair<double, std::string>> out;
-  for (std::size_t i = 0; i < words.size(); ++i) out.emplace_back(static_cast<double>(i), words[i]);
-  if (!words.empty()) return out;
-  if (log) {
-    const bool few = std::log10(high / low) < 3.0;
-    for (int e = static_cast<int>(std::floor(std::log10(low))); e <= std::log10(high) + 1e-9; ++e)
-      for (const double factor : {1.0, 2.0, 5.0}) {
-        const double value = factor * std::pow(10.0, e);
-        if ((factor == 1.0 || few) && value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9))
-          out.emplace_back(value, short_number(value));
-      }
-    return out;
-  }
-  const double step = tick_step(high - low, kTicks);
-  for (const double value : tick_values(low, high, step)) out.emplace_back(value, short_number(value));
-  return out;
-}
-
-PlotScale scale_of(const std::vector<double>& values) {
-  PlotScale scale;
+PlotAxis scale_of(const std::vector<double>& values) {
+  PlotAxis scale;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   if (values.empty()) return scale;
   scale.low = *least;
@@ -65,6 +40,13 @@ PlotScale scale_of(const std::vector<double>& values) {
   scale.high += 0.06 * span;
   if (scale.low != 0.0) scale.low -= 0.06 * span;
   return scale;
+}
+
+PlotAxis words_axis(const std::vector<std::string>& names) {
+  PlotAxis axis;
+  for (const std::string& name : names)
+    axis.words.push_back(name.size() <= kLongWord ? name : name.substr(0, kLongWord - 2) + "..");
+  return axis;
 }
 
 AxisValues values_along(const SweepTable& table, std::size_t axis) {
@@ -77,12 +59,12 @@ AxisValues values_along(const SweepTable& table, std::size_t axis) {
   if (!numbers) {
     for (const SweepRow& row : table.rows) {
       const std::string word = text_of(row.values[axis]);
-      const auto at = std::find(out.scale.words.begin(), out.scale.words.end(), word);
-      out.of_row.push_back(static_cast<double>(at - out.scale.words.begin()));
-      if (at == out.scale.words.end()) out.scale.words.push_back(word);
+      const auto at = std::find(out.names.begin(), out.names.end(), word);
+      out.of_row.push_back(static_cast<double>(at - out.names.begin()));
+      if (at == out.names.end()) out.names.push_back(word);
     }
-    for (std::size_t i = 0; i < out.scale.words.size(); ++i) out.steps.push_back(static_cast<double>(i));
-    out.names = out.scale.words;
+    for (std::size_t i = 0; i < out.names.size(); ++i) out.steps.push_back(static_cast<double>(i));
+    out.scale = words_axis(out.names);
     return out;
   }
   for (const SweepRow& row : table.rows) out.of_row.push_back(row.values[axis].get<double>());

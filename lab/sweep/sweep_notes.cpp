@@ -126,7 +126,7 @@ void find_other_notes(const SweepTable& table, SweepNotes& out) {
 // True if runs that differ in this axis alone have equal figures up to rounding; false if no two runs can be compared.
 bool is_idle(const SweepTable& table, std::size_t axis, const std::vector<std::vector<double>>& figures) {
   std::unordered_map<std::string, std::size_t> first;  // values of all other axes -> row
-  bool told = false;
+  bool compared = false;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     if (!table.rows[row].done()) continue;
     std::string others;
@@ -134,14 +134,14 @@ bool is_idle(const SweepTable& table, std::size_t axis, const std::vector<std::v
       if (a != axis) others += table.rows[row].values[a].dump() + '\n';
     const auto [place, is_new] = first.try_emplace(std::move(others), row);
     if (is_new || table.rows[row].values[axis] == table.rows[place->second].values[axis]) continue;
-    told = true;
+    compared = true;
     for (const std::vector<double>& figure : figures) {
       const double a = figure[place->second], b = figure[row];
       if (std::isnan(a) != std::isnan(b)) return false;
       if (!std::isnan(a) && a != b && !is_flat(std::min(a, b), std::max(a, b))) return false;
     }
   }
-  return told;
+  return compared;
 }
 
 void find_idle_axes(const SweepTable& table, SweepNotes& out) {

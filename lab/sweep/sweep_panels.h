@@ -5,13 +5,9 @@
 #include <vector>
 
 #include "lab/sweep/plot_scale.h"
-#include "plot/pen.h"
+#include "plot/heat.h"
 
 namespace pliant {
-
-struct PlotArea {
-  double x, y, w, h;  // [pixel]
-};
 
 struct Figure {
   std::string name;

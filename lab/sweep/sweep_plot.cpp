@@ -11,6 +11,7 @@
 #include <set>
 
 #include "lab/sweep/sweep_panels.h"
+#include "plot/cairo_pen.h"
 #include "plot/ticks.h"
 
 namespace pliant {

@@ -11,6 +11,7 @@
 #include "content/keys/extension_table.h"
 #include "content/keys/unused_keys.h"
 #include "content/level/spawn_soft.h"
+#include "content/level/unfelt_relief.h"
 #include "content/level/unit.h"
 #include "content/level_file.h"
 #include "content/safety_cap.h"
@@ -319,6 +320,7 @@ Outcome make_world(const RunOptions& options, bool windowed, Level& level, std::
   run.world = std::move(spawned).value();
   for (const std::string& sentence : notes) say(run, sentence);
   for (const Note& unused : unused_key_notes(level)) say(run, unused);
+  if (const std::optional<Note> relief = unfelt_relief(level)) say(run, *relief);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
   if (windowed) repeat_scripts(run.world);
   run.world.field_place = choose_field(options, windowed, run.world);

@@ -35,12 +35,12 @@ constexpr int kPlaneWide = 41, kPlaneHigh = 11;
 // The device under test, guarded if it is pushed.
 class HeldDevice {
  public:
-  Status open(const std::string& wish, std::string& shown) {
-    auto chosen = choose_device(wish, list_devices());
+  Status open(const std::string& request, std::string& shown) {
+    auto chosen = choose_device(request, list_devices());
     if (!chosen) return chosen.error();
     for (const std::string& sentence : chosen->notes) note(sentence);
     if (chosen->id.empty())
-      return Error{"--test " + wish, "the mouse needs no test", "name a device that `pliant devices` lists"};
+      return Error{"--test " + request, "the mouse needs no test", "name a device that `pliant devices` lists"};
     shown = chosen->name;
     auto made = make_device(chosen->id);
     if (!made) return made.error();
@@ -106,7 +106,7 @@ std::string plane(dvec3 at, dvec3 half) {
   return out;
 }
 
-std::string told(const DeviceSample& sample, const DeviceCapabilities& can, double rate, Servo* servo) {
+std::string line_of(const DeviceSample& sample, const DeviceCapabilities& can, double rate, Servo* servo) {
   std::string line = fmt::format("  x {:7.1f}  y {:7.1f}  z {:7.1f} mm", 1e3 * sample.position.x,
                                  1e3 * sample.position.y, 1e3 * sample.position.z);
   if (can.senses_rotation) {
@@ -154,7 +154,7 @@ void look(HeldDevice& held, double seconds, const Interrupt& interrupt, Force&& 
     if (drawn && drew)
       std::fputs(fmt::format("\033[{}A", kPlaneHigh + 1).c_str(), stdout);  // back over the last drawing
     if (drawn) std::fputs(plane(sample.position, half).c_str(), stdout);
-    print("{}{}\n", told(sample, can, rate, held.servo()), drawn ? "    " : "");
+    print("{}{}\n", line_of(sample, can, rate, held.servo()), drawn ? "    " : "");
     std::fflush(stdout);
     drew = true;
     reported_at = tick.time;

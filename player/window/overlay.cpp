@@ -10,13 +10,14 @@
 
 #include "systems/safety/safety.h"
 #include "viewer/ui/device_list.h"
+#include "viewer/ui/imgui_pen.h"
 #include "viewer/window/keys.h"
 
 namespace pliant {
 namespace {
 
-constexpr ImU32 kForceColor = IM_COL32(255, 158, 87, 255), kDepthColor = IM_COL32(104, 190, 255, 255);
-constexpr ImU32 kGridColor = IM_COL32(255, 255, 255, 22), kPlotColor = IM_COL32(0, 0, 0, 90);
+constexpr ImU32 kPlotColor = IM_COL32(0, 0, 0, 90);
+const ImVec4 kForceColor(1.0f, 0.62f, 0.34f, 1.0f), kDepthColor(0.41f, 0.745f, 1.0f, 1.0f);
 const ImVec4 kDim(0.62f, 0.66f, 0.71f, 1.0f), kGood(0.55f, 0.86f, 0.62f, 1.0f), kBad(1.0f, 0.52f, 0.45f, 1.0f);
 
 // The editor's fonts and spacing, on transparent panels.
@@ -44,33 +45,16 @@ std::string bytes(std::uint64_t count) {
   return count < 10000 ? fmt::format("{} B", count) : fmt::format("{:.1f} KiB", static_cast<double>(count) / 1024);
 }
 
-// The next round number, 1 2 5 10 ..., so that a plot's scale seldom changes.
-float round_up(float value) {
-  const float decade = std::pow(10.0f, std::floor(std::log10(std::max(value, 1e-6f))));
-  for (const float step : {1.0f, 2.0f, 5.0f})
-    if (value <= step * decade) return step * decade;
-  return 10 * decade;
-}
-
-void curve(const ProbeHistory& history, float ProbeHistory::Bin::*value, float top, ImVec2 at, ImVec2 size, ImU32 color,
-           float thickness) {
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  std::vector<ImVec2> points;
-  const auto finish = [&] {
-    if (points.size() > 1)
-      list->AddPolyline(points.data(), static_cast<int>(points.size()), color, ImDrawFlags_None, thickness);
-    points.clear();
-  };
+// A pause interrupts the curve, a late tick does not.
+void curve(Pen& pen, const PlotPanel& panel, const ProbeHistory& history, float ProbeHistory::Bin::*value,
+           const LineStyle& style) {
+  std::vector<PlotPoint> points;
   for (std::size_t age = 0; age < ProbeHistory::kBins; ++age) {
     const ProbeHistory::Bin* bin = history.bin(age);
-    if (!bin) {
-      if (age > 3) finish();  // a pause, not only a late tick
-      continue;
-    }
-    const float x = at.x + size.x * (1 - static_cast<float>(age) / (ProbeHistory::kBins - 1));
-    points.push_back({x, at.y + size.y * (1 - 0.94f * std::clamp(bin->*value / top, 0.0f, 1.0f)) - 1});
+    if (!bin && age <= 3) continue;
+    points.push_back({-static_cast<double>(age), bin ? static_cast<double>(bin->*value) : std::nan("")});
   }
-  finish();
+  draw_line(pen, panel, points, style);
 }
 
 void probe_line(const ProbeLine& probe, float scale) {
@@ -87,9 +71,9 @@ void probe_line(const ProbeLine& probe, float scale) {
   const std::string force = fmt::format("{:.2f} N", now.force), depth = fmt::format("{:.1f} mm", now.depth * 1e3f);
   const float wide = ImGui::CalcTextSize("00.0 mm").x, right = ImGui::GetWindowContentRegionMax().x;
   ImGui::SameLine(right - 2 * wide - 6 * scale);
-  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kForceColor), "%s", force.c_str());
+  ImGui::TextColored(kForceColor, "%s", force.c_str());
   ImGui::SameLine(right - wide);
-  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kDepthColor), "%s", depth.c_str());
+  ImGui::TextColored(kDepthColor, "%s", depth.c_str());
 }
 
 // The limits that currently change the force.
@@ -112,21 +96,23 @@ void plot(const ProbeLine& probe, float scale) {
       force = std::max(force, bin->force);
       depth = std::max(depth, bin->depth);
     }
-  force = round_up(force);
-  depth = round_up(depth);
+  force = static_cast<float>(round_above(static_cast<double>(force)));
+  depth = static_cast<float>(round_above(static_cast<double>(depth)));
 
   probe_line(probe, scale);
   ImDrawList* list = ImGui::GetWindowDrawList();
   const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, 52 * scale);
-  const ImVec2 end(at.x + size.x, at.y + size.y);
-  list->AddRectFilled(at, end, kPlotColor, 4 * scale);
-  for (int second = 1; second < 5; ++second) {
-    const float x = at.x + size.x * static_cast<float>(second) / 5;
-    list->AddLine({x, at.y}, {x, end.y}, kGridColor);
+  list->AddRectFilled(at, {at.x + size.x, at.y + size.y}, kPlotColor, 4 * scale);
+  ui::ImGuiPen pen(*list, {});
+  PlotPanel panel{at.x, at.y, size.x, size.y, {1.0 - ProbeHistory::kBins, 0.0}, {}};
+  const LineStyle grid{kPaper, 1, false, 0.09};
+  for (int second = 1; second < 5; ++second) draw_upright(pen, panel, panel.across.low * second / 5, grid);
+  draw_level(pen, panel, 0.5, grid);
+  for (const bool force_now : {false, true}) {
+    panel.up.high = static_cast<double>(force_now ? force : depth);
+    curve(pen, panel, probe.history, force_now ? &ProbeHistory::Bin::force : &ProbeHistory::Bin::depth,
+          {ui::plot_color(force_now ? kForceColor : kDepthColor), 1.5 * static_cast<double>(scale)});
   }
-  list->AddLine({at.x, at.y + 0.53f * size.y}, {end.x, at.y + 0.53f * size.y}, kGridColor);
-  curve(probe.history, &ProbeHistory::Bin::depth, depth, at, size, kDepthColor, 1.5f * scale);
-  curve(probe.history, &ProbeHistory::Bin::force, force, at, size, kForceColor, 1.5f * scale);
   const std::string top = fmt::format("{:g} N  {:g} mm", force, depth * 1e3f);
   ImGui::SetWindowFontScale(0.8f);
   list->AddText(ImGui::GetFont(), ImGui::GetFontSize(), {at.x + 5 * scale, at.y + 2 * scale},
@@ -175,11 +161,10 @@ void draw_help(const OverlayState& state, float scale) {
     ImGui::Text("%s", what);
   };
   if (!state.stop_keys.empty()) row(state.stop_keys.c_str(), key_row(kStopAction).words, kBad);
-  const ImVec4 color = ImGui::ColorConvertU32ToFloat4(kForceColor);
-  for (const MouseRow& each : mouse_rows()) row(each.how, each.words, color);
+  for (const MouseRow& each : mouse_rows()) row(each.how, each.words, kForceColor);
   std::string keys, words;
   const auto flush = [&] {
-    if (!keys.empty()) row(keys.c_str(), words.c_str(), color);
+    if (!keys.empty()) row(keys.c_str(), words.c_str(), kForceColor);
     keys = words = "";
   };
   for (const KeyRow& each : key_rows()) {

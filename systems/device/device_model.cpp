@@ -110,13 +110,18 @@ DeviceModel device_model(const World& world, Entity effector, Entity entity, Tic
   const ToolTouchState* const tool = find_tool(world, effector);
   if (const Probe* const probe = world.registry.find<Probe>(effector)) {
     for (const ProbeState& state : world.touch->probes)
-      if (state.entity == effector) pushing = &state.safety;
+      if (state.entity == effector) {
+        pushing = &state.safety;
+        if (state.has_torque) turning = &state.torque_safety;
+      }
+    if (turning) model.max_torque = torque_limits(device, HandleParameters{}).force;
     add_contacts(world, effector, slopes);
     add_effects(world, effector, slopes);
     slopes.of = surface_displacement(world, effector, tick.dt) / tick.dt;
     model.carried = slopes.of / scale;
     if (tool) add_coupling(world, *tool, slopes);
     slopes.wanted_force = probe->force + (tool ? linear(tool->device_wrench) : dvec3(0));
+    slopes.wanted_torque = probe->torque;
     slopes.velocity = probe->velocity;
     if (pushing) model.weight = pushing->weight;
   } else if (tool) {

@@ -10,6 +10,7 @@
 #include "systems/device/tissue_account.h"
 #include "systems/effects/effect_account.h"
 #include "systems/effects/felt_effects.h"
+#include "systems/soft/body/rotation_vector.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/feed/contacts_of.h"
 
@@ -38,9 +39,39 @@ double ease_of_tool(double skipped) {
   return std::clamp(kShare * skipped, kToolEase, kLongest);
 }
 
-// A tool's wrench, by the same layer: its torque as if it were a force, work counted over the angles turned. What is
-// unknown of the one is unknown of the other, so that both are let go and engaged together. They share one account of
-// energy: a push at a fingertip is a force and a torque about the wrist, which give and take only together.
+void note_events(World& world, const SafetyResult& result) {
+  if (result.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
+  if (result.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
+  if (result.event == SafetyEvent::kJumped) world.dropped |= kDroppedJump;
+}
+
+// A force and a torque, or a force alone.
+struct SafetyPair {
+  SafetyState& force;
+  SafetyState* torque;  // null: none
+  dvec3 turned{0};      // [rad] place of the torque: sum of the small rotations
+};
+
+// A wrench, by the same layer: its torque as if it were a force, work counted over the angles turned. What is unknown
+// of the one is unknown of the other, so that both are let go and engaged together. They share one account of energy: a
+// push at a fingertip is a force and a torque about the wrist, which give and take only together. NaN: unknown.
+void write_wrench(World& world, HapticDevice& device, const SafetyPair& safety, SafetyLimits limits,
+                  SafetyLimits turning, dvec3 force, dvec3 torque, Tick tick) {
+  if (safety.torque) {
+    limits.jumped = turning.jumped = jumps(safety.force, device, limits, device.position, tick.dt) ||
+                                     jumps(*safety.torque, device, turning, safety.turned, tick.dt);
+  }
+  const SafetyResult push = make_safe(safety.force, device, limits, force, device.position, tick.time, tick.dt);
+  note_events(world, push);
+  device.force_sent = push.force;
+  if (!safety.torque) return;
+  safety.torque->work = safety.force.work;
+  const SafetyResult turn = make_safe(*safety.torque, device, turning, torque, safety.turned, tick.time, tick.dt);
+  note_events(world, turn);
+  safety.force.work = safety.torque->work;
+  device.torque_sent = turn.force;
+}
+
 void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   HapticDevice& device = world.registry.get<HapticDevice>(tool.device);
   const Handle6& handle = world.registry.get<Handle6>(tool.entity);
@@ -53,9 +84,6 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   limits.ease = turning.ease = ease_of_tool(tick.skipped);
   limits.weight = tool.force_safety.share * tool.weight;
   turning.weight = cross(tool.sensed.pose.rotation * tool.balance, limits.weight);
-  limits.jumped = turning.jumped = jumps(tool.force_safety, device, limits, device.position, tick.dt) ||
-                                   jumps(tool.torque_safety, device, turning, tool.turned, tick.dt);
-  tool.force_safety.work = tool.torque_safety.work;
   const dvec3 push =
       known
           ? rendered(with_own(tool.force_safety, limits, tool.force_safety.share * linear(tool.device_wrench), tick.dt),
@@ -65,16 +93,28 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
                                                tool.force_safety.share * angular(tool.device_wrench), tick.dt),
                                       device.can.renders_torque)
                            : unknown;
-  const SafetyResult force = make_safe(tool.force_safety, device, limits, push, device.position, tick.time, tick.dt);
-  tool.torque_safety.work = tool.force_safety.work;
-  const SafetyResult torque = make_safe(tool.torque_safety, device, turning, turn, tool.turned, tick.time, tick.dt);
-  for (const SafetyResult& result : {force, torque}) {
-    if (result.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
-    if (result.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
-    if (result.event == SafetyEvent::kJumped) world.dropped |= kDroppedJump;
-  }
-  device.force_sent = force.force;
-  device.torque_sent = torque.force;
+  write_wrench(world, device, {tool.force_safety, &tool.torque_safety, tool.turned}, limits, turning, push, turn, tick);
+}
+
+void write_probe(World& world, ProbeState& state, Tick tick) {
+  const Probe& probe = world.registry.get<Probe>(state.entity);
+  HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
+  SafetyLimits limits = force_limits(device), turning = torque_limits(device, HandleParameters{});
+  limits.touched = soften(world, state.entity, device, state.safety);
+  limits.carried = surface_displacement(world, state.entity, tick.elapsed());
+  limits.weight = effects_beside(world, state.entity, state.safety.share);
+  const ToolTouchState* const among_bodies = find_tool(world, state.entity);
+  if (among_bodies) limits.ease = turning.ease = ease_of_tool(tick.skipped);
+  const dvec3 pressed = with_own(
+      state.safety, limits,
+      state.safety.share * (probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0))), tick.dt);
+  const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
+  const bool known = plausible_rotation(device.rotation);
+  if (probe.placed && !probe.fresh) state.turned += vector_of(probe.rotation * glm::conjugate(probe.previous_rotation));
+  write_wrench(world, device, {state.safety, state.has_torque ? &state.torque_safety : nullptr, state.turned}, limits,
+               turning, known ? rendered(pressed, device.can.renders_force) : unknown,
+               known ? rendered(state.safety.share * probe.torque, device.can.renders_torque) : unknown, tick);
+  keep_account(world, state.entity, state.safety, state.safety.share);
 }
 
 }  // namespace
@@ -123,27 +163,7 @@ void read_devices(World& world, Tick tick) {
 
 void write_devices(World& world, Tick tick) {
   share_accounts(world, tick);
-  for (ProbeState& state : world.touch->probes) {
-    const Probe& probe = world.registry.get<Probe>(state.entity);
-    HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
-    SafetyLimits limits = force_limits(device);
-    limits.touched = soften(world, state.entity, device, state.safety);
-    limits.carried = surface_displacement(world, state.entity, tick.elapsed());
-    limits.weight = effects_beside(world, state.entity, state.safety.share);
-    const ToolTouchState* const among_bodies = find_tool(world, state.entity);
-    if (among_bodies) limits.ease = ease_of_tool(tick.skipped);
-    const dvec3 pressed = with_own(
-        state.safety, limits,
-        state.safety.share * (probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0))), tick.dt);
-    const dvec3 wanted = plausible_rotation(device.rotation) ? rendered(pressed, device.can.renders_force)
-                                                             : dvec3(std::numeric_limits<double>::quiet_NaN());
-    const SafetyResult safe = make_safe(state.safety, device, limits, wanted, device.position, tick.time, tick.dt);
-    if (safe.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
-    if (safe.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
-    if (safe.event == SafetyEvent::kJumped) world.dropped |= kDroppedJump;
-    keep_account(world, state.entity, state.safety, state.safety.share);
-    device.force_sent = safe.force;
-  }
+  for (ProbeState& state : world.touch->probes) write_probe(world, state, tick);
   if (!world.tools) return;
   for (const std::unique_ptr<ToolTouchState>& tool : world.tools->tools)
     if (!tool->is_probe) write_tool(world, *tool, tick);
@@ -167,7 +187,10 @@ void begin_anew(World& world, Entity hand) {
     safety = next;
   };
   for (ProbeState& state : world.touch->probes)
-    if (state.entity == hand) anew(state.safety);
+    if (state.entity == hand) {
+      anew(state.safety);
+      anew(state.torque_safety);
+    }
   if (Probe* probe = world.registry.find<Probe>(hand)) probe->placed = false;
   ToolTouchState* const tool = find_tool(world, hand);
   if (!tool) return;

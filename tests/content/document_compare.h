@@ -96,11 +96,30 @@ class Difference {
     if (a.deformable && b.deformable) {
       const Deformable &p = *a.deformable, &q = *b.deformable;
       same(at + " spring", p.spring, q.spring);
-      for (double Deformable::*member :
-           {&Deformable::stiffness, &Deformable::cubic, &Deformable::stiffening, &Deformable::relaxation_stiffness,
-            &Deformable::relaxation_time, &Deformable::damping_ratio, &Deformable::settling_time,
-            &Deformable::contact_damping, &Deformable::reach, &Deformable::volume, &Deformable::friction_static,
-            &Deformable::friction_sliding, &Deformable::young, &Deformable::poisson, &Deformable::thickness})
+      for (double Deformable::*member : {&Deformable::stiffness,
+                                         &Deformable::cubic,
+                                         &Deformable::stiffening,
+                                         &Deformable::relaxation_stiffness,
+                                         &Deformable::relaxation_time,
+                                         &Deformable::damping_ratio,
+                                         &Deformable::settling_time,
+                                         &Deformable::contact_damping,
+                                         &Deformable::reach,
+                                         &Deformable::volume,
+                                         &Deformable::friction_static,
+                                         &Deformable::friction_sliding,
+                                         &Deformable::friction_stribeck,
+                                         &Deformable::friction_viscous,
+                                         &Deformable::texture_amplitude,
+                                         &Deformable::texture_wavelength,
+                                         &Deformable::texture_seed,
+                                         &Deformable::transient_amplitude,
+                                         &Deformable::transient_frequency,
+                                         &Deformable::transient_decay,
+                                         &Deformable::relief,
+                                         &Deformable::young,
+                                         &Deformable::poisson,
+                                         &Deformable::thickness})
         same(at + " a number of deformable", p.*member, q.*member);
       same(at + " contact damping of the material", p.contact_damping_material, q.contact_damping_material);
       same(at + " response", p.response, q.response);

@@ -40,6 +40,11 @@ TEST(Extension, EveryKeyOfADeformableIsRead) {
                                           {"distance", "surface"},
                                           {"friction_static", 0.6},
                                           {"friction_sliding", 0.2},
+                                          {"friction_stribeck", 0.03},
+                                          {"friction_viscous", 0.7},
+                                          {"texture", {{"amplitude", 2e-5}, {"wavelength", 3e-3}, {"seed", 5}}},
+                                          {"transient", {{"amplitude", 4}, {"frequency", 120}, {"decay", 30}}},
+                                          {"relief", 0.8},
                                           {"crease_angle", 0.4}})
                                   .load();
   ASSERT_TRUE(level.ok()) << level.error().message();
@@ -60,6 +65,15 @@ TEST(Extension, EveryKeyOfADeformableIsRead) {
   EXPECT_EQ(it.volume, 0.5);
   EXPECT_EQ(it.friction_static, 0.6);
   EXPECT_EQ(it.friction_sliding, 0.2);
+  EXPECT_EQ(it.friction_stribeck, 0.03);
+  EXPECT_EQ(it.friction_viscous, 0.7);
+  EXPECT_EQ(it.texture_amplitude, 2e-5);
+  EXPECT_EQ(it.texture_wavelength, 3e-3);
+  EXPECT_EQ(it.texture_seed, 5.0);
+  EXPECT_EQ(it.transient_amplitude, 4.0);
+  EXPECT_EQ(it.transient_frequency, 120.0);
+  EXPECT_EQ(it.transient_decay, 30.0);
+  EXPECT_EQ(it.relief, 0.8);
   EXPECT_EQ(it.crease_angle, 0.4);
 }
 

@@ -52,7 +52,7 @@ TEST(KeyTable, EveryRangeOfADeformableIsThatOfTheTouchClock) {
     }
     ++checked;
   }
-  EXPECT_EQ(checked, 13u);
+  EXPECT_EQ(checked, 22u);
 }
 
 // A valid value of the key that differs from `other`; no number for a vector, which would be accepted.
@@ -61,6 +61,7 @@ Json other_value(const Key& key, const Json& other) {
                                      1.0,
                                      20.0,
                                      0.25,
+                                     0.001,
                                      !other.is_boolean() || !other.get<bool>(),
                                      "some text",
                                      Json::array({0.5, 0.25}),

@@ -1,9 +1,14 @@
 // The height texture in a material's extras: preserved by saving; other extras are not trusted.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
+#include "content/keys/extensions.h"
+#include "content/keys/unused_keys.h"
+#include "content/level/unfelt_relief.h"
 #include "content/level_file.h"
 
 namespace pliant {
@@ -71,6 +76,47 @@ TEST(Relief, ExtrasOfAnotherFormAreLeftAlone) {
     ASSERT_TRUE(level.ok()) << extras << ": " << level.error().message();
     EXPECT_EQ(level->materials.at(0).height_texture, -1) << extras;
   }
+}
+
+// The relief of `effects` is that of its studs alone, whether a world copies or takes the images.
+TEST(Relief, IsMadeForTheSurfacesThatAreToFeelIt) {
+  for (const bool moves : {false, true}) {
+    Result<Level> level = load_level(PLIANT_SOURCE_DIR "/content/levels/effects.glb");
+    ASSERT_TRUE(level.ok()) << level.error().message();
+    EXPECT_FALSE(unfelt_relief(*level));
+    std::vector<std::string> notes;
+    const Result<World> world = moves ? spawn_moving_images(*level, &notes) : spawn(*level, &notes);
+    ASSERT_TRUE(world.ok()) << world.error().message();
+    EXPECT_THAT(notes, testing::IsEmpty());
+    int felt = 0;
+    for (auto [entity, deformable] : world->registry.view<const Deformable>()) {
+      EXPECT_EQ(world->meshes[deformable.mesh].relief != nullptr, deformable.relief > 0.0);
+      felt += deformable.relief > 0.0;
+    }
+    EXPECT_EQ(felt, 1);
+  }
+}
+
+TEST(Relief, ThatIsDrawnAndNotFeltIsSaidOnceUnlessItIsMeant) {
+  Result<Level> level = load_level(PLIANT_SOURCE_DIR "/content/levels/effects.glb");
+  ASSERT_TRUE(level.ok()) << level.error().message();
+  const auto studs = std::find_if(level->nodes.begin(), level->nodes.end(),
+                                  [](const LevelNode& node) { return node.name == "studs"; });
+  ASSERT_NE(studs, level->nodes.end());
+  studs->deformable->relief = 0.0;
+  studs->stated.erase("deformable.relief");
+  const std::optional<Note> note = unfelt_relief(*level);
+  ASSERT_TRUE(note);
+  EXPECT_EQ(note->code, "relief.unfelt");
+  EXPECT_EQ(note->what, "`studs`: the relief that its material draws is not felt");
+  EXPECT_EQ(set_key(*level, "studs.deformable.relief=0").ok(), true);
+  EXPECT_FALSE(unfelt_relief(*level));
+  EXPECT_TRUE(set_key(*level, "glass.deformable.relief=1").ok());
+  const std::vector<Note> unused = unused_key_notes(*level);
+  ASSERT_EQ(unused.size(), 1u);
+  EXPECT_EQ(unused[0].what,
+            "`glass`: PLIANT_deformable/relief is of normal and height maps, and no material of the mesh has one with "
+            "texture coordinates");
 }
 
 }  // namespace

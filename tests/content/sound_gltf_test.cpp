@@ -196,7 +196,7 @@ TEST_F(SoundGltf, WhatPreparingARunRefusesIsSaidOfTheNode) {
   EXPECT_EQ(found.back().message(), "cannot be prepared");
 }
 
-TEST_F(SoundGltf, AnExtensionInTheWrongPlaceIsToldTheRightOne) {
+TEST_F(SoundGltf, OfAnExtensionInTheWrongPlaceTheRightOneIsNamed) {
   const auto said = [&](const char* extension, const std::function<void(Json&)>& change, const char* sentence) {
     Gltf gltf = tetrahedron();
     gltf.json["extensionsUsed"] = {extension};

@@ -117,7 +117,7 @@ TEST(TetFile, AFalseClaimOfCellEntriesIsOverlooked) {
   EXPECT_EQ(file->tets.size(), 1u);
 }
 
-TEST(TetFile, FaultsAreToldInOneSentenceWithTheirPlace) {
+TEST(TetFile, FaultsAreReportedInOneSentenceWithTheirPlace) {
   const auto expect = [](const Parse& parse, std::string text, const char* from, const char* to, const char* where,
                          const char* what) {
     const std::size_t at = text.find(from);

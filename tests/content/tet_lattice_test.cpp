@@ -291,12 +291,12 @@ TEST(TetFocus, FillsTheSameVolumeWithFineCellsWhereItIsAskedTo) {
   const dmat3 turned(dvec3(c, s, 0), dvec3(-s, c, 0), dvec3(0, 0, 1));
   for (const dvec3 center : {dvec3(0.14, 0, 0), dvec3(0, 0.1, 0.04), dvec3(0.3, 0.3, 0.3)}) {
     const LatticeFocus focus{center, 0.02, turned};
-    LatticeOptions wish;
-    wish.cell = 0.005;
-    wish.focus = focus;
-    const Result<TetMesh> mesh = fill_surface(surface, wish);
+    LatticeOptions options;
+    options.cell = 0.005;
+    options.focus = focus;
+    const Result<TetMesh> mesh = fill_surface(surface, options);
     ASSERT_TRUE(mesh.ok()) << mesh.error().message();
-    const TetMesh coarse = lattice(surface, LatticeFocus::kGrowth * wish.cell);
+    const TetMesh coarse = lattice(surface, LatticeFocus::kGrowth * options.cell);
     EXPECT_LT(std::abs(total_volume(*mesh) - volume), std::abs(total_volume(coarse) - volume));
     expect_conforming(*mesh);
     EXPECT_GT(mesh->quality.smallest_dihedral, 5 * kDegree) << "of a lattice drawn out by 1.8";
@@ -307,12 +307,12 @@ TEST(TetFocus, FillsTheSameVolumeWithFineCellsWhereItIsAskedTo) {
       for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t k = i + 1; k < 4; ++k) {
           const dvec3 a = mesh->nodes[tet[i]], b = mesh->nodes[tet[k]];
-          const double width = wish.cell * focus.width_at(0.5 * (a + b));
+          const double width = options.cell * focus.width_at(0.5 * (a + b));
           EXPECT_LT(length(b - a), 2.2 * width);
           if (length(0.5 * (a + b) - center) < 0.02) shortest = std::min(shortest, length(b - a));
         }
-    if (center.x < 0.3) EXPECT_LT(shortest, wish.cell);
-    const Result<TetMesh> even = fill_surface(surface, {wish.cell, Fill::kSolid, 0.0, {}, {}});
+    if (center.x < 0.3) EXPECT_LT(shortest, options.cell);
+    const Result<TetMesh> even = fill_surface(surface, {options.cell, Fill::kSolid, 0.0, {}, {}});
     ASSERT_TRUE(even.ok());
     EXPECT_LT(mesh->tets.size(), even->tets.size() / 4);
   }

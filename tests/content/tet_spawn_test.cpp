@@ -173,7 +173,7 @@ TEST(SpawnSoft, ARigidBodyHasASkinAndIsDrawn) {
   EXPECT_TRUE(world.registry.has<Pose>(thing) && world.registry.has<Drawable>(thing));
 }
 
-TEST(SpawnSoft, ValidateTellsContradictionsNotesOfFilesAndTissueThatFallsApart) {
+TEST(SpawnSoft, ValidateReportsContradictionsNotesOfFilesAndTissueThatFallsApart) {
   const Temporary file("notes.vtk", std::string(kBlock).replace(std::string(kBlock).find("4 0 1 2 4"), 9, "4 0 2 1 4"));
   const auto findings = [&](auto change) {
     Level level = ball();

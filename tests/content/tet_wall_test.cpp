@@ -66,8 +66,8 @@ Primitive jar(double thickness, double half) {
   return p;
 }
 
-TetMesh filled(const BuiltMesh& surface, const LatticeOptions& wish = {}) {
-  Result<TetMesh> mesh = fill_surface(surface.mesh, wish);
+TetMesh filled(const BuiltMesh& surface, const LatticeOptions& options = {}) {
+  Result<TetMesh> mesh = fill_surface(surface.mesh, options);
   EXPECT_TRUE(mesh.ok()) << mesh.error().message();
   return mesh ? std::move(*mesh) : TetMesh{};
 }
@@ -116,16 +116,16 @@ TEST(Wall, ThickWallsStayHollowAndSolidsAreNoWalls) {
 }
 
 TEST(Wall, WithAThicknessItIsALayerBehindTheSurface) {
-  LatticeOptions wish{0.16, Fill::kWall, 0.3, {}};
+  LatticeOptions options{0.16, Fill::kWall, 0.3, {}};
   const double layer = kBall * (1.0 - 0.7 * 0.7 * 0.7);
   for (const BuiltMesh& surface : {built({icosphere(4)}), built(capsule(0.01f))}) {
-    const TetMesh mesh = filled(surface, wish);
+    const TetMesh mesh = filled(surface, options);
     EXPECT_NEAR(total_volume(mesh), layer, 0.1 * layer);
     EXPECT_EQ(count_parts(mesh), 1u);
   }
   // Without a given cell, the number of elements is also limited.
-  wish.cell = 0.0;
-  EXPECT_LE(filled(built({icosphere(4)}), wish).tets.size(), kMostUsualTets);
+  options.cell = 0.0;
+  EXPECT_LE(filled(built({icosphere(4)}), options).tets.size(), kMostUsualTets);
 }
 
 TEST(Wall, AnOpenSheetGetsItsThicknessInwardsAndIsRefusedWithoutOne) {

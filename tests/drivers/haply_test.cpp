@@ -192,12 +192,12 @@ TEST(Haply, AMissingServiceAndAMissingDeviceAreOneSentenceEach) {
 
 // The process is killed under 1 N. What it leaves behind says one more thing on the same line.
 TEST(HaplyDevice, AfterKillNineAGuardProcessSendsAMessageOfZeroForce) {
-  int told[2];
-  ASSERT_EQ(::pipe(told), 0);
+  int to_child[2];
+  ASSERT_EQ(::pipe(to_child), 0);
   const pid_t engine = ::fork();  // before there is a thread
   if (engine == 0) {
     int port = 0;
-    if (::read(told[0], &port, sizeof port) != sizeof port) ::_exit(3);
+    if (::read(to_child[0], &port, sizeof port) != sizeof port) ::_exit(3);
     Servo servo(std::make_unique<Haply>(to_port(port)));
     if (!servo.open("") || !servo.start()) ::_exit(4);
     for (double wanted = 0.0;;) {
@@ -219,13 +219,13 @@ TEST(HaplyDevice, AfterKillNineAGuardProcessSendsAMessageOfZeroForce) {
       ::usleep(1000);
     }
   });
-  ASSERT_EQ(::write(told[1], &service.port, sizeof service.port), static_cast<ssize_t>(sizeof service.port));
+  ASSERT_EQ(::write(to_child[1], &service.port, sizeof service.port), static_cast<ssize_t>(sizeof service.port));
   EXPECT_TRUE(soon([&] { return std::abs(commanded(service).z - 1.0) < 1e-4; })) << "up is z there";
   ::kill(engine, SIGKILL);
   ::waitpid(engine, nullptr, 0);
   EXPECT_TRUE(soon([&] { return commanded(service) == dvec3(0); }));
   hand.join();
-  for (const int end : told) ::close(end);
+  for (const int end : to_child) ::close(end);
 }
 
 }  // namespace

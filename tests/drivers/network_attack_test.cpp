@@ -79,7 +79,7 @@ TEST(NetworkAttack, AFrameThatWasKeptIsNoForceInItsOwnSession) {
 }
 
 // Half a round of sequences later the numbers of an old frame would follow; its time does not.
-TEST(NetworkAttack, AFrameThatWasKeptFromHalfARoundAgoIsToldByItsTime) {
+TEST(NetworkAttack, AFrameThatWasKeptFromHalfARoundAgoIsKnownByItsTime) {
   Tapped line;
   line.open();
   line.press(50);
@@ -150,7 +150,7 @@ TEST(NetworkAttack, AStateThatWasKeptIsNoPoseAndIsSaid) {
   EXPECT_THAT(describe(line.driver.dropped()), HasSubstr("doubled, overtaken or replayed"));
 }
 
-TEST(NetworkAttack, AnEngineWithAnotherKeyMovesNothingIsCountedAndIsTold) {
+TEST(NetworkAttack, AnEngineWithAnotherKeyMovesNothingIsCountedAndGetsTheReason) {
   Tapped line;
   const Status opened = line.driver.open(",key-env=PLIANT_TEST_OTHER_KEY");
   ASSERT_FALSE(opened);
@@ -196,7 +196,7 @@ TEST(NetworkAttack, ADeviceThatComesBackWithAnotherKeyRendersNothing) {
     ASSERT_EQ(line.bench.felt.force, dvec3(0));
   }
   EXPECT_GT(line.bench.device->counts().key, 2000u);
-  // What answers in its name without the right key is dropped, counted and said, with the cure.
+  // An answer in its name without the right key is dropped, counted and said, with the cure.
   NetworkFrame forged;
   forged.kind = FrameKind::kState;
   forged.session = 5;

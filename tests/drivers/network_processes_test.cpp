@@ -142,7 +142,7 @@ TEST(NetworkProcesses, AKeyLetsInWhoHasItAndNobodyElse) {
   DeviceSample sample;
   EXPECT_TRUE(runs_until(right, sample, {.force = {0, 0.4, 0}}, [&](bool) { return sample.position.y > -0.001; }));
   EXPECT_EQ(right.dropped().damaged() + right.dropped().key, 0u);
-  // A second engine is told who has the device, but only with the key.
+  // A second engine gets the name of the one that has the device, but only with the key.
   NetworkDevice second;
   const Kept kept(right);
   const auto busy = second.open(port + ",key=" + key.path);

@@ -193,7 +193,7 @@ TEST(Polhem, TheForceThatTheArmRendersIsTheForceThatWasWritten) {
   }
 }
 
-TEST(Polhem, PenButtonAndGimbalAreToldApart) {
+TEST(Polhem, PenButtonAndGimbalAreDistinguished) {
   PolhemInput input;
   EmulatedPolhem arm(kPolhemConfigs[0]);
   arm.turn = {-900, 20, 30};

@@ -54,7 +54,7 @@ TEST(FileLock, StandsBesideTheFileWhileItIsHeldAndIsGoneAfterwards) {
   EXPECT_TRUE(fs::is_empty(folder.path));
 }
 
-TEST(FileLock, OfAnEditorThatRunsIsToldAndNotTaken) {
+TEST(FileLock, OfAnEditorThatRunsIsReportedAndNotTaken) {
   const OwnFolder folder("lock_other");
   const fs::path file = folder.path / "small.glb";
   OtherEditor other(file);
@@ -91,7 +91,7 @@ TEST(FileLock, OfAProcessNumberThatIsUsedAgainIsNobodys) {
   EXPECT_FALSE(lock_holder(file));
 }
 
-TEST(FileLock, OfAnotherHostCountsForNobodyCanTell) {
+TEST(FileLock, OfAnotherHostCountsBecauseItCannotBeChecked) {
   const OwnFolder folder("lock_host");
   const fs::path file = folder.path / "small.glb";
   std::ofstream(lock_of(file)) << R"({"process": 1, "started": 1, "host": "ward3", "user": "anna",

@@ -186,7 +186,7 @@ TEST_F(FilesWindowTest, TheEditorsConsoleIsFilteredAndCleared) {
   ASSERT_EQ(said.status, 0) << said.err;
 }
 
-TEST_F(FilesWindowTest, ASecondEditorOnAFileIsToldAndMayOpenItReadOnly) {
+TEST_F(FilesWindowTest, ASecondEditorOnAFileIsWarnedAndMayOpenItReadOnly) {
   std::ofstream(folder / ".small.glb.lock") << R"({"process": 1, "started": 1, "host": "ward3", "user": "anna",
                                                   "since": "2026-05-04 10:03"})";
   const std::string before = read_text(folder / "small.glb");

@@ -64,7 +64,7 @@ class FirstLevelWindowTest : public CommandTest, public ::testing::WithParamInte
     name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
     return name;
   }
-  static std::string told(const Story& it) {
+  static std::string text_of(const Story& it) {
     const std::string tool = it.tool;
     std::string story = std::string("click Start/Open organ…\nawait Files/Path\nclick Files/") + it.organ +
                         ".glb double\nawait Inspector/Search\nclick Viewport@0.5,0.5\nclick Tab/Tissue\n";
@@ -101,7 +101,7 @@ class FirstLevelWindowTest : public CommandTest, public ::testing::WithParamInte
 
 TEST_P(FirstLevelWindowTest, AnOrganIsTouchedAndTheFileFeelsTheSame) {
   const Story& it = GetParam();
-  const std::string story = told(it), organ = it.organ;
+  const std::string story = text_of(it), organ = it.organ;
   std::size_t actions = 0;
   std::istringstream lines(story);
   for (std::string line; std::getline(lines, line);)

@@ -290,7 +290,7 @@ TEST(PaintSurface, ABoxHoldsItsVerticesOrElseTheNearestOne) {
   EXPECT_LT(length(surface.mesh().position(nearest[0]) - vec3(0.3f, 0.4f, 0)), 1e-6f);
 }
 
-TEST(PaintSurface, ItStopsWhenItIsToldTo) {
+TEST(PaintSurface, ItStopsOnRequest) {
   std::atomic<bool> stop{true};
   EXPECT_FALSE(PaintSurface::make(LevelMesh{"mesh", {icosphere(3)}}, dmat3(1), &stop).ok());
   stop = false;

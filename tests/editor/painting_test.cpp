@@ -5,6 +5,7 @@
 
 #include "editor/app/editor.h"
 #include "editor/tools/paint_legend.h"
+#include "plot/heat.h"
 #include "tests/content/mesh_shapes.h"
 
 namespace pliant::test {
@@ -280,13 +281,12 @@ TEST(PaintLegendTest, TicksStandWhereTheColoursAre) {
   }
 }
 
-// The ramp is written twice, here and in editor_solid.frag: dark to light, evenly.
-TEST(PaintLegendTest, TheRampGoesFromDarkToLight) {
+// Viridis is written twice, in plot/heat.cpp and in editor_solid.frag: dark to light, evenly.
+TEST(PaintLegendTest, TheColoursGoFromDarkToLight) {
   double before = -1.0;
   for (int i = 0; i <= 20; ++i) {
-    const ImVec4 c = ramp(i / 20.0);
-    const double light =
-        0.2126 * static_cast<double>(c.x) + 0.7152 * static_cast<double>(c.y) + 0.0722 * static_cast<double>(c.z);
+    const Color c = heat(i / 20.0);
+    const double light = 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
     EXPECT_GT(light, before);
     before = light;
   }

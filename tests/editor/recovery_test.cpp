@@ -190,9 +190,9 @@ TEST(Recovery, AFolderThatCannotBeWrittenDoesNotKeepTheCopyFromBeingWritten) {
 
 // The program as far as it matters here: edits without end, each known to have been made once its line is written.
 TEST(Recovery, EditsUntilItIsKilled) {
-  const char* const told = std::getenv("PLIANT_EDIT_UNTIL_KILLED");
-  if (!told) GTEST_SKIP() << "the other half of AKillAtAnyMoment...; it runs this one";
-  const fs::path folder = told;
+  const char* const value = std::getenv("PLIANT_EDIT_UNTIL_KILLED");
+  if (!value) GTEST_SKIP() << "the other half of AKillAtAnyMoment...; it runs this one";
+  const fs::path folder = value;
   Editor editor;
   Result<Document> document = Document::open(folder / "small.glb");
   ASSERT_TRUE(document.ok());
@@ -214,8 +214,8 @@ TEST(Recovery, EditsUntilItIsKilled) {
 }
 
 TEST(Recovery, AKillAtAnyMomentLosesNoMoreThanTheIntervalAndLeavesEveryFileWhole) {
-  const char* const told = std::getenv("PLIANT_KILLS");
-  const int kills = told ? std::atoi(told) : 4;
+  const char* const value = std::getenv("PLIANT_KILLS");
+  const int kills = value ? std::atoi(value) : 4;
   const OwnFolder folder("recovery_kill");
   const fs::path file = folder.path / "small.glb";
   ASSERT_TRUE(save_level(testing::sheet_and_finger(), file).ok());

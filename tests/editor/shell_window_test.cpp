@@ -197,7 +197,7 @@ TEST_F(ShellWindowTest, WhatTakesLongToOpenCanBeGivenUp) {
   for (const char* cancel : {"click Opening/Cancel\n", "key Esc\n"}) {
     const std::string gives_up = std::string("await Opening/Cancel\n") + cancel + "say Given up: Opening large.obj\n";
     expect_done("large.obj", gives_up + "screenshot given_up.png\nexpect Start/Open organ…\nclose\n");
-    // What was open stays, with its changes.
+    // The open level stays, with its changes.
     expect_done("small.glb",
                 "click Scene/finger/row\nkey Delete\nkey Ctrl+S\nkey Ctrl+Z\nkey Ctrl+S\nkey Ctrl+O\n"
                 "await Files/Path\nset Files/Path " +

@@ -214,31 +214,31 @@ TEST(LateTick, ToolsOnATowerFeelNoBlowWhateverWasMissed) {
   compare("stack.glb", Led::kScript, 2200);
 }
 
-// A device that keeps what it was told is told nothing in free air, from the first tick after a stall on.
-TEST(LateTick, DriversWithoutAServoAreToldNoBlowWhateverWasMissed) {
+// A device that keeps its last wrench is sent nothing in free air, from the first tick after a stall on.
+TEST(LateTick, DriversWithoutAServoAreSentNoBlowWhateverWasMissed) {
   compare("instrument.glb", Led::kDriver, 1500);
   compare("turning_ball.glb", Led::kDriver, 1500);
 }
 
-TEST(LateTick, ADriverOfAHandWithoutAServoIsToldNoBlowWhateverWasMissed) {
+TEST(LateTick, ADriverOfAHandWithoutAServoIsSentNoBlowWhateverWasMissed) {
   compare("hand.glb", Led::kDriver, 2200);
 }
 
-TEST(LateTick, ADriverAtATowerWithoutAServoIsToldNoBlowWhateverWasMissed) {
+TEST(LateTick, ADriverAtATowerWithoutAServoIsSentNoBlowWhateverWasMissed) {
   compare("stack.glb", Led::kDriver, 2200);
 }
 
 // Every period of the servo is judged, those in the stall among them.
-TEST(LateTick, DriversWithAServoAreToldNoBlowWhateverWasMissed) {
+TEST(LateTick, DriversWithAServoAreSentNoBlowWhateverWasMissed) {
   compare("instrument.glb", Led::kServo, 1500);
   compare("turning_ball.glb", Led::kServo, 1500);
 }
 
-TEST(LateTick, ADriverOfAHandWithAServoIsToldNoBlowWhateverWasMissed) {
+TEST(LateTick, ADriverOfAHandWithAServoIsSentNoBlowWhateverWasMissed) {
   compare("hand.glb", Led::kServo, 2200);
 }
 
-TEST(LateTick, ADriverAtATowerWithAServoIsToldNoBlowWhateverWasMissed) {
+TEST(LateTick, ADriverAtATowerWithAServoIsSentNoBlowWhateverWasMissed) {
   compare("stack.glb", Led::kServo, 2200);
 }
 

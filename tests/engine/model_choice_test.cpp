@@ -220,15 +220,15 @@ TEST(ModelChoice, EveryKeyThatIsChosenIsNamedAsChoosableAndOneThatIsSaidIsNot) {
   EXPECT_EQ(choosable_keys(level, 0).size(), 3u) << "`volume` stands for a shape";
 }
 
-TEST(ModelChoice, AWatchIsToldWhatIsDoneAndMayEndIt) {
+TEST(ModelChoice, AWatchGetsTheProgressAndMayEndIt) {
   for (const std::size_t n : {0u, 1u}) {
     Level level = both_level();
-    int told = 0;
+    int calls = 0;
     const auto stopped = choose_model(level, n, [&](const std::string& doing) {
       EXPECT_NE(doing.find(level.nodes[n].name), std::string::npos);
-      return ++told < 3;
+      return ++calls < 3;
     });
-    EXPECT_EQ(told, 3);
+    EXPECT_EQ(calls, 3);
     ASSERT_FALSE(stopped);
     EXPECT_NE(stopped.error().message().find("was not measured to the end"), std::string::npos);
     EXPECT_EQ(node_extensions(level.nodes[n], Json()), node_extensions(both_level().nodes[n], Json()));

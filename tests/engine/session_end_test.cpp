@@ -225,7 +225,7 @@ TEST(SessionEnd, ForcesOfARefinedMeshAreOnTheVerticesThatWereGiven) {
 enum class Does : int { kSolves, kHangs, kThrowsANumber, kThrows };
 std::atomic<Does> does{Does::kSolves};
 std::atomic<int> hanging{0};
-class ToldSolver final : public BlackBoxSolver {
+class ControlledSolver final : public BlackBoxSolver {
  public:
   bool factorise(const BlockRows& matrix) override {
     diagonal_.assign(3 * matrix.size, 1.0);
@@ -247,10 +247,10 @@ class ToldSolver final : public BlackBoxSolver {
   std::vector<double> diagonal_;
 };
 Scene cube_scene() {
-  static const auto kind = register_solver("session_end_told", []() -> std::unique_ptr<BlackBoxSolver> {
+  static const auto kind = register_solver("session_end_controlled", []() -> std::unique_ptr<BlackBoxSolver> {
     if (does == Does::kThrowsANumber) throw 7;
     if (does == Does::kThrows) throw std::runtime_error("no licence");
-    return std::make_unique<ToldSolver>();
+    return std::make_unique<ControlledSolver>();
   });
   EXPECT_TRUE(kind);
   Scene scene = press_scene();

@@ -37,7 +37,7 @@ TEST(SessionOpen, SaysHowFarItIsAndWhatItDoes) {
   EXPECT_TRUE(session->step());
 }
 
-TEST(SessionOpen, EndsWhereItIsToldToAndLeavesNothing) {
+TEST(SessionOpen, EndsOnRequestAndLeavesNothing) {
   const Scene scene = large_scene();
   int calls = 0;
   auto all = Session::open(scene, [&](double, const std::string&) { return ++calls > 0; });

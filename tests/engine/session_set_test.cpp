@@ -89,6 +89,7 @@ std::vector<Case> surface_cases() {
   const D exponential = with([](D& d) { d.spring = SpringLaw::kExponential; });
   const D solid = with([](D& d) { d.spring = SpringLaw::kStandardLinearSolid, d.relaxation_time = 0.05; });
   const D hertz = with([](D& d) { d.shape = Shape::kHertz; });
+  const D rough = with([](D& d) { d.texture_amplitude = 2e-4, d.texture_wavelength = 0.01; });
   const auto and_then = [](D d, auto change) {
     change(d);
     return d;
@@ -117,6 +118,15 @@ std::vector<Case> surface_cases() {
        number("friction_sliding", 0.1)},
       {"friction", usual, and_then(usual, [](D& d) { d.friction_static = d.friction_sliding = 0.5; }),
        number("friction", 0.5)},
+      {"friction_stribeck", usual, and_then(usual, [](D& d) { d.friction_stribeck = 1.0; }),
+       number("friction_stribeck", 1.0)},
+      {"friction_viscous", usual, and_then(usual, [](D& d) { d.friction_viscous = 5.0; }),
+       number("friction_viscous", 5.0)},
+      {"texture.amplitude", usual, and_then(usual, [](D& d) { d.texture_amplitude = 2e-4; }),
+       number("texture.amplitude", 2e-4)},
+      {"texture.wavelength", rough, and_then(rough, [](D& d) { d.texture_wavelength = 0.02; }),
+       number("texture.wavelength", 0.02)},
+      {"texture.seed", rough, and_then(rough, [](D& d) { d.texture_seed = 3; }), number("texture.seed", 3)},
       {"settling_time", usual, and_then(usual, [](D& d) { d.settling_time = 0.2; }), number("settling_time", 0.2),
        false},
       {"damping_ratio", usual, and_then(usual, [](D& d) { d.damping_ratio = 3.0; }), number("damping_ratio", 3.0),

@@ -358,7 +358,7 @@ TEST(Session, WhatADriverThrowsEndsTheRunWithZeroForce) {
   EXPECT_EQ(log.last, 0.0);
 }
 
-TEST(Session, APoseToldOncePerPictureIsReachedWithoutALoss) {
+TEST(Session, APosePrescribedOncePerPictureIsReachedWithoutALoss) {
   Session session = opened(press_scene());
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "session_live.rec";
   std::filesystem::remove(file);

@@ -1,4 +1,4 @@
-// Which device a wish means.
+// Which device a request means.
 #include "devices/choose.h"
 
 #include <gmock/gmock.h>

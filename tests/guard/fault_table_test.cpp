@@ -29,7 +29,7 @@ struct Row {
   double safe = -1.0;    // [ms] until nothing more leaves; < 0: it stays in service
   bool still_on = false;
   DeviceState state{};
-  std::string causes;
+  std::string cause;  // of the first transition
 };
 
 // The cause without the remedy.
@@ -66,8 +66,7 @@ Row play(const Fault& fault) {
   for (std::uint64_t i = 0; i < kept; ++i) {
     const std::uint64_t number = report.transitions - kept + i;
     if (number < before) continue;
-    const std::string cause = short_cause(report.transition(i));
-    if (row.causes.find(cause) == std::string::npos) row.causes += (row.causes.empty() ? "" : "; ") + cause;
+    if (row.cause.empty()) row.cause = short_cause(report.transition(i));
   }
   return row;
 }
@@ -163,13 +162,13 @@ std::vector<Fault> faults() {
   all.push_back(
       {"saturation: the hand pushes through", [](WallRig&) {},
        [](WallRig& rig, double since) { rig.device.hand.wants = -0.006 - 0.024 * std::min(1.0, since / 0.3); }});
-  all.push_back({"delay of 20 ms, told by the samples' time",
+  all.push_back({"delay of 20 ms, shown by the samples' time",
                  sensing([line = Line{}](DeviceSample& s) mutable {
                    s = line.pass(s, 20);
                    return true;
                  }),
                  {}});
-  all.push_back({"delay of 20 ms, told by nothing", sensing([line = Line{}](DeviceSample& s) mutable {
+  all.push_back({"delay of 20 ms, shown by nothing", sensing([line = Line{}](DeviceSample& s) mutable {
                    const double now = s.time;
                    s = line.pass(s, 20);
                    s.time = now;
@@ -292,34 +291,33 @@ std::vector<Fault> faults() {
 }
 
 std::string in_table(const Row& row) {
-  const std::string safe = row.still_on ? "stays in service" : fmt::format("{:.0f} ms", row.safe);
-  return fmt::format("| {} | {:.2f} N | {:.1f} mJ | {} | {} | {} |\n", row.name, row.largest,
-                     std::max(0.0, row.given) + 0.0, safe, name_of(row.state), row.causes.empty() ? "-" : row.causes);
+  const std::string safe = row.still_on ? "never" : fmt::format("{:.0f}", row.safe);
+  return fmt::format("| {} | {:.2f} | {:.1f} | {} | {} | {} |\n", row.name, row.largest, std::max(0.0, row.given) + 0.0,
+                     safe, name_of(row.state), row.cause.empty() ? "-" : row.cause);
 }
 
 constexpr const char* kOthers =
-    "| duplicate device: the same one opened twice | 0.00 N | 0.0 mJ | refused | disconnected | moves another effector "
+    "| duplicate device: the same one opened twice | 0.00 | 0.0 | refused | disconnected | moves another effector "
     "already |\n"
-    "| two writers: another program has the device | 0.00 N | 0.0 mJ | refused | disconnected | is held by another "
-    "program |\n"
-    "| library missing a symbol | 0.00 N | 0.0 mJ | refused | disconnected | its driver does not open |\n"
-    "| process stopped (SIGSTOP) | as it was | - | by the guard process after 50 ms, where the driver has a line for "
-    "it ([which have](#lines-of-the-guard-process)); else by the device's own watchdog | tripped when it goes on | "
-    "its servo did not run in time |\n"
-    "| kill -9 | as it was | - | by the guard process at once, where the driver has a line for it "
-    "([which have](#lines-of-the-guard-process)); else by the device's own watchdog | - | - |\n"
-    "| crash (SIGSEGV, abort) and SIGTERM | 0.00 N | - | at once, by the signal handler | - | - |\n";
+    "| two writers: another program has the device | 0.00 | 0.0 | refused | disconnected | is held by another program "
+    "|\n"
+    "| library missing a symbol | 0.00 | 0.0 | refused | disconnected | its driver does not open |\n"
+    "| process stopped (SIGSTOP) | as it was | - | 50, by the [guard process](#lines-of-the-guard-process), else by "
+    "the "
+    "device | tripped when it goes on | its servo did not run in time |\n"
+    "| kill -9 | as it was | - | 0, by the [guard process](#lines-of-the-guard-process), else by the device | - | - |\n"
+    "| crash (SIGSEGV, abort) and SIGTERM | 0.00 | - | 0, by the signal handler | - | - |\n";
 
 TEST(FaultTable, EveryFaultEndsWithoutForceOrWithinTheLimitsAndTheTableSaysHow) {
   std::string table =
-      "| fault, while a hand presses 1 N into a wall of 400 N/m | largest force after it | energy out | force gone "
-      "after | state 3 s later | why |\n|---|---|---|---|---|---|\n";
+      "| fault, while a hand presses 1 N into a wall of 400 N/m | largest force after it [N] | energy out [mJ] | force "
+      "gone after [ms] | state 3 s later | first cause |\n|---|---|---|---|---|---|\n";
   for (const Fault& fault : faults()) {
     const Row row = play(fault);
     table += in_table(row);
     EXPECT_LE(row.largest, 3.3 * (1 + 1e-9)) << row.name;
     // No sample shows a delay that is not reported.
-    EXPECT_LT(row.given, std::string(fault.name).find("told by nothing") == std::string::npos ? 25.0 : 150.0)
+    EXPECT_LT(row.given, std::string(fault.name).find("shown by nothing") == std::string::npos ? 25.0 : 150.0)
         << row.name << " [mJ]";
   }
   // Those that need processes, or cannot occur here: each has its own test in process_fault_test.cpp.

@@ -247,8 +247,8 @@ TEST(ProcessFault, EverySpellingOfADeviceIsThatDevice) {
       {"falcon", "falcon:/some/firmware.bin"},
   };
   for (const auto& [ours, theirs] : same) {
-    int told[2], done[2];
-    ASSERT_EQ(::pipe(told), 0);
+    int started[2], done[2];
+    ASSERT_EQ(::pipe(started), 0);
     ASSERT_EQ(::pipe(done), 0);
     const pid_t other = ::fork();
     if (other == 0) {
@@ -256,19 +256,19 @@ TEST(ProcessFault, EverySpellingOfADeviceIsThatDevice) {
       ::setenv("XDG_RUNTIME_DIR", "/nonexistent", 1);
       DeviceClaim claim;
       char held = claim.take(theirs) ? 'y' : 'n';
-      [[maybe_unused]] ssize_t size = ::write(told[1], &held, 1);
+      [[maybe_unused]] ssize_t size = ::write(started[1], &held, 1);
       size = ::read(done[0], &held, 1);
       ::_exit(0);
     }
     char held = '?';
-    ASSERT_EQ(::read(told[0], &held, 1), 1);
+    ASSERT_EQ(::read(started[0], &held, 1), 1);
     EXPECT_EQ(held, 'y') << theirs;
     const Status taken = DeviceClaim().take(ours);
     EXPECT_FALSE(taken) << ours << " and " << theirs;
     if (!taken)
       EXPECT_THAT(taken.error().message(),
                   testing::HasSubstr("is held by another program (process " + std::to_string(other) + ")"));
-    for (const int end : {told[0], told[1], done[0], done[1]}) ::close(end);
+    for (const int end : {started[0], started[1], done[0], done[1]}) ::close(end);
     ::waitpid(other, nullptr, 0);
     EXPECT_TRUE(DeviceClaim().take(ours)) << "a program that has ended holds nothing";
   }
@@ -279,7 +279,7 @@ TEST(ProcessFault, EverySpellingOfADeviceIsThatDevice) {
 }
 
 // A reopened line: the guard process writes to the new one.
-TEST(ProcessFault, AGuardProcessIsToldOfANewLine) {
+TEST(ProcessFault, AGuardProcessGetsANewLine) {
   int first[2], second[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, first), 0);
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, second), 0);

@@ -91,7 +91,7 @@ TEST(Refound, AnotherDeviceInItsPlaceIsNotTaken) {
   ASSERT_TRUE(comes_true([&] { return device.read(sample); }));
 }
 
-// The servo sends the new line to the guard process (ProcessFault.AGuardProcessIsToldOfANewLine).
+// The servo sends the new line to the guard process (ProcessFault.AGuardProcessGetsANewLine).
 TEST(Refound, OneWhoseLineAGuardProcessHoldsIsOpenedAnewTooAndHasNoLineMeanwhile) {
   Plug plug;
   plug.guarded = true;

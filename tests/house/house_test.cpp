@@ -28,8 +28,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"content", {"runtime", "components"}},
     {"devices", {"runtime", "components"}},
     {"engine", {"runtime", "components", "systems", "content", "devices"}},
-    {"viewer", {"runtime", "components", "systems", "content", "engine"}},
-    {"editor", {"runtime", "components", "systems", "content", "engine", "devices", "viewer"}},
+    {"viewer", {"runtime", "components", "systems", "content", "engine", "plot"}},
+    {"editor", {"runtime", "components", "systems", "content", "engine", "devices", "plot", "viewer"}},
     {"scenes", {"runtime", "components", "systems", "content"}},
     {"plot", {"runtime"}},
     {"lab", {"runtime", "components", "systems", "content", "devices", "engine", "scenes", "plot"}},
@@ -289,11 +289,11 @@ TEST(House, CommentsAreInPlainWords) {
     std::size_t count = 0;
   };
   std::vector<Habit> habits{{"a sentence that opens with What, Who, Whoever or Whatever",
-                             std::regex("(?:^|[.:;] )Wh(?:at|o)(?:ever)?\\b"), 30},
-                            {"no" + std::string("body"), std::regex("\\bno" + std::string("body\\b")), 8},
-                            {"is t" + std::string("old"), std::regex("\\bis t" + std::string("old\\b")), 8},
-                            {"gives w" + std::string("ay"), std::regex("\\bgives? w" + std::string("ay\\b")), 2},
-                            {"is no, beside is no longer", std::regex("\\bis no\\b(?! longer)"), 45}};
+                             std::regex("(?:^|[.:;] )Wh(?:at|o)(?:ever)?\\b"), 18},
+                            {"no" + std::string("body"), std::regex("\\bno" + std::string("body\\b")), 2},
+                            {"is t" + std::string("old"), std::regex("\\bis t" + std::string("old\\b")), 0},
+                            {"gives w" + std::string("ay"), std::regex("\\bgives? w" + std::string("ay\\b")), 0},
+                            {"is no, beside is no longer", std::regex("\\bis no\\b(?! longer)"), 40}};
   std::size_t comments = 0;
   for (const Source& source : sources())
     for (const std::string& comment : comments_of(source)) {
@@ -304,6 +304,18 @@ TEST(House, CommentsAreInPlainWords) {
     }
   EXPECT_GT(comments, 5000u) << "the comments were not found";
   for (const Habit& habit : habits) EXPECT_LE(habit.count, habit.most) << habit.name;
+}
+
+// Names, too: a device is requested, a motion prescribed, a fault reported.
+TEST(House, NamesAreInTheFieldsWords) {
+  const std::regex habit(std::string("[Ww]is") + "h|\\b" + "tol" + "d|_tol" + "d|[a-z]Tol" + "d|\\bTol" + "d");
+  for (const std::string& word : {std::string("device_wis") + "hes()", std::string("IsTol") + "dSo"})
+    EXPECT_TRUE(std::regex_search(word, habit)) << word;
+  for (const Source& source : sources()) {
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(source.text, found, habit))
+        << source.path << ": " << found.suffix().str().substr(0, 20);
+  }
 }
 
 }  // namespace

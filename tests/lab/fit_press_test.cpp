@@ -56,10 +56,10 @@ const std::vector<std::pair<std::string, std::vector<double>>> kTruths{
 
 TEST(FitPress, WithoutNoiseEveryLawGivesItsParametersBack) {
   for (const auto& [law, values] : kTruths) {
-    RecordFitOptions wish;
-    wish.law = law;
-    wish.model.radius = law == "hertz" ? 0.004 : 0.0;
-    const auto fit = fit_record(record_of(law, 0.0, 1), wish);
+    RecordFitOptions options;
+    options.law = law;
+    options.model.radius = law == "hertz" ? 0.004 : 0.0;
+    const auto fit = fit_record(record_of(law, 0.0, 1), options);
     ASSERT_TRUE(fit.ok()) << fit.error().message();
     for (std::size_t i = 0; i < values.size(); ++i)
       // The rate of the record's path changes between rows, which the sampled solid cannot represent.
@@ -73,11 +73,11 @@ TEST(FitPress, TheTruthIsWithinTheNinetyPercentIntervalForAboutNinetySeedsInAHun
     std::vector<int> inside(values.size(), 0);
     constexpr int kSeeds = 400;
     for (unsigned seed = 0; seed < kSeeds; ++seed) {
-      RecordFitOptions wish;
-      wish.law = law;
-      wish.model.radius = law == "hertz" ? 0.004 : 0.0;
-      wish.confidence = 0.9;
-      const auto fit = fit_record(record_of(law, 0.01, seed), wish);
+      RecordFitOptions options;
+      options.law = law;
+      options.model.radius = law == "hertz" ? 0.004 : 0.0;
+      options.confidence = 0.9;
+      const auto fit = fit_record(record_of(law, 0.01, seed), options);
       ASSERT_TRUE(fit.ok());
       for (std::size_t i = 0; i < values.size(); ++i) {
         const FittedParameter& p = fit->laws[0].parameters[i];
@@ -92,9 +92,9 @@ TEST(FitPress, TheTruthIsWithinTheNinetyPercentIntervalForAboutNinetySeedsInAHun
 
 TEST(FitPress, TheLawThatTheDataHaveIsTheOneThatIsTaken) {
   for (const auto& [law, values] : kTruths) {
-    RecordFitOptions wish;
-    wish.model.radius = law == "hertz" ? 0.004 : 0.0;
-    const auto fit = fit_record(record_of(law, 0.003, 7), wish);
+    RecordFitOptions options;
+    options.model.radius = law == "hertz" ? 0.004 : 0.0;
+    const auto fit = fit_record(record_of(law, 0.003, 7), options);
     ASSERT_TRUE(fit.ok());
     EXPECT_EQ(fit->laws[fit->best].model.law, law);
     EXPECT_LT(fit->laws[fit->best].held_rms, 0.006) << law;
@@ -105,9 +105,9 @@ TEST(FitPress, ABoxHoldsAndWhatStandsOnItHasNoInterval) {
   // A force that grows less than linearly does not stiffen: the exponent goes to its lower bound.
   PressRecord record = record_of("linear", 0.0, 1);
   for (double& f : record.force) f = 20 * (1 - std::exp(-f / 20));
-  RecordFitOptions wish;
-  wish.law = "cubic";
-  const auto fit = fit_record(record, wish);
+  RecordFitOptions options;
+  options.law = "cubic";
+  const auto fit = fit_record(record, options);
   ASSERT_TRUE(fit.ok());
   EXPECT_TRUE(fit->laws[0].parameters[1].on_bound);
   EXPECT_EQ(fit->laws[0].parameters[1].value, 0.0);
@@ -135,21 +135,21 @@ TEST(FitPress, AnyShareOfTheRowsIsHeldOutInStretchesAllOverTheRecord) {
 TEST(FitPress, TheLawThatTheDataHaveIsTakenWhateverShareIsHeldOut) {
   for (const auto& [law, values] : kTruths)
     for (const double share : {0.0, 0.02, 0.1, 0.4, 0.5}) {
-      RecordFitOptions wish;
-      wish.model.radius = law == "hertz" ? 0.004 : 0.0;
-      wish.hold_out = share;
-      const auto fit = fit_record(record_of(law, 0.001, 11), wish);
+      RecordFitOptions options;
+      options.model.radius = law == "hertz" ? 0.004 : 0.0;
+      options.hold_out = share;
+      const auto fit = fit_record(record_of(law, 0.001, 11), options);
       ASSERT_TRUE(fit.ok());
       if (share == 0.0)  // more parameters never give a larger error on the fitted rows
         EXPECT_LT(fit->laws[fit->best].rms, 0.0012) << law;
       else
         EXPECT_EQ(fit->laws[fit->best].model.law, law) << share;
     }
-  RecordFitOptions wish;
-  wish.hold_out = 0.02;  // three rows
-  const auto few = fit_record(record_of("cubic", 0.0, 1), wish);
+  RecordFitOptions options;
+  options.hold_out = 0.02;  // three rows
+  const auto few = fit_record(record_of("cubic", 0.0, 1), options);
   ASSERT_TRUE(few.ok());
-  EXPECT_THAT(few->notes, ::testing::Contains(HasSubstr("too few to tell laws apart")));
+  EXPECT_THAT(few->notes, ::testing::Contains(HasSubstr("too few to distinguish laws")));
 }
 
 // The same presses with another zero of depth.
@@ -161,11 +161,11 @@ PressRecord moved(PressRecord record, double by) {
 TEST(FitPress, WhereTheIndenterMetTheSurfaceIsFoundWhereverTheRecordBegins) {
   for (const auto& [law, values] : kTruths)
     for (const double zero : {0.0, 0.001, 0.0095, -0.002}) {
-      RecordFitOptions wish;
-      wish.law = law;
-      wish.model.radius = law == "hertz" ? 0.004 : 0.0;
-      wish.model.contact = true;
-      const auto fit = fit_record(moved(record_of(law, 0.0, 1), zero), wish);
+      RecordFitOptions options;
+      options.law = law;
+      options.model.radius = law == "hertz" ? 0.004 : 0.0;
+      options.model.contact = true;
+      const auto fit = fit_record(moved(record_of(law, 0.0, 1), zero), options);
       ASSERT_TRUE(fit.ok()) << fit.error().message();
       const LawFit& best = fit->laws[0];
       EXPECT_EQ(best.parameters.back().key, "contact");
@@ -186,10 +186,10 @@ TEST(FitPress, ARecordThatBeginsPressedHasABoxForItsContact) {
       record.contact.push_back(true);
     }
     for (const std::string law : {"linear", "cubic", "exponential"}) {
-      RecordFitOptions wish;
-      wish.law = law;
-      wish.model.contact = true;
-      const auto fit = fit_record(record, wish);
+      RecordFitOptions options;
+      options.law = law;
+      options.model.contact = true;
+      const auto fit = fit_record(record, options);
       ASSERT_TRUE(fit.ok()) << fit.error().message();
       const FitParameter& box = fit->laws[0].model.parameters.back().box;
       const FittedParameter& contact = fit->laws[0].parameters.back();
@@ -214,16 +214,16 @@ TEST(FitPress, TheDamperOfTheContactIsFound) {
     record.force.push_back(std::max(0.0, 300 * d + (d > 0 ? 20 * rate : 0.0)));
     record.contact.push_back(d > 0);
   }
-  RecordFitOptions wish;
-  wish.law = "linear";
-  wish.model.damping = true;
-  const auto fit = fit_record(record, wish);
+  RecordFitOptions options;
+  options.law = "linear";
+  options.model.damping = true;
+  const auto fit = fit_record(record, options);
   ASSERT_TRUE(fit.ok()) << fit.error().message();
   EXPECT_EQ(fit->laws[0].parameters[1].key, "contact_damping");
   EXPECT_NEAR(fit->laws[0].parameters[0].value, 300, 1e-3);
   EXPECT_NEAR(fit->laws[0].parameters[1].value, 20, 1e-3);
   record.time.clear();
-  const auto timeless = fit_record(record, wish);
+  const auto timeless = fit_record(record, options);
   ASSERT_FALSE(timeless.ok());
   EXPECT_THAT(timeless.error().message(), HasSubstr("damping needs a column of time"));
 }
@@ -231,9 +231,9 @@ TEST(FitPress, TheDamperOfTheContactIsFound) {
 TEST(FitPress, AnIntervalEndsWhereItsKeysRangeDoes) {
   bool cut = false;
   for (unsigned seed = 0; seed < 20; ++seed) {
-    RecordFitOptions wish;
-    wish.law = "cubic";
-    const auto fit = fit_record(record_of("linear", 0.05, seed), wish);
+    RecordFitOptions options;
+    options.law = "cubic";
+    const auto fit = fit_record(record_of("linear", 0.05, seed), options);
     ASSERT_TRUE(fit.ok());
     const FittedParameter& cubic = fit->laws[0].parameters[1];
     EXPECT_GE(cubic.low, 0.0);

@@ -163,7 +163,7 @@ TEST_F(Sweep, AFailureIsALineWithItsSentenceAndIsDoneAgainOnlyWhenAsked) {
 }
 
 // Of several failures of one run the latest counts, in any file and with any message.
-TEST_F(Sweep, TheLatestFailureIsTheOneThatIsTold) {
+TEST_F(Sweep, TheLatestFailureIsTheOneThatIsReported) {
   write_plan(R"("axes": {"--limits": [1e-6], "*.deformable.stiffness": [100]})");
   ASSERT_EQ(sweep().status, 0);
   Json line = lines().at(0);

@@ -186,7 +186,7 @@ TEST_F(Bench, WhatMayNotBeOpenedNamesTheRules) {
   EXPECT_THAT(opened.error().message(), HasSubstr("70-pliant.rules"));
 }
 
-TEST_F(Bench, TwoOfTheSameSerialAreToldApartByTheirPaths) {
+TEST_F(Bench, TwoOfTheSameSerialAreDistinguishedByTheirPaths) {
   plug(cap(4, "same"));
   plug(cap(11, "same"));
   plug(cap(5, ""));
@@ -318,7 +318,7 @@ TEST_F(Bench, AfterKillNineAGuardProcessTakesTheCurrentsFromAnArm) {
   ::close(held);
 }
 
-// What a driver has opened, without a device.
+// A driver's open handle, without a device.
 struct OpenedNode final : Driver {
   explicit OpenedNode(std::string path) : path_(std::move(path)) {}
   Status open(const std::string&) override { return Done{}; }

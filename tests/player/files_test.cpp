@@ -46,7 +46,7 @@ TEST_F(Files, InspectHintsAtAWrongUnitAndConvertMendsIt) {
   EXPECT_NEAR(inspect("centi.glb")["bounds_m"]["max"][1], 1000.0, 1e-2);
 }
 
-TEST_F(Files, InspectTellsOfAPanoramaHowLargeAndBrightItIs) {
+TEST_F(Files, InspectSaysOfAPanoramaHowLargeAndBrightItIs) {
   const std::string sky = std::string(PLIANT_SOURCE_DIR) + "/content/environments/sky.exr";
   const Said said = pliant({"inspect", sky, "--json"});
   ASSERT_EQ(said.status, 0) << said.err;

@@ -10,7 +10,7 @@ const char* const kOne =
     "# vtk DataFile Version 3.0\none\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 0.1 0 0 0 0.1 0 0 0 0.1 "
     "9 9 9\nCELLS 1 5\n4 0 2 1 3\nCELL_TYPES 1\n10\n";
 
-TEST_F(Tets, InspectTellsOfAFileWhatItHoldsAndWhatWasMended) {
+TEST_F(Tets, InspectSaysOfAFileWhatItHoldsAndWhatWasMended) {
   write_text(folder / "one.vtk", kOne);
   const Said said = pliant({"inspect", "one.vtk", "--json"});
   ASSERT_EQ(said.status, 0) << said.err;

@@ -350,7 +350,7 @@ TEST_F(ToolRun, AnOrbitWithoutASurfaceHoldsItsProbeAndSaysSo) {
       for (const char* axis : {"x", "y", "z"}) EXPECT_EQ(forces.number(i, axis), 0.0) << axis;
 }
 
-TEST_F(ToolRun, AProbePressesARigidBodyOrPassesItAsItIsTold) {
+TEST_F(ToolRun, AProbePressesARigidBodyOrPassesItAsItIsSet) {
   write_text(folder / "down.csv", "time_s,x,y,z\n0,0.1,0.02,0\n0.3,0.1,0.02,0\n0.6,0.1,-0.002,0\n1.2,0.1,-0.002,0\n");
   const Said felt = press("felt", {"--probe", "finger=script:down.csv", "--seconds", "1.2"});
   ASSERT_EQ(felt.status, 0) << felt.err;

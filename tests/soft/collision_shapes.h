@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <random>
 
 #include "content/mesh/mesh_build.h"
 #include "tests/content/mesh_shapes.h"
@@ -88,6 +89,11 @@ inline Mesh relief_mesh(float size, int n, float floor, bool open, const std::fu
       }
     }
   return mesh_of(p);
+}
+
+inline dvec3 random_direction(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return normalize(dvec3(normal(random), normal(random), normal(random)));
 }
 
 }  // namespace pliant::test

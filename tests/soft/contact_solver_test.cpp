@@ -13,7 +13,6 @@
 #include "systems/soft/contact/contact_admm.h"
 #include "systems/soft/contact/contact_budget.h"
 #include "systems/soft/contact/contact_sweeps.h"
-#include "systems/soft/linear/pivoted_lu.h"
 #include "tests/soft/collision_shapes.h"
 #include "tests/soft/contact_loop.h"
 #include "tests/soft/random_contacts.h"
@@ -27,32 +26,6 @@ constexpr double kT = 1.0 / 60.0, kG = 9.81;  // [s], [m/s2]
 constexpr SweepLimits kSolverStep{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
 constexpr SweepLimits kNewton{.sweeps = 400, .tolerance = 1e-10, .newtons = 60};
 constexpr SweepLimits kReference{.sweeps = 200000, .tolerance = 1e-12};
-
-TEST(PivotedLu, SolvesWhatEigenSolves) {
-  for (int n = 1; n < 40; ++n) {
-    std::srand(static_cast<unsigned>(n));
-    const Eigen::MatrixXd a = Eigen::MatrixXd::Random(n, n);
-    const Vector b = Vector::Random(n);
-    Eigen::MatrixXd lu = Eigen::MatrixXd::Constant(n + 3, n, 7.0);  // columns farther apart than they are long
-    lu.topRows(n) = a;
-    std::vector<int> pivots(static_cast<std::size_t>(n));
-    ASSERT_TRUE(factorise_lu(lu.data(), n, n + 3, pivots.data()));
-    Vector x = b;
-    solve_lu(lu.data(), n, n + 3, pivots.data(), x.data());
-    const Vector expected = a.fullPivLu().solve(b);
-    EXPECT_LT((x - expected).norm(), 1e-9 * (1.0 + expected.norm())) << n;
-    EXPECT_EQ(lu.bottomRows(3).minCoeff(), 7.0) << "nothing is written beside the matrix";
-  }
-}
-
-TEST(PivotedLu, RefusesWhatHasNoInverse) {
-  Eigen::MatrixXd a = Eigen::MatrixXd::Random(6, 6);
-  a.col(4).setZero();
-  std::vector<int> pivots(6);
-  EXPECT_FALSE(factorise_lu(a.data(), 6, 6, pivots.data()));
-  a.setConstant(std::nan(""));
-  EXPECT_FALSE(factorise_lu(a.data(), 6, 6, pivots.data()));
-}
 
 TEST(ContactNewton, EndsWhereLongSweepsEnd) {
   for (const double mu : {0.0, 0.3, 0.8})

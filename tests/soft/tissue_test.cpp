@@ -146,10 +146,10 @@ TEST(Tissue, InnerOuterAndCornerAreTheWholeMatrixCutInPieces) {
   for (const Tissue::Entry& entry : part.corner()) B.block<3, 3>(3 * entry.row, 3 * entry.column) += entry.value;
   const Eigen::MatrixXd kept = A.topLeftCorner(end, end);
   EXPECT_LT((B.topLeftCorner(end, end) - kept).norm(), 1e-14 * kept.norm());
-  Vector told(pinned);
+  Vector prescribed(pinned);
   for (std::uint32_t i = mesh.pinned_begin(), k = 0; i < mesh.node_count(); ++i)
-    for (int d = 0; d < 3; ++d) told[k++] = part.velocity()[i][d];
-  const Vector right = whole.right().head(end) - A.block(0, end, end, pinned) * told;
+    for (int d = 0; d < 3; ++d) prescribed[k++] = part.velocity()[i][d];
+  const Vector right = whole.right().head(end) - A.block(0, end, end, pinned) * prescribed;
   EXPECT_LT((part.right() - right).norm(), 1e-13 * right.norm());
 }
 

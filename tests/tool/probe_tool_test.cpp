@@ -105,7 +105,7 @@ TEST(ProbeTool, ASoftBodyGivesWayAndPushesBack) {
 }
 
 // A slab that is a yielding surface next to a rigid table.
-TEST(ProbeTool, MeetsWhatItIsToldTo) {
+TEST(ProbeTool, MeetsWhatItIsSetToMeet) {
   for (const ProbeMeets meets : {ProbeMeets::kAll, ProbeMeets::kSurfaces, ProbeMeets::kBodies}) {
     SCOPED_TRACE(static_cast<int>(meets));
     ToolStage stage(kSoftStep);

@@ -133,8 +133,8 @@ TEST(Slip, ALeverBecomesLongerAsItIsDrawnOverARidge) {
     const double lever = (BarOnRidge::kLong - BarOnRidge::kRidge) / (BarOnRidge::kLong - BarOnRidge::kRidge + way);
     EXPECT_NEAR(ended / began, lever * lever * lever, 0.08);
 
-    const double told = ticked(still, way, 200)[1];
-    EXPECT_NEAR(told, ended, 0.1 * std::abs(ended - began)) << way;
+    const double felt = ticked(still, way, 200)[1];
+    EXPECT_NEAR(felt, ended, 0.1 * std::abs(ended - began)) << way;
     for (Rows& m : still.contacts.from_modes_by_slip) m.setZero();
     for (Rows6& m : still.contacts.from_handle_by_slip) m.setZero();
     // Half of it is the slope of the bent bar, which the normal knows.

@@ -1,7 +1,5 @@
 // The tool's touch tick in a separate world: stability against the table of exact limits, smooth updates, aging models,
 // missed budgets, no allocations.
-#include "systems/tool/tool_feedback.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,13 +9,10 @@
 
 #include "scenes/tet_shapes.h"
 #include "scenes/tool_stage.h"
-#include "systems/device/devices.h"
 #include "systems/safety/safety.h"
 #include "systems/soft/body/rotation_vector.h"
-#include "systems/tool/prepare_tools.h"
-#include "systems/tool/tool_touch_state.h"
-#include "systems/touch/prepare/prepare.h"
 #include "tests/tool/press_scene.h"
+#include "tests/tool/touch_stage.h"
 
 #ifndef PLIANT_SANITIZED
 // Counts every allocation, including Eigen's; the sanitizers have their own.
@@ -31,64 +26,13 @@ extern "C" void* malloc(std::size_t size) {
 }
 #endif
 
-namespace pliant {
+namespace pliant::test {
 namespace {
-
-constexpr double kTick = 1e-3;  // [s]
-
-// One tool whose device the test moves, and whose models the test publishes.
-struct Stage {
-  World world;
-  Entity tool, device;
-  std::uint64_t ticks = 0;
-  HandleModel model;
-
-  explicit Stage(const Handle6& settings = {}) {
-    tool = world.registry.create();
-    device = world.registry.create();
-    world.registry.add<Name>(device, {"hand"});
-    HapticDevice& d = world.registry.add(device, HapticDevice{});
-    d.max_force = 1e9;
-    d.max_slew = 1e12;
-    world.registry.add<SoftBody>(tool, {});
-    world.registry.add<Pose>(tool, {});
-    world.registry.add<Handle6>(tool, settings).device = "hand";
-    EXPECT_TRUE(prepare_touch(world));
-    const Status prepared = prepare_tools(world);
-    EXPECT_TRUE(prepared) << (prepared ? "" : prepared.error().what);
-    model.contacts.resize(kMaxCondensed, kMaxModes);
-    model.soft_step = 1.0 / 60.0;
-    model.handle_mass = Matrix6::Identity() * 1e-3;
-  }
-  ToolTouchState& state() { return *world.tools->tools[0]; }
-  HapticDevice& hand() { return world.registry.get<HapticDevice>(device); }
-  void publish() {
-    ++model.step;
-    model.time = static_cast<double>(ticks) * kTick;
-    model.contacts.prepare_tick(kTick);
-    state().model.write() = model;
-    state().model.publish();
-  }
-  void tick() {
-    const Tick now{ticks, kTick, static_cast<double>(ticks) * kTick};
-    tool_feedback(world, now);
-    write_devices(world, now);
-    ++ticks;
-  }
-};
-
-Handle6 coupling(double stiffness) {
-  Handle6 handle;
-  handle.translation = {stiffness, 0.0};
-  handle.rotation = {0.5, 0.005};
-  handle.max_force = 1e9;
-  return handle;
-}
 
 // [m] how far the device has swung in the last half of three seconds, from 1 mm inside the coupling. The handle is
 // against a rigid wall, so that the coupling is all that the device feels; device: exact mass and damper.
 double swing(double mass, double damping, double stiffness) {
-  Stage stage(coupling(stiffness));
+  TouchStage stage(coupling(stiffness));
   stage.state().wanted = ToolForce::kLinear;
   stage.model.linear.stiffness = 1e12 * Matrix6::Identity();
   const double E = std::exp(-damping / mass * kTick);
@@ -121,7 +65,7 @@ TEST(ToolFeedback, IsStableAgainstARigidWallUpToTheExactLimitOfTheDevice) {
 TEST(ToolFeedback, ALateTickIsNoBlow) {
   Handle6 settings = coupling(200.0);
   settings.translation[1] = 2.0;
-  Stage stage(settings);
+  TouchStage stage(settings);
   stage.state().wanted = ToolForce::kLinear;
   stage.publish();
   const double speed = 0.05;
@@ -143,15 +87,15 @@ TEST(ToolFeedback, ALateTickIsNoBlow) {
 
 TEST(ToolFeedback, AModelsUpdateIsNoJump) {
   for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts}) {
-    Stage stage(coupling(200.0));
+    TouchStage stage(coupling(200.0));
     stage.state().wanted = mode;
     const auto press = [&](double newton) {
       stage.model.force.setZero();
-      stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = newton;
+      stage.press(newton);
     };
     press(0.5);
     stage.publish();
-    for (int i = 0; i < 40; ++i) stage.tick();
+    stage.run(40);
     EXPECT_NEAR(stage.state().wrench[1], 0.5, 1e-9);
     press(1.5);
     stage.publish();
@@ -171,7 +115,7 @@ TEST(ToolFeedback, AModelsUpdateIsNoJump) {
 TEST(ToolFeedback, ModelsThatComeWithEveryTickAreFelt) {
   for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts})
     for (const double ticks : {0.5, 1.0, 1.5, 2.0, 2.6}) {
-      Stage stage(coupling(200.0));
+      TouchStage stage(coupling(200.0));
       stage.state().wanted = mode;
       stage.model.soft_step = ticks * kTick;
       double due = 0.0;
@@ -179,7 +123,7 @@ TEST(ToolFeedback, ModelsThatComeWithEveryTickAreFelt) {
         if (i >= due) {
           const double newton = 0.02 * std::min(i, 50);
           stage.model.force.setZero();
-          stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = newton;
+          stage.press(newton);
           stage.publish();
           due += std::max(1.0, ticks);
         }
@@ -241,9 +185,9 @@ TEST(ToolFeedback, NoTickAfterAModelsUpdateChangesTheForceBeyondTwiceTheSlope) {
 
 TEST(ToolFeedback, AModelThatGrewOldFadesToNothing) {
   for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts}) {
-    Stage stage(coupling(200.0));
+    TouchStage stage(coupling(200.0));
     stage.state().wanted = mode;
-    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = 1.0;
+    stage.press(1.0);
     stage.publish();
     double before = 1.0, most = 0.0;
     for (int i = 0; i < 150; ++i) {
@@ -261,7 +205,7 @@ TEST(ToolFeedback, AModelThatGrewOldFadesToNothing) {
 struct Pressing {
   PressScene scene;
   Pose at;
-  explicit Pressing(Stage& stage, double friction) : scene(firm_tissue(), firm_handle(), friction, 4, 5) {
+  explicit Pressing(TouchStage& stage, double friction) : scene(firm_tissue(), firm_handle(), friction, 4, 5) {
     at = scene.settle(1.0 / 60.0, 2e-3, 30, kTick, stage.model);
     stage.hand().position = at.position;
     stage.hand().rotation = at.rotation;
@@ -269,16 +213,16 @@ struct Pressing {
 };
 
 TEST(ToolFeedback, LateTicksLeaveTheForceToTheLinearModelWithoutAJump) {
-  Stage stage(firm_handle());
+  TouchStage stage(firm_handle());
   Pressing pressing(stage, 0.5);
   ASSERT_GE(stage.model.contacts.count, 30);
   stage.publish();
-  for (int i = 0; i < 5; ++i) stage.tick();
+  stage.run(5);
   EXPECT_EQ(stage.state().used, ToolForce::kContacts);
   const Vector6 before = stage.state().wrench;
   stage.state().limits.budget_ns = 1;
   stage.state().limits.tolerance = 0.0;
-  for (int i = 0; i < kLateTicks; ++i) stage.tick();
+  stage.run(kLateTicks);
   EXPECT_EQ(stage.state().used, ToolForce::kLinear);
   stage.tick();
   EXPECT_LT((stage.state().wrench - before).norm(), 1e-3 * before.norm());
@@ -293,7 +237,7 @@ TEST(ToolFeedback, ATickAllocatesNothing) {
   GTEST_SKIP() << "the sanitizers allocate themselves";
 #else
   for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts}) {
-    Stage stage(firm_handle());
+    TouchStage stage(firm_handle());
     Pressing pressing(stage, 0.5);
     stage.state().wanted = mode;
     stage.publish();
@@ -312,170 +256,12 @@ TEST(ToolFeedback, ATickAllocatesNothing) {
 #endif
 }
 
-TEST(ToolFeedback, NothingIsFeltOfADeviceThatIsLost) {
-  Stage stage(coupling(200.0));
-  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = 0.1;
-  stage.publish();
-  for (int i = 0; i < 40; ++i) stage.tick();
-  EXPECT_GT(length(stage.hand().force_sent), 0.05);
-  stage.hand().status = DeviceStatus::kLost;
-  stage.tick();
-  EXPECT_EQ(length(stage.hand().force_sent), 0.0);
-  EXPECT_EQ(length(stage.hand().torque_sent), 0.0);
-  stage.hand().status = DeviceStatus::kReady;
-  stage.hand().position.x = std::nan("");
-  stage.tick();
-  EXPECT_EQ(length(stage.hand().force_sent), 0.0);
-}
-
-// The device is lost during a motion, and back 50 mm away: the tool waits in place, then moves to its device. Only
-// there is a force rendered, rising no faster than the device allows.
-TEST(ToolFeedback, AToolWhoseDeviceIsLostWaitsAndIsTakenUpAgainWithoutAJump) {
-  Handle6 settings = coupling(200.0);
-  settings.translation[1] = 2.0;
-  settings.max_force = 3.3;
-  Stage stage(settings);
-  HapticDevice& hand = stage.hand();
-  hand.max_force = 3.3;
-  hand.max_slew = 20.0;
-  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = 0.1;
-  double before = 0.0;
-  const auto run = [&](int ticks, auto each) {
-    for (int i = 0; i < ticks; ++i) {
-      if (i % 16 == 0) stage.publish();
-      stage.tick();
-      each(i);
-      const double now = length(hand.force_sent);
-      if (now > 0.0) EXPECT_LE(now - before, hand.max_slew * kTick * (1 + 1e-9)) << "tick " << stage.ticks;
-      before = now;
-    }
-  };
-  run(100, [&](int) { hand.position.x += 1e-4; });
-  EXPECT_GT(before, 0.05);
-  EXPECT_GT(linear(stage.state().handle.velocity).x, 0.05);
-
-  hand.status = DeviceStatus::kLost;
-  stage.tick();
-  const Pose held = stage.state().handle.pose;
-  run(200, [&](int i) {
-    EXPECT_EQ(length(hand.force_sent) + length(hand.torque_sent), 0.0) << i;
-    EXPECT_EQ(stage.state().handle.pose.position, held.position) << i;
-    EXPECT_EQ(stage.state().handle.pose.rotation, held.rotation) << i;
-    stage.state().input.acquire();
-    const ToolInput& told = stage.state().input.read();
-    EXPECT_EQ(told.status, DeviceStatus::kLost);
-    EXPECT_EQ(told.device.velocity.norm() + told.handle.velocity.norm(), 0.0) << i;
-  });
-
-  hand.status = DeviceStatus::kReady;
-  hand.position.x += 0.05;
-  double most = 0.0;
-  int silent = 0;
-  run(400, [&](int) {
-    const double wanted = length(linear(stage.state().device_wrench));
-    most = std::max(most, wanted);
-    if (wanted > kEngageForce && length(hand.force_sent) == 0.0) ++silent;
-    EXPECT_LE(length(hand.force_sent), 0.25) << "felt before the tool had come";
-  });
-  EXPECT_GT(most, 3.0) << "the coupling was strained: there was something to be spared";
-  EXPECT_GT(silent, 5);
-  EXPECT_NEAR(stage.state().handle.pose.position.x, hand.position.x, 1e-4);
-  EXPECT_NEAR(length(hand.force_sent), 0.1, 0.01);
-}
-
-TEST(ToolFeedback, ACarriedToolIsLetGoWhenItsModelIsTooOldToBeBelieved) {
-  for (const ToolForce mode : {ToolForce::kHeld, ToolForce::kLinear, ToolForce::kContacts}) {
-    Stage stage(coupling(200.0));
-    stage.state().wanted = mode;
-    // Tissue pulls down with its weight, the compensation balances it: zero force on the hand.
-    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = -0.5;
-    stage.model.handle_load[1] = 0.5;
-    stage.publish();
-    double most = 0.0;
-    for (int i = 0; i < 1000; ++i) {  // the soft clock has stopped
-      stage.tick();
-      most = std::max(most, stage.state().device_wrench.norm());
-    }
-    EXPECT_LT(most, 0.01) << "by weight or by what carries it";
-  }
-}
-
-TEST(CondensedState, AStiffContactGoesOnFromItsLastForceUnlessThatIsNoNumber) {
-  CondensedContacts model;
-  model.resize(4, 2);
-  model.count = 1;
-  model.stiff[0] = 1, model.key[0] = 7;
-  model.prepare_tick(kTick);
-  CondensedState state;
-  state.resize(4, 2);
-  state.start(model);
-  state.problem.impulse.head<3>() << 2e-3, 1e-3, 0.0;
-  state.start(model);
-  EXPECT_EQ(state.problem.impulse[0], 2e-3);
-  state.problem.impulse[1] = std::nan("");
-  state.start(model);
-  EXPECT_EQ(state.problem.impulse.head<3>(), Eigen::Vector3d::Zero());
-}
-
-TEST(ToolFeedback, AModelThatIsNoNumberIsNotFeltAndTheNextOneIs) {
-  Stage stage(coupling(200.0));
-  const auto press = [&](double newton) {
-    stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = newton;
-    stage.publish();
-  };
-  press(0.1);
-  for (int i = 0; i < 40; ++i) stage.tick();
-  EXPECT_GT(length(stage.hand().force_sent), 0.05);
-  press(std::nan(""));
-  for (int i = 0; i < 3; ++i) {
-    stage.tick();
-    EXPECT_TRUE(std::isfinite(length(stage.hand().force_sent)));
-    EXPECT_LE(length(stage.hand().force_sent), 0.11);
-  }
-  EXPECT_EQ(length(stage.hand().force_sent), 0.0);
-  EXPECT_NE(stage.world.dropped & kDroppedNonFinite, 0u);
-  EXPECT_TRUE(stage.state().impulse.allFinite()) << "or the soft clock would never hear of a force again";
-  press(0.1);
-  for (int i = 0; i < 40; ++i) stage.tick();
-  EXPECT_NEAR(length(stage.hand().force_sent), 0.1, 0.01);
-}
-
-TEST(ToolFeedback, NothingLeavesAtOnceWhereTheDevicesRotationIsNone) {
-  Stage stage(coupling(200.0));
-  stage.hand().max_slew = 1.0;  // letting go by slewing would take 100 ticks
-  stage.model.force[1] = stage.model.linear.force[1] = stage.model.contacts.tissue_force[1] = 0.1;
-  for (int i = 0; i < 200; ++i) {
-    if (i % 16 == 0) stage.publish();
-    stage.tick();
-  }
-  EXPECT_GT(length(stage.hand().force_sent), 0.05);
-  stage.hand().rotation = dquat(0, 0, 0, 0);
-  stage.tick();
-  EXPECT_EQ(length(stage.hand().force_sent), 0.0);
-  EXPECT_EQ(length(stage.hand().torque_sent), 0.0);
-}
-
 TEST(ToolFeedback, OnlyRealTimeGivesATickABudgetOfWallTime) {
-  Stage stage;
+  TouchStage stage;
   EXPECT_EQ(stage.state().limits.budget_ns, 0u);
   limit_tool_ticks(stage.world);
   EXPECT_EQ(stage.state().limits.budget_ns, 300000u);
 }
 
-TEST(ToolFeedback, ADeviceThatMovesAProbeAlreadyIsRefused) {
-  Stage stage;
-  const Entity probe = stage.world.registry.create();
-  stage.world.registry.add<Probe>(probe, {}).device = stage.device;
-  // Names come from files and must not be used as format strings.
-  const std::string odd = "a{b}%s%n{}{0}";
-  stage.world.registry.add<Name>(probe, {"tip" + odd});
-  stage.world.registry.get<Name>(stage.device).value = odd;
-  for (auto [entity, handle] : stage.world.registry.view<Handle6>()) handle.device = odd;
-  const Status status = prepare_tools(stage.world);
-  ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().what, "its device `" + odd + "` already moves `tip" + odd + "`");
-  EXPECT_EQ(status.error().cure, "give each its own");
-}
-
 }  // namespace
-}  // namespace pliant
+}  // namespace pliant::test

@@ -91,7 +91,7 @@ TEST(FieldTwins, TheCardsListEmptiesWhenEverythingHasComeToRest) {
 
 // Without a closed form the CPU keeps the field and feeds the inputs to the GPU. Once the feed is full (no reader),
 // zones are published again until the surface has been at rest (systems/touch/feed/feed_field.h).
-TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
+TEST(FieldTwins, WhatHasNoClosedFormIsReportedWhileSomethingReadsIt) {
   Deformable d;
   d.reach = 0.03;
   d.spring = SpringLaw::kCubic;
@@ -116,7 +116,7 @@ TEST(FieldTwins, WhatHasNoClosedFormIsToldUntilNobodyListens) {
     ticks += event.kind == FieldEvent::kTick;
   }
   EXPECT_GE(ticks, 50u);
-  EXPECT_LT(events, 20 * ticks) << "only what changes is told";
+  EXPECT_LT(events, 20 * ticks) << "only what changes is reported";
 
   // Without a reader the ring fills up.
   int waited = 0;

@@ -325,6 +325,61 @@ TEST(TouchSurface, AGapOfATenthOfAnEdgeIsAGap) {
   EXPECT_EQ(raw_force(stage, probe), dvec3(0));
 }
 
+// Closed parts that are flush in one node, or in two: a crack between them does not exist, however it is met.
+TEST(TouchSurface, ACrackBetweenClosedPartsDoesNotExist) {
+  constexpr double kSize = 0.1;
+  const Primitive half = scenes::slab(10, kSize, 0.04);
+  const Deformable d = frictionless();
+  const double whole = law(d, 0.003);
+  for (const bool one_node : {true, false})
+    for (const double crack : {0.0, 1e-9, 1e-7, 1e-6, 1e-5, 4e-5, 1e-4})
+      for (const double radius : {0.0, 0.006}) {
+        const auto build = [&](Stage& stage) {
+          const dvec3 way(kSize + crack, 0, 0);
+          if (one_node) {
+            Primitive both = half;
+            const std::size_t count = half.position.size();
+            for (std::size_t i = 0; i < count; ++i) both.position.push_back(vec3(dvec3(half.position[i]) + way));
+            for (const std::uint32_t i : half.index) both.index.push_back(i + static_cast<std::uint32_t>(count));
+            stage.add(both, d);
+          } else {
+            stage.add(half, d);
+            stage.add(half, d, Pose{way});
+          }
+        };
+        const double middle = kSize / 2 + crack / 2;
+        const std::string what = std::to_string(one_node) + " crack " + std::to_string(crack * 1e6) + " um, radius " +
+                                 std::to_string(radius);
+        for (const double x : {0.0, 0.3 * crack, -0.3 * crack, crack, -crack, 1e-4, -1e-3}) {  // pressed
+          Stage stage;
+          build(stage);
+          const Entity probe = stage.add_probe({middle + x, radius + 0.002, 0.0037}, radius);
+          stage.prepare();
+          stage.move(probe, {middle + x, radius - 0.003, 0.0037}, 0.1);
+          stage.wait(0.01);
+          EXPECT_NEAR(raw_force(stage, probe).y, whole, (0.005 + crack / 0.003) * whole) << what << " pressed at " << x;
+          EXPECT_LT(std::abs(raw_force(stage, probe).x), (1e-6 + crack / 0.003) * whole) << what << " pressed at " << x;
+          stage.move(probe, {middle + x, radius + 0.001, 0.0037}, 0.1);
+          EXPECT_EQ(raw_force(stage, probe), dvec3(0)) << what << " lifted at " << x;
+        }
+        Stage stage;  // slid over it, and back
+        build(stage);
+        const Entity probe = stage.add_probe({middle - 0.01, radius + 0.002, 0.0037}, radius);
+        stage.prepare();
+        stage.move(probe, {middle - 0.01, radius - 0.003, 0.0037}, 0.1);
+        double least = 1e9, most = 0, sideways = 0;
+        for (const double x : {0.01, -0.01})
+          stage.move(probe, {middle + x, radius - 0.003, 0.0037}, 0.5, [&](const ProbeReading&) {
+            least = std::min(least, raw_force(stage, probe).y);
+            most = std::max(most, raw_force(stage, probe).y);
+            sideways = std::max(sideways, std::abs(raw_force(stage, probe).x));
+          });
+        EXPECT_NEAR(least, whole, (0.005 + crack / 0.003) * whole) << what;
+        EXPECT_NEAR(most, whole, (0.005 + crack / 0.003) * whole) << what;
+        EXPECT_LT(sideways, (1e-6 + crack / 0.003) * whole) << what;
+      }
+}
+
 // Wherever along its length that is (flat on a surface: touch_capsule_test.cpp).
 TEST(TouchSurface, ACapsuleAcrossABoxsEdgeTouchesInOnePlace) {
   Stage box;

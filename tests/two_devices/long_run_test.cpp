@@ -101,19 +101,19 @@ struct Device {
   SeenLong seen;
   Servo servo;
   std::array<std::uint64_t, 64> causes{};  // how often each took the force away
-  std::uint64_t told = 0;                  // transitions looked at
+  std::uint64_t printed = 0;               // transitions looked at
 };
 
 void count_losses(Device& device, const DeviceReport& report) {
   const std::uint64_t kept = std::min<std::uint64_t>(report.transitions, DeviceReport::kKept);
-  for (std::uint64_t i = kept - std::min(kept, report.transitions - device.told); i < kept; ++i) {
+  for (std::uint64_t i = kept - std::min(kept, report.transitions - device.printed); i < kept; ++i) {
     const DeviceTransition& one = report.transition(i);
     if (one.from == DeviceState::kActive) ++device.causes[static_cast<std::size_t>(one.cause)];
   }
-  device.told = report.transitions;
+  device.printed = report.transitions;
 }
 
-void tell(Device& device, double seconds) {
+void print_report(Device& device, double seconds) {
   const ServoFigures& f = device.servo.report().figures;
   std::printf(
       "%s: %llu periods in %.1f s, %llu late (%.0f us at most), %llu samples, largest force %.3f N, oldest "
@@ -186,7 +186,7 @@ TEST(TwoDevices, KeepTheirMemoryClocksAndLimitsHoweverLongTheyRun) {
   for (std::size_t i = 0; i < 2; ++i) {
     const ServoFigures& f = both[i]->servo.report().figures;
     fast[i] = static_cast<double>(f.periods) - ran * both[i]->servo.capabilities().rate;
-    tell(*both[i], ran);
+    print_report(*both[i], ran);
   }
   std::printf(
       "touch clock: %llu ticks, %llu skipped; tripped and armed again %llu times; memory %ld KiB after a fifth, "

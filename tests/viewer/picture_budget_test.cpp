@@ -21,7 +21,7 @@ TEST(PictureBudget, SettlesWithinItsBoundsOrAtTheEndOfItsRangeAndStaysThere) {
         PictureBudget budget(finest);
         for (int n = 0; n < 12; ++n) budget.drawn(renderer.cost(budget.share()));
         const double share = budget.share(), cost = renderer.cost(share);
-        // What cannot be reduced is allowed half as much again for the pixels.
+        // The part that cannot be reduced is allowed half as much again for the pixels.
         const double most = std::max(PictureBudget::kSlow, 1.5 * fixed) * (1 + 1e-9);
         const bool can = renderer.cost(PictureBudget::kCoarsest) <= most;
         if (can) EXPECT_LE(cost, most) << fixed << ' ' << full << ' ' << finest;

@@ -106,7 +106,7 @@ TEST(Picking, OnADentedPlateIsTheDentedSurfaceUnderThePixelAndItsPlaceAtRest) {
   EXPECT_LT(largest, 2e-4) << "the bound says nothing";
 }
 
-TEST(Picking, TellsTwoObjectsApartAndSeesTheOneInFront) {
+TEST(Picking, DistinguishesTwoObjectsAndSeesTheOneInFront) {
   NEEDS_A_CONTEXT();
   World world = test::sphere(32);
   const Entity behind = test::object_of(world), front = world.registry.create();

@@ -198,15 +198,15 @@ TEST(Picture, HeightsThatStandBeforeTheFirstSnapshotAreDrawn) {
   NEEDS_A_CONTEXT();
   World world = test::sheet(32);
   const Snapshot pressed = snapshot_of(world, dent({0, 0, 0}, 0.1f, 0.4f));
-  const std::unique_ptr<Renderer> told = renderer_for(world);
-  ASSERT_TRUE(told);
-  told->update(pressed);
+  const std::unique_ptr<Renderer> reported = renderer_for(world);
+  ASSERT_TRUE(reported);
+  reported->update(pressed);
   HeightField field;
   field.stream = pressed.objects[0].stream;
   world.registry.get<Deformable>(test::object_of(world)).field = world.fields.add(field);
   const std::unique_ptr<Renderer> found = renderer_for(world);
   ASSERT_TRUE(found);
-  EXPECT_EQ(told->picture(kAbove, kWidth, kHeight).rgba, found->picture(kAbove, kWidth, kHeight).rgba);
+  EXPECT_EQ(reported->picture(kAbove, kWidth, kHeight).rgba, found->picture(kAbove, kWidth, kHeight).rgba);
 }
 
 TEST(Picture, HeightAsColourIsOffByDefaultAndPaintsDentsBlue) {

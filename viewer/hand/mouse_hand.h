@@ -8,7 +8,7 @@ namespace pliant {
 
 class MouseHand {
  public:
-  // What is under the mouse. kBody can be pressed and pulled.
+  // Kind of the object under the mouse. kBody can be pressed and pulled.
   enum class Over : std::uint8_t { kNothing, kTouchable, kBody, kTool };
   enum class Grip : std::uint8_t { kNone, kPress, kPull, kCarry };
 
@@ -23,7 +23,7 @@ class MouseHand {
   const std::optional<Picked>& seen() const { return seen_; }
   Over over() const;
 
-  // What a press on the point seen does; `pulls`: pulls a body instead of pressing it. `tool_device` [m] world: where
+  // Effect of a press on the point seen; `pulls`: pulls a body instead of pressing it. `tool_device` [m] world: where
   // the device of a tool is that has followed its path so far.
   Grip press(bool pulls, dvec3 tool_device);
   void release();

@@ -58,13 +58,13 @@ const std::vector<FallbackFont>& fallback_fonts() {
   static const std::vector<FallbackFont> all = [] {
     std::vector<FallbackFont> found;
     FcConfig* const config = FcInitLoadConfigAndFonts();
-    FcPattern* const wish = FcPatternBuild(nullptr, FC_FAMILY, FcTypeString, "sans-serif", FC_OUTLINE, FcTypeBool,
-                                           FcTrue, static_cast<char*>(nullptr));
-    if (!config || !wish) return found;
-    FcConfigSubstitute(config, wish, FcMatchPattern);
-    FcDefaultSubstitute(wish);
+    FcPattern* const pattern = FcPatternBuild(nullptr, FC_FAMILY, FcTypeString, "sans-serif", FC_OUTLINE, FcTypeBool,
+                                              FcTrue, static_cast<char*>(nullptr));
+    if (!config || !pattern) return found;
+    FcConfigSubstitute(config, pattern, FcMatchPattern);
+    FcDefaultSubstitute(pattern);
     FcResult result = FcResultMatch;
-    FcFontSet* const sorted = FcFontSort(config, wish, FcFalse, nullptr, &result);
+    FcFontSet* const sorted = FcFontSort(config, pattern, FcFalse, nullptr, &result);
     for (int i = 0; sorted && i < sorted->nfont; ++i) {
       FcChar8 *path = nullptr, *format = nullptr;
       FcBool color = FcFalse;
@@ -80,7 +80,7 @@ const std::vector<FallbackFont>& fallback_fonts() {
       if (color || (kind != "TrueType" && kind != "CFF")) continue;
       found.push_back({reinterpret_cast<const char*>(path), index & 0xffff, letters});
     }
-    FcPatternDestroy(wish);
+    FcPatternDestroy(pattern);
     return found;  // their character sets are owned by `sorted`
   }();
   return all;

@@ -81,14 +81,14 @@ DeviceParameters any_force() {
 
 // Prescribes the probe from above the surface to each depth in turn and keeps it there; measures the cost in contact.
 template <class Note>
-Status press(Session& session, const std::string& effector, const Indented& what, const PressRun& wish,
-             Indentation& out, const Note& note) {
-  const int half = std::max(1, static_cast<int>(std::lround(wish.seconds * 1000 / 2)));
+Status press(Session& session, const std::string& effector, const Indented& what, const PressRun& run, Indentation& out,
+             const Note& note) {
+  const int half = std::max(1, static_cast<int>(std::lround(run.seconds * 1000 / 2)));
   double from = -kBeginsAbove;
   std::uint64_t spent = 0, ticks = 0;
   for (const double depth : what.depths) {
     for (int i = 1; i <= 2 * half; ++i) {
-      if (!wish.goes_on()) return interrupted();
+      if (!run.goes_on()) return interrupted();
       const double share = std::min(1.0, static_cast<double>(i) / half);
       if (const Status moved = session.move(effector, kDown * (from + share * (depth - from))); !moved) return moved;
       const std::uint64_t begin = process_ns();
@@ -136,7 +136,7 @@ Result<Indentation> press_surface(const Indented& what, const DeformableParamete
   return out;
 }
 
-Result<Indentation> press_tissue(const Indented& what, PressRun& wish) {
+Result<Indentation> press_tissue(const Indented& what, PressRun& run) {
   Scene scene("press");
   scene.simulation().gravity = dvec3(0);
   scene.simulation().soft_step = kSoftStep;
@@ -144,8 +144,8 @@ Result<Indentation> press_tissue(const Indented& what, PressRun& wish) {
   body.young = what.young;
   body.poisson = what.poisson;
   body.rayleigh = {0.0, 0.01};
-  body.cell = wish.cell;
-  if (wish.focus) {
+  body.cell = run.cell;
+  if (run.focus) {
     const auto half = static_cast<float>(kFocus * what.radius);
     body.focus.add(vec3(-half, -half, -half));
     body.focus.add(vec3(half, 0, half));
@@ -153,7 +153,7 @@ Result<Indentation> press_tissue(const Indented& what, PressRun& wish) {
   const auto wide = static_cast<float>(2 * what.half_width), deep = static_cast<float>(what.thickness);
   body.pinned.add(vec3(-wide, -2 * deep, -wide));
   body.pinned.add(vec3(wide, -0.999f * deep, wide));
-  scene.add_soft_body("tissue", slab(what, std::min(what.radius / 2, wish.cell / kEdges), true), body);
+  scene.add_soft_body("tissue", slab(what, std::min(what.radius / 2, run.cell / kEdges), true), body);
   scene.add_rigid_body("punch", punch(what.radius), {}, {.position = -kBeginsAbove * kDown});
   HandleParameters held;
   held.translation = {1e5, 20.0};
@@ -164,10 +164,10 @@ Result<Indentation> press_tissue(const Indented& what, PressRun& wish) {
   auto session = Session::open(scene);
   if (!session) return session.error();
   const World& world = world_of(*session);
-  for (auto [entity, its] : world.registry.view<const SoftBody>()) wish.tets = world.tet_meshes[its.tets].tets.size();
+  for (auto [entity, its] : world.registry.view<const SoftBody>()) run.tets = world.tet_meshes[its.tets].tets.size();
   Indentation out;
   const Status done =
-      press(*session, "punch", what, wish, out, [&] { return read_surface(*session, "tissue", what, out); });
+      press(*session, "punch", what, run, out, [&] { return read_surface(*session, "tissue", what, out); });
   if (!done) return done.error();
   return out;
 }

@@ -14,8 +14,8 @@
 #include "lab/files/content_folder.h"
 #include "lab/study/pareto.h"
 #include "lab/study/studies.h"
-#include "plot/pen.h"
-#include "plot/ticks.h"
+#include "plot/cairo_pen.h"
+#include "plot/panel.h"
 #include "systems/device/hands.h"
 #include "systems/device/reading.h"
 #include "systems/schedule.h"
@@ -272,42 +272,30 @@ Status plot_hand_runs(OutputFolder& out, const std::vector<HandRun>& runs) {
       begin = std::max(0.0, begin - 0.2);
       const double y = kTop + kRow * static_cast<double>(i), h = kRow - 75, w = kWidth - kLeft - 90;
       const double end = run.samples.back().time;
-      const auto px = [&](double t) { return kLeft + w * (t - begin) / std::max(end - begin, 1e-9); };
-      const auto py = [&](double share) { return y + h - h * share / 1.05; };
+      const PlotPanel force{kLeft, y, w, h, {begin, std::max(end, begin + 1e-9)}, {0.0, 1.05 * peak}};
+      PlotPanel depth = force;
+      depth.up = {0.0, 1.05 * deepest, false, 1e3};
       pen.color(kInk);
       pen.text(kLeft, y - 8, kWords, 0,
                fmt::format("{:.0f} N/m, {:g} ms more delay, {}: {}, fast motion {:.0f} um RMS", run.stiffest,
                            run.delay * 1e3, run.guarded ? "guarded" : "without guard",
                            run.stable() ? "stable" : "not stable", run.buzz * 1e6),
                !run.stable());
-      const double step = tick_step(std::max(end - begin, 1e-9), 10);
-      for (double t = step * std::ceil(begin / step); t <= end + 1e-9; t += step) {
-        pen.color(kFaint);
-        pen.line(px(t), y, px(t), y + h, 1);
-        pen.color(kInk);
-        pen.text(px(t), y + h + 20, kTicks, 0.5, fmt::format("{:g}", t));
+      AxesStyle style{.number = kTicks, .title = kWords, .most_across = 10, .most_up = 3};
+      draw_axes(pen, force, style);
+      style.right = true, style.grid_alpha = 0.0, style.numbers_across = false;
+      draw_axes(pen, depth, style);
+      std::vector<PlotPoint> forces, depths;
+      for (const HandSample& s : run.samples) {
+        if (s.time < begin) continue;
+        forces.push_back({s.time, s.force});
+        depths.push_back({s.time, s.depth});
       }
-      const auto curve = [&](Color color, double HandSample::*value, double scale) {
-        pen.color(color);
-        cairo_set_line_width(pen.get(), 1.2);
-        cairo_new_path(pen.get());
-        for (const HandSample& s : run.samples)
-          if (s.time >= begin) cairo_line_to(pen.get(), px(s.time), py(s.*value / scale));
-        cairo_stroke(pen.get());
-      };
-      curve(kBlue, &HandSample::force, peak);
-      curve(kVermilion, &HandSample::depth, deepest);
-      pen.color(kInk);
-      pen.line(kLeft, y, kLeft, y + h, 1.5);
-      pen.line(kLeft, y + h, kLeft + w, y + h, 1.5);
-      pen.line(kLeft + w, y, kLeft + w, y + h, 1.5);
-      const double fs = tick_step(peak, 3), ds = tick_step(deepest * 1e3, 3);
+      draw_line(pen, force, forces, {kBlue, 1.2});
+      draw_line(pen, depth, depths, {kVermilion, 1.2});
       pen.color(kBlue);
-      for (double f = 0; f <= peak; f += fs) pen.text(kLeft - 8, py(f / peak) + 5, kTicks, 1.0, number(f, fs));
       pen.upright_text(kLeft - 52, y + h / 2, kWords, "force [N]");
       pen.color(kVermilion);
-      for (double d = 0; d <= deepest * 1e3; d += ds)
-        pen.text(kLeft + w + 8, py(d * 1e-3 / deepest) + 5, kTicks, 0.0, number(d, ds));
       pen.upright_text(kLeft + w + 62, y + h / 2, kWords, "depth [mm]");
     }
     pen.color(kInk);
@@ -322,7 +310,7 @@ Status study_hand(OutputFolder& out, StudySize size, const Interrupt& interrupt)
       full ? std::vector<std::string>{"three_probes", "inclusion", "glass_heart", "chrome_cushion", "turning_ball"}
            : std::vector<std::string>{"three_probes"};
   // The organ as shipped, and one that is too stiff for the device.
-  const std::vector<std::pair<double, double>> wishes{{1e-3, 0.0}, {10e-3, 0.0}, {10e-3, kTooStiff}};
+  const std::vector<std::pair<double, double>> cases{{1e-3, 0.0}, {10e-3, 0.0}, {10e-3, kTooStiff}};
   const std::size_t profiles = size == StudySize::kSmall ? 2 : kDeviceProfiles;
   Progress progress("study hand");
   std::vector<HandRun> plotted, table;
@@ -333,10 +321,10 @@ Status study_hand(OutputFolder& out, StudySize size, const Interrupt& interrupt)
     auto run = run_hand(level, profile, delay, guarded, seconds, stiffness);
     if (!run) return run.error();
     to.push_back(std::move(run).value());
-    progress.update(static_cast<double>(++done) / static_cast<double>(2 * wishes.size() + levels.size() * profiles));
+    progress.update(static_cast<double>(++done) / static_cast<double>(2 * cases.size() + levels.size() * profiles));
     return Done{};
   };
-  for (const auto& [delay, stiffness] : wishes)
+  for (const auto& [delay, stiffness] : cases)
     for (const bool guarded : {false, true})
       if (const Status s = add(plotted, "three_probes", kPlotted, delay, guarded, stiffness); !s) return s;
   for (const std::string& level : levels)

@@ -45,7 +45,8 @@ bool has_bodies(const Level& level) {
 
 void without_friction(Level& level) {
   for (LevelNode& node : level.nodes) {
-    if (node.deformable) node.deformable->friction_static = node.deformable->friction_sliding = 0.0;
+    if (node.deformable)
+      node.deformable->friction_static = node.deformable->friction_sliding = node.deformable->friction_viscous = 0.0;
     if (node.soft_body) node.soft_body->friction_static = node.soft_body->friction_sliding = 0.0;
     if (node.rigid_body) node.rigid_body->friction_static = node.rigid_body->friction_sliding = 0.0;
   }

@@ -203,7 +203,7 @@ constexpr int kTries = 5;
 
 enum class RealRun : std::uint8_t { kJudged, kLateElsewhere };
 
-// What happened around a stall.
+// Figures around a stall.
 struct StallSeen {
   bool held = false, fell = true, shut = true, back = false, left = false, missed = false;
   bool stopped = false;

@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "lab/study/hard/study_hardcases.h"
-#include "plot/pen.h"
+#include "plot/axis.h"
+#include "plot/cairo_pen.h"
 
 namespace pliant {
 namespace {

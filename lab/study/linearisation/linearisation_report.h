@@ -1,4 +1,4 @@
-// What the study of linearisation writes and says about its figures.
+// Text that the study of linearisation writes about its figures.
 #pragma once
 
 #include <nlohmann/json.hpp>

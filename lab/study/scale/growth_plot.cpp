@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "lab/study/scale/power_law.h"
-#include "plot/pen.h"
+#include "plot/cairo_pen.h"
+#include "plot/panel.h"
 
 namespace pliant {
 namespace {
@@ -14,60 +15,27 @@ namespace {
 constexpr double kGrowthWidth = 1240, kPanelW = 290, kPanelH = 330, kGrowthTop = 116, kGapY = 112;  // [pixel]
 constexpr double kGrowthLeft = 92, kNames = 228;            // [pixel] beside a panel
 constexpr double kSentenceText = 17, kGrowthTickText = 15;  // [pixel]
-constexpr std::array kGrowthColors{kBlue, kVermilion, kGreen, kPurple, kOrange, kInk};
 
-struct AxisRange {
-  double low, high, begin, end;
-  double at(double value) const { return begin + (end - begin) * (std::log10(value) - low) / (high - low); }
-};
-
-AxisRange range_of(double least, double most, double begin, double end) {
+// At least a decade.
+PlotAxis growth_axis(double least, double most) {
   double low = std::log10(least) - 0.12, high = std::log10(most) + 0.12;
   if (high - low < 1.0) {
     const double middle = (low + high) / 2;
     low = middle - 0.5;
     high = middle + 0.5;
   }
-  return {low, high, begin, end};
-}
-
-void draw_axis(Pen& pen, const AxisRange& range, bool across, double from, double to) {
-  const bool few = range.high - range.low > 2.2;
-  double free_from = -1e9;  // [pixel] left end of the free space for the next number on the x axis
-  for (int decade = static_cast<int>(std::floor(range.low)); decade <= range.high; ++decade)
-    for (const int factor : {1, 2, 5}) {
-      const double value = factor * std::pow(10.0, decade), e = std::log10(value);
-      if (e < range.low || e > range.high || (few && factor != 1)) continue;
-      const double p = range.at(value);
-      pen.color(kFaint);
-      across ? pen.line(p, from, p, to, 1) : pen.line(from, p, to, p, 1);
-      pen.color(kInk);
-      const std::string number = decade_number(value);
-      if (!across) {
-        pen.text(from - 7, p + 5, kGrowthTickText, 1.0, number);
-      } else if (const double half = 0.5 * pen.width(kGrowthTickText, number); p - half > free_from) {
-        pen.text(p, to + 20, kGrowthTickText, 0.5, number);
-        free_from = p + half + 6;
-      }
-    }
+  return {std::pow(10.0, low), std::pow(10.0, high), true};
 }
 
 void draw_panel(Pen& pen, double left, double top, const GrowthPanel& panel) {
-  const double right = left + kPanelW, bottom = top + kPanelH;
+  const double right = left + kPanelW;
   double least = 1e300, most = 0;
   for (const GrowthCurve& curve : panel.curves)
     for (const double cost : curve.cost) least = std::fmin(least, cost), most = std::fmax(most, cost);
-  const AxisRange x = range_of(*std::min_element(panel.size.begin(), panel.size.end()),
-                               *std::max_element(panel.size.begin(), panel.size.end()), left, right);
-  const AxisRange y = range_of(least, most, bottom, top);
-  draw_axis(pen, x, true, top, bottom);
-  draw_axis(pen, y, false, left, right);
-  pen.color(kInk);
-  pen.line(left, top, left, bottom, 1.5);
-  pen.line(left, bottom, right, bottom, 1.5);
+  const auto [smallest, largest] = std::minmax_element(panel.size.begin(), panel.size.end());
+  const PlotPanel axes{left, top, kPanelW, kPanelH, growth_axis(*smallest, *largest), growth_axis(least, most)};
+  draw_axes(pen, axes, panel.across, panel.up, {.number = kGrowthTickText, .title = 16, .most_up = 8});
   pen.text(left, top - 14, 17, 0, panel.title, true);
-  pen.text((left + right) / 2, bottom + 44, 16, 0.5, panel.across);
-  pen.upright_text(left - 68, (top + bottom) / 2, 16, panel.up);
   // Curve names beside their last points, without overlap.
   std::vector<std::size_t> order(panel.curves.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -77,24 +45,16 @@ void draw_panel(Pen& pen, double left, double top, const GrowthPanel& panel) {
   double lowest = top - 4;
   for (const std::size_t k : order) {
     const GrowthCurve& curve = panel.curves[k];
-    const Color color = kGrowthColors[k % kGrowthColors.size()];
-    pen.color(color, 0.6);
+    const Color color = series_color(k);
     const double a = curve.law.from, b = panel.size[curve.last()];
-    cairo_save(pen.get());
-    cairo_rectangle(pen.get(), left, top, kPanelW, kPanelH);
-    cairo_clip(pen.get());
-    pen.line(x.at(a), y.at(curve.law.at(a)), x.at(b), y.at(curve.law.at(b)), 1.3);
-    cairo_restore(pen.get());
-    pen.color(color);
-    for (std::size_t i = 0; i < panel.size.size(); ++i) {
-      if (std::isnan(curve.cost[i])) continue;
-      cairo_arc(pen.get(), x.at(panel.size[i]), y.at(curve.cost[i]), 5, 0, 2 * M_PI);
-      cairo_fill(pen.get());
-    }
-    const double end = y.at(curve.cost[curve.last()]), at = std::max(end, lowest + 22);
+    draw_line(pen, axes, std::array{PlotPoint{a, curve.law.at(a)}, PlotPoint{b, curve.law.at(b)}},
+              {color, 1.3, false, 0.6});
+    draw_dots(pen, axes, points_of(panel.size, curve.cost), color, 5, true);
+    const PlotPoint end = axes.on({b, curve.cost[curve.last()]});
+    const double at = std::max(end.y, lowest + 22);
     lowest = at + 19;
     pen.color(color, 0.6);
-    pen.line(x.at(panel.size[curve.last()]) + 7, end, right + 10, at, 0.8);
+    pen.line(end.x + 7, end.y, right + 10, at, 0.8);
     pen.color(kInk);
     pen.text(right + 14, at + 4, 16, 0, curve.name, true);
     pen.text(right + 14, at + 22, kGrowthTickText, 0, "power " + words_of(curve.law));
@@ -109,7 +69,7 @@ Status plot_growth(OutputFolder& out, const std::string& stem, const std::string
   const double bottom = kGrowthTop + rows * (kPanelH + kGapY) - kGapY + 84;
   std::vector<std::string> lines;
   for (const std::string& sentence : sentences) {
-    Pen measure(1, 1);
+    CairoPen measure(1, 1);
     const std::vector<std::string> broken = measure.lines(kSentenceText, sentence, kGrowthWidth - 60);
     lines.insert(lines.end(), broken.begin(), broken.end());
   }

@@ -73,7 +73,7 @@ GrowthPanel ticks_panel(const std::vector<TickCost>& costs, bool by_awake, bool 
                          : fmt::format("about {} move, by all vertices", two_digits(costs.back().awake));
   panel.across = by_awake ? "vertices that move" : "vertices";
   panel.up = kMicroseconds;
-  GrowthCurve half{"tick, p50", {}, {}}, most{"tick, p99", {}, {}}, told{"frame: publishing", {}, {}},
+  GrowthCurve half{"tick, p50", {}, {}}, most{"tick, p99", {}, {}}, published{"frame: publishing", {}, {}},
       whole{"frame: drawn", {}, {}};
   panel.also = by_awake ? "vertices" : "vertices that move";
   for (const TickCost& cost : costs) {
@@ -81,10 +81,10 @@ GrowthPanel ticks_panel(const std::vector<TickCost>& costs, bool by_awake, bool 
     panel.also_size.push_back(by_awake ? cost.vertices : cost.awake);
     half.cost.push_back(cost.p50_us);
     most.cost.push_back(cost.p99_us);
-    told.cost.push_back(cost.frame_us);
+    published.cost.push_back(cost.frame_us);
     whole.cost.push_back(cost.drawn_us > 0.0 ? cost.drawn_us : std::nan(""));
   }
-  panel.curves = {most, half, told};
+  panel.curves = {most, half, published};
   if (drawn) panel.curves.push_back(whole);
   return panel;
 }

@@ -83,37 +83,37 @@ double bonding(double poisson) {
 
 Result<Blocks> press_blocks(StudySize size, const Interrupt& interrupt, Progress& progress) {
   Blocks out;
-  struct Wish {
+  struct Slab {
     double thickness, poisson;
   };
-  const std::vector<Wish> wishes = size != StudySize::kFull
-                                       ? std::vector<Wish>{{2, 0.45}}
-                                       : std::vector<Wish>{{10, 0.3}, {2, 0.3}, {2, 0.45}, {2, 0.49}, {1, 0.45}};
+  const std::vector<Slab> slabs = size != StudySize::kFull
+                                      ? std::vector<Slab>{{2, 0.45}}
+                                      : std::vector<Slab>{{10, 0.3}, {2, 0.3}, {2, 0.45}, {2, 0.49}, {1, 0.45}};
   const std::vector<int> cells = size == StudySize::kFull    ? std::vector{4, 5, 6}
                                  : size == StudySize::kQuick ? std::vector{2, 3, 4}
                                                              : std::vector{1, 2, 3};
   constexpr double kYoung = 10e3, kDepth = 1e-4;
   double done = 0.0;
-  for (const Wish& wish : wishes) {
-    const std::string name = fmt::format("block {:g} a thick, Poisson {:g}", wish.thickness, wish.poisson);
+  for (const Slab& slab : slabs) {
+    const std::string name = fmt::format("block {:g} a thick, Poisson {:g}", slab.thickness, slab.poisson);
     std::vector<PressedBlock> blocks;
     std::vector<double> forces;
     for (const int n : cells) {
       if (interrupt.requested()) return interrupted();
       auto block = press_block(
-          {kYoung, wish.poisson, kPressRadius, wish.thickness * kPressRadius, 10 * kPressRadius, n}, kDepth);
+          {kYoung, slab.poisson, kPressRadius, slab.thickness * kPressRadius, 10 * kPressRadius, n}, kDepth);
       if (!block) return block.error();
       forces.push_back(block->force);
       blocks.push_back(std::move(*block));
-      progress.update((done += 1.0) / static_cast<double>(wishes.size() * cells.size()));
+      progress.update((done += 1.0) / static_cast<double>(slabs.size() * cells.size()));
     }
     const GridLimit limit = grid_limit(cells, forces);
     const PressTruth finest = block_truth(name, kPressRadius, blocks.back()),
                      coarser = block_truth(name, kPressRadius, blocks[blocks.size() - 2]);
     ForceRow row{name};
-    row.model = calibrated_stiffness(kYoung, wish.poisson, wish.thickness * kPressRadius) * kDepth;
+    row.model = calibrated_stiffness(kYoung, slab.poisson, slab.thickness * kPressRadius) * kDepth;
     row.truth_force = limit.limit;
-    row.bonded = row.model * bonding(wish.poisson);
+    row.bonded = row.model * bonding(slab.poisson);
     row.tets = static_cast<std::int64_t>(blocks.back().tets);
     row.finest = forces.back();
     row.order = limit.order;

@@ -55,10 +55,10 @@ class GuardOnWall {
     DeviceSample sample;
     sample.position.x = position;
     guard_.sense(&sample, now_, {});
-    GuardInput wish;
-    wish.known = true;
-    wish.wrench.force.x = share() * wanted;
-    return guard_.release(wish, now_, {}).force.x;
+    GuardInput input;
+    input.known = true;
+    input.wrench.force.x = share() * wanted;
+    return guard_.release(input, now_, {}).force.x;
   }
   double share() const { return most_ > 0.0 && K_ > most_ ? most_ / K_ : 1.0; }
   Guard guard_;

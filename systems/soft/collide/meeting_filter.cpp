@@ -16,7 +16,7 @@ constexpr double kDeepens = 2.0;  // [1] largest penetration that can develop in
 constexpr double kComing = 1e-3;  // [margins] in a step: a slower vertex rests in a sheet rather than entering it
 constexpr double kGraze = 0.3;    // [margins] smaller crossings are left to the next step
 
-// What every filter of a pair's meetings uses.
+// Used by every filter of a pair's meetings.
 struct PairFilter {
   const PairView& pair;
   std::vector<Found>& out;

@@ -175,7 +175,7 @@ void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) 
     for (std::size_t lane = 0; lane < pack.count; ++lane, ++slots) {
       add_forces(pack.node[lane], lane, now, 1.0, mesh_.node_count(), force_);
       add_blocks(pack, lane, *slots, scale, now);
-      if (pack.node[lane][3] >= end) add_told(pack, lane, scale, now);
+      if (pack.node[lane][3] >= end) add_prescribed(pack, lane, scale, now);
     }
     // f_el + K' (x - begin): the stress at the beginning of the step, with the rotations of the guess.
     if (begin) take_edges(pack, *begin, now), take_forces(pack, lambda_, mu_, now);
@@ -214,7 +214,7 @@ void Tissue::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& 
 
 // Pinned nodes have no rows: A times their velocities v goes to the right-hand side. sum_p K'_ip v_p is V sigma c_i of
 // the strain sym(sum_p v_p c_p^T).
-void Tissue::add_told(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit) {
+void Tissue::add_prescribed(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit) {
   const Tet& tet = pack.node[lane];
   dmat3 L(0);
   for (int i = 0; i < 4; ++i)

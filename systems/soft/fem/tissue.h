@@ -88,7 +88,7 @@ class Tissue {
   void visit(const ElementPack& pack, const std::vector<dvec3>& x, ElementVisit& out) const;
   void add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, const Scale& scale,
                   const ElementVisit& visit);
-  void add_told(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit);
+  void add_prescribed(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit);
   void mirror();
   void add_masses(double T, dvec3 gravity);
   double* block(std::uint32_t row, std::uint32_t column, std::uint32_t slot);

@@ -59,7 +59,7 @@ void collision(World& world, Tick tick) {
     for (std::size_t t = 0; t < state.tips.size(); ++t) {
       const Tip& tip = state.tips[t];
       const TipPlace to = tip_place(probe, tip), from = probe.fresh ? to : tip_place_before(probe, tip);
-      const double band = tip.radius * (1 + kAhead) + 2 * kEarly * touch.extent;
+      const double band = tip.radius * (1 + kAhead) + 2 * kEarly * touch.extent + touch.crack;
       Box swept;
       for (const dvec3& end : {from.end, from.at(1), to.end, to.at(1)}) {
         swept.add(vec3(end - dvec3(band)));

@@ -60,6 +60,7 @@ void begin_contact(const ContactSearch& s, const ProbeTip& tip, const TipContact
   contact.load = contact.share = contact.normal_force = 0.0;
   contact.bristle = dvec3(0);
   contact.sliding = false;
+  contact.effects = {};
   put_contact(*source, contact, at);
   HeightState surface = recovering(s, at.place.main());
   // Beside others of its tip the surface does not recover: the tip is on it, and has left that dent itself.

@@ -19,9 +19,11 @@ constexpr double kUnexplained = 0.1;
 // Two feet of a tip closer than this are the same. [1] of the mean edge
 constexpr double kSameFoot = 1e-6;
 
-// A foot at a seam moves to the other surface, with the contact's whole state, or waits between both.
+// A foot at a seam moves to the other surface, with the contact's whole state, or waits between both. `distance` [m]:
+// its distance.
 enum class AtSeam { kStays, kBetween, kCarried };
-AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source, Contact& contact, dvec3 world) {
+AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source, Contact& contact, dvec3 world,
+                  double distance) {
   TouchState& touch = *s.world.touch;
   ObjectState& object = touch.objects[seam.object];
   const ProbeTip tip{contact.probe, contact.tip, source.tip};
@@ -30,7 +32,8 @@ AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source,
   const Pose& pose = s.world.registry.get<Pose>(object.entity);
   const dvec3 x = pose.to_local(world);
   Foot foot = there.downhill(seam.triangle, closest_on_triangle(there.mesh, seam.triangle, x).barycentric, x);
-  if (seam_at(object, foot) && &object != &s.object) return AtSeam::kBetween;
+  // Over the crack it stays with the nearer side.
+  if (seam_at(object, foot) && std::abs(foot.height) >= distance) return AtSeam::kBetween;
   if (foot.height >= tip.tip.radius * (1 + kAhead) || (foot.height < 0) != (source.place.height < 0))
     return AtSeam::kStays;
   if (!is_known(there, tip, foot)) {
@@ -52,10 +55,19 @@ AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source,
     after.bristle = turn * before.bristle;
     after.sliding = before.sliding;
     after.load = before.load;
+    after.effects = before.effects;
     hand_over_dents(touch, static_cast<std::uint32_t>(&s.object - touch.objects.data()), source, seam.object, *to);
   }
   drop_contact(source, contact);
   return AtSeam::kCarried;
+}
+
+// The same over a crack in one mesh, where the contact goes on as it is.
+AtSeam step_over(const ContactSearch& s, const Seam& seam, dvec3 x, Foot& foot) {
+  const Foot far = s.downhill(seam.triangle, closest_on_triangle(s.mesh, seam.triangle, x).barycentric, x);
+  const bool between = seam_at(s.object, far);
+  if ((far.height < 0) == (foot.height < 0) && (!between || std::abs(far.height) < std::abs(foot.height))) foot = far;
+  return between ? AtSeam::kBetween : AtSeam::kStays;
 }
 
 }  // namespace
@@ -69,14 +81,19 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
     source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal};
   const dvec3 step = x - source.x, slope = source.place.gradient, place = source.place.p;
   const TipPlace was{source.x - source.axis.along * source.axis.axis, source.axis.axis};
-  const Foot foot = follow_foot(s, before, source.x, x);
+  Foot foot = follow_foot(s, before, source.x, x);
   contact.older_height = contact.previous_height;
   contact.previous_height = contact.height;
-  const bool front = foot.height >= 0;
   AtSeam at_seam = AtSeam::kStays;
-  if (const Seam* seam = seam_at(s.object, foot))
-    at_seam = carry_over(s, *seam, source, contact, s.world.registry.get<Pose>(s.object.entity).to_world(x));
+  if (const Seam* seam = seam_at(s.object, foot)) {
+    if (&s.world.touch->objects[seam->object] == &s.object)
+      at_seam = step_over(s, *seam, x, foot);
+    else
+      at_seam = carry_over(s, *seam, source, contact, s.world.registry.get<Pose>(s.object.entity).to_world(x),
+                           std::abs(foot.height));
+  }
   if (at_seam == AtSeam::kCarried) return;
+  const bool front = foot.height >= 0;
   // Past the rim of an open surface, or too far away for a meaningful foot.
   const std::vector<std::uint32_t>& seams = s.object.closed;
   const bool beyond =

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/touch/collide/capsule.h"
+#include "systems/touch/collide/seam_entry.h"
 #include "systems/touch/collide/seams.h"
 #include "systems/touch/collide/surface_query.h"
 #include "systems/touch/collide/triangle_tree.h"
@@ -59,7 +60,8 @@ void find_walls(const ContactSearch& s, dvec3 x, double within, std::array<Foot,
           }
           if (!lowest) continue;
           const Foot foot = s.downhill(t, at.barycentric, x);
-          if (!(foot.height >= 0) || foot.height > within || at_seam(s.object, foot)) continue;
+          if (!(foot.height >= 0) || foot.height > within) continue;
+          if (at_seam(s.object, foot) && !bears_between(s, foot, x)) continue;
           const auto is_same = [&](const Foot& f) { return length(f.p - foot.p) < same; };
           if (std::none_of(feet.begin(), feet.begin() + static_cast<std::ptrdiff_t>(count), is_same))
             feet[count++] = foot;
@@ -121,13 +123,17 @@ void find_entry(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, 
   const dvec3 from = way.from.at(along), to = way.to.at(along), d = to - from;
   if (!(dot(d, d) > 0) || inside_neighbour(s, tip)) return;
   const auto enter = [&](const Foot& foot) {
-    if (foot.valid() && foot.height < 0 && !beyond_border(s.mesh, foot, to)) begin_at(s, tip, way, foot, along);
+    if (foot.valid() && foot.height < 0 && !beyond_border(s.mesh, foot, to, s.object.closed))
+      begin_at(s, tip, way, foot, along);
   };
   const auto bulge = static_cast<double>(s.mesh.tree.bulge);
   const dvec3 early = s.early() / length(d) * d;
   if (const EntryPlace entry = entry_place(s, tip, from - early, to, early); entry.triangle != Foot::kNone) {
     const Foot foot = s.downhill(entry.triangle, entry.barycentric, dot(entry.x - from, d) > 0 ? entry.x : from);
     enter(follow_foot(s, foot, foot.p, to));
+  } else if (const std::optional<SeamEntry> crack = seam_entry(s, from - early, to);
+             crack && !pressed_through(s, tip, crack->x, crack->outward)) {
+    enter(s.downhill(crack->triangle, crack->barycentric, to));
   } else if (bulge > 0 && tip.tip.radius == 0) {
     // The curved surface is slightly in front of or behind its triangles: walls that were in front of the point.
     std::array<Foot, kMostFootSeeds> feet;
@@ -150,7 +156,9 @@ void find_inside(const ContactSearch& s, const ProbeTip& tip, const TipWay& way,
       closest_flat(s.mesh, x, std::max(tip.tip.radius, 0.1 * static_cast<double>(s.mesh.box.diagonal())));
   if (!near.valid()) return;
   const Foot foot = s.downhill(near.triangle, near.barycentric, x);
-  if (foot.height < tip.tip.radius) begin_at(s, tip, {way.to, way.to}, foot, along);
+  if (foot.height >= tip.tip.radius) return;
+  begin_at(s, tip, {way.to, way.to}, foot, along);
+  s.world.dropped |= kDroppedInside;
 }
 
 // Begins contacts with the walls within reach of the sphere at `along`: around its way's end, and along the way of a
@@ -185,7 +193,8 @@ int intervals(const ContactSearch& s, const Tip& tip) {
 void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, TipPlace& searched, bool fresh,
                        const TipPlace& from, const TipPlace& to) {
   const double radius = tip.tip.radius, within = radius * (1 + kAhead);
-  const double band = within + static_cast<double>(s.mesh.tree.bulge) + 2 * s.early();
+  const double band = within + static_cast<double>(s.mesh.tree.bulge) + 2 * s.early() +
+                      (s.object.seams.empty() ? 0.0 : crack_of(s.mesh));
   const Box& box = s.mesh.box;
   const dvec3 low = glm::min(glm::min(from.end, from.at(1)), glm::min(to.end, to.at(1))) - dvec3(band),
               high = glm::max(glm::max(from.end, from.at(1)), glm::max(to.end, to.at(1))) + dvec3(band);

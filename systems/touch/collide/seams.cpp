@@ -1,7 +1,9 @@
 #include "systems/touch/collide/seams.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "systems/touch/collide/triangle_tree.h"
 #include "systems/touch/prepare/prepare.h"
@@ -9,6 +11,7 @@
 namespace pliant {
 namespace {
 
+constexpr double kOnSeam = 1e-6;     // [1] a foot with a smaller barycentric coordinate is on that edge
 constexpr double kOff = 0.3;         // [1] of the search distance: largest distance of the other surface from there
 constexpr double kAlongSeam = 0.76;  // [1] cosine of 40 degrees: largest angle between the two surfaces
 
@@ -22,16 +25,16 @@ dvec3 facet_normal(const Mesh& mesh, std::uint32_t t) {
   return normalize(cross(dvec3(mesh.position(c.y)) - a, dvec3(mesh.position(c.z)) - a));
 }
 
-// The triangle of `mesh` that passes within `within` of p and faces like p's surface, or kBorder. `self`: the triangle
-// of p, if the mesh is the same.
-std::uint32_t goes_on(const Mesh& mesh, const Pose& pose, const SeamPlace& at, double within, std::uint32_t self) {
+// The triangle of `mesh` that passes within `within` of p, faces like p's surface and satisfies `may_be`, or kBorder.
+template <class MayBe>
+std::uint32_t goes_on(const Mesh& mesh, const Pose& pose, const SeamPlace& at, double within, MayBe may_be) {
   const dvec3 x = pose.to_local(at.p), n = glm::conjugate(pose.rotation) * at.normal;
   std::uint32_t found = kBorder;
   double nearest = within;
   visit_near(
       mesh, x, [&] { return nearest; },
       [&](std::uint32_t t) {
-        if (t == self) return;
+        if (!may_be(t)) return;
         const double d = std::sqrt(closest_on_triangle(mesh, t, x).distance2);
         if (d > nearest || dot(facet_normal(mesh, t), n) < kAlongSeam) return;
         nearest = d;
@@ -125,6 +128,30 @@ std::uint32_t add_bond(const World& world, TouchState& touch, std::uint32_t here
   return bond;
 }
 
+// The connected part of each triangle of a mesh, by number. Empty if all of it is connected.
+std::vector<std::uint32_t> parts_of(const Mesh& mesh) {
+  std::vector<std::uint32_t> part(mesh.triangles.size(), kBorder), stack;
+  std::uint32_t count = 0;
+  for (std::uint32_t first = 0; first < part.size(); ++first) {
+    if (part[first] != kBorder) continue;
+    part[first] = count;
+    stack.push_back(first);
+    while (!stack.empty()) {
+      const std::uint32_t t = stack.back();
+      stack.pop_back();
+      for (int edge = 0; edge < 3; ++edge) {
+        const std::uint32_t next = mesh.across[t][edge];
+        if (next == kBorder || part[next] != kBorder) continue;
+        part[next] = count;
+        stack.push_back(next);
+      }
+    }
+    ++count;
+  }
+  if (count < 2) part.clear();
+  return part;
+}
+
 // Where surfaces pass an edge of an object at the current poses. `known`: number of bonds found at earlier poses.
 void find_seams_of(const World& world, TouchState& touch, std::uint32_t i, std::size_t known, bool cracks) {
   const Registry& registry = world.registry;
@@ -142,21 +169,23 @@ void find_seams_of(const World& world, TouchState& touch, std::uint32_t i, std::
   std::sort(others.begin(), others.end());
   const bool alone = others.empty() || (others.size() == 1 && others[0] == i);
   if (alone && !cracks) return;
+  const std::vector<std::uint32_t> part = cracks ? parts_of(mesh) : std::vector<std::uint32_t>();
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (int edge = 0; edge < 3; ++edge) {
       const bool border = mesh.across[t][edge] == kBorder;
-      if (!border && (alone || !mesh.is_crease(t, edge))) continue;
+      if (!border && ((alone && part.empty()) || !mesh.is_crease(t, edge))) continue;
       const uvec3 c = mesh.triangles[t];
       const dvec3 a(mesh.position(c[edge])), b(mesh.position(c[(edge + 1) % 3])), n = facet_normal(mesh, t);
       const SeamPlace at{pose.to_world(0.5 * (a + b) + crack * normalize(cross(b - a, n))), pose.rotation * n};
       for (const std::uint32_t j : others) {
-        if (j == i && !border) continue;
+        if (j == i && !border && part.empty()) continue;
         const Box& box = touch.objects[j].world_box;
         const vec3 p(at.p);
         const vec3 out = glm::max(glm::max(box.min - p, p - box.max), vec3(0));
         if (length(out) > static_cast<float>(2 * crack)) continue;
-        const std::uint32_t on = goes_on(mesh_of(world, touch.objects[j]), registry.get<Pose>(touch.objects[j].entity),
-                                         at, kOff * crack, j == i ? t : kBorder);
+        const std::uint32_t on =
+            goes_on(mesh_of(world, touch.objects[j]), registry.get<Pose>(touch.objects[j].entity), at, kOff * crack,
+                    [&](std::uint32_t other) { return j != i || (border ? other != t : part[other] != part[t]); });
         if (on == kBorder) continue;
         std::uint32_t bond = Seam::kCrack;
         if (j != i) bond = bond_of(world, touch, i, j, touch.bonds.size());
@@ -166,6 +195,22 @@ void find_seams_of(const World& world, TouchState& touch, std::uint32_t i, std::
       }
     }
   }
+}
+
+// Of the seams' edges, as wide as a crack.
+std::vector<Box> boxes_of(const Mesh& mesh, const std::vector<Seam>& seams) {
+  std::vector<Box> boxes;
+  const vec3 wide(static_cast<float>(crack_of(mesh)));
+  for (const Seam& seam : seams) {
+    const uvec3 corner = mesh.triangles[seam.edge / 3];
+    Box box;
+    for (const std::uint32_t k : {seam.edge % 3, (seam.edge + 1) % 3}) {
+      box.add(mesh.position(corner[static_cast<int>(k)]) - wide);
+      box.add(mesh.position(corner[static_cast<int>(k)]) + wide);
+    }
+    boxes.push_back(box);
+  }
+  return boxes;
 }
 
 template <class Value>
@@ -179,7 +224,21 @@ void sort_unique(std::vector<Value>& values) {
 void find_closed_edges_and_zones(const World& world, TouchState& touch, std::uint32_t i) {
   ObjectState& object = touch.objects[i];
   const Mesh& mesh = mesh_of(world, object);
+  const auto ends = [&](std::uint32_t key) {
+    const uvec3 corner = mesh.triangles[key / 3];
+    const vec3 a = mesh.position(corner[static_cast<int>(key % 3)]),
+               b = mesh.position(corner[static_cast<int>((key + 1) % 3)]);
+    const std::array<float, 3> from{a.x, a.y, a.z}, to{b.x, b.y, b.z};
+    return std::pair(std::min(from, to), std::max(from, to));
+  };
+  // Borders at the same place: where more than two triangles meet at an edge, it is a border of each.
+  std::multimap<std::pair<std::array<float, 3>, std::array<float, 3>>, std::uint32_t> borders;
+  if (!object.found.seams.empty())
+    for (std::uint32_t key = 0; key < 3 * mesh.triangles.size(); ++key)
+      if (mesh.across[key / 3][static_cast<int>(key % 3)] == kBorder) borders.emplace(ends(key), key);
   for (const Seam& seam : object.found.seams) {
+    const auto [first, last] = borders.equal_range(ends(seam.edge));
+    for (auto same = first; same != last; ++same) object.found.closed.push_back({same->second, seam.bond});
     object.found.closed.push_back({seam.edge, seam.bond});
     const std::uint32_t t = seam.edge / 3, next = mesh.across[t][static_cast<int>(seam.edge % 3)];
     if (next != kBorder)
@@ -204,28 +263,32 @@ void find_closed_edges_and_zones(const World& world, TouchState& touch, std::uin
 
 }  // namespace
 
+double crack_of(const Mesh& mesh) {
+  return 2 * kCrack * static_cast<double>(mesh.mean_edge);
+}
+
 Pose relative_pose(const Pose& first, const Pose& second) {
   const dquat back = glm::conjugate(first.rotation);
   return {back * (second.position - first.position), back * second.rotation};
 }
 
 const Seam* seam_at(const ObjectState& object, const Foot& foot) {
-  if (object.seams.empty() || foot.place == FootPlace::kInside || !foot.at_border) return nullptr;
+  if (object.seams.empty()) return nullptr;
   const auto find = [&](std::uint32_t key) -> const Seam* {
     const auto at = std::lower_bound(object.seams.begin(), object.seams.end(), key,
                                      [](const Seam& seam, std::uint32_t edge) { return seam.edge < edge; });
     return at != object.seams.end() && at->edge == key ? &*at : nullptr;
   };
   for (std::uint32_t e = 0; e < 3; ++e)  // of the edges under the foot
-    if (foot.barycentric[static_cast<int>((e + 2) % 3)] < 1e-9)
+    if (foot.barycentric[static_cast<int>((e + 2) % 3)] < kOnSeam)
       if (const Seam* seam = find(3 * foot.triangle + e)) return seam;
   return nullptr;
 }
 
 bool at_seam(const ObjectState& object, const Foot& foot) {
-  if (object.closed.empty() || foot.place == FootPlace::kInside || !foot.at_border) return false;
+  if (object.closed.empty()) return false;
   for (std::uint32_t e = 0; e < 3; ++e)
-    if (foot.barycentric[static_cast<int>((e + 2) % 3)] < 1e-9 &&
+    if (foot.barycentric[static_cast<int>((e + 2) % 3)] < kOnSeam &&
         std::binary_search(object.closed.begin(), object.closed.end(), 3 * foot.triangle + e))
       return true;
   return false;
@@ -257,6 +320,8 @@ void find_seams(World& world, TouchState& touch) {
     std::stable_sort(object.found.seams.begin(), object.found.seams.end(),
                      [](const Seam& a, const Seam& b) { return a.edge < b.edge; });
     sort_unique(object.found.zones);
+    object.found.boxes.build(boxes_of(mesh_of(world, object), object.found.seams));
+    if (!object.found.seams.empty()) touch.crack = std::max(touch.crack, crack_of(mesh_of(world, object)));
     list_closed(touch, object);  // all: this is the room that the lists need
   }
   for (std::uint32_t i = 0; i < count; ++i) list_joined(touch, i);

@@ -9,6 +9,9 @@ namespace pliant {
 // A crack narrower than this share of the mesh's mean edge is ignored (as is one a third wider). [1]
 inline constexpr double kCrack = 0.02;
 
+// [m] Twice that: no crack that is ignored is wider.
+double crack_of(const Mesh& mesh);
+
 // The seam under a foot, or null.
 const Seam* seam_at(const ObjectState& object, const Foot& foot);
 // Whether a foot is on either side of a seam.

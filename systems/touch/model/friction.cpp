@@ -1,6 +1,24 @@
 #include "systems/touch/model/friction.h"
 
+#include <cmath>
+
 namespace pliant {
+
+double SlidingFriction::at(double speed) const {
+  double mu = sliding_value;
+  if (stribeck > 0) mu += (static_value - sliding_value) * std::exp(-(speed / stribeck) * (speed / stribeck));
+  if (viscous > 0) mu += viscous * speed;
+  return mu;
+}
+
+double SlidingFriction::slope(double speed) const {
+  double slope = viscous;
+  if (stribeck > 0) {
+    const double u = speed / stribeck;
+    slope -= 2 * u / stribeck * (static_value - sliding_value) * std::exp(-u * u);
+  }
+  return slope;
+}
 
 dvec3 step_bristle(Bristle& bristle, dvec3 v, double K, double B, double static_limit, double sliding_limit, double T) {
   const dvec3 e = bristle.deflection;

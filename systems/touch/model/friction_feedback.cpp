@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <type_traits>
 
@@ -14,7 +15,9 @@
 #include "systems/touch/model/contact_law.h"
 #include "systems/touch/model/field_kernels.h"
 #include "systems/touch/model/friction.h"
+#include "systems/touch/model/relief.h"
 #include "systems/touch/model/smooth_paint.h"
+#include "systems/touch/model/texture.h"
 #include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
@@ -39,6 +42,9 @@ struct Pressing {
   Painted stiffness;
   double slope = 0.0;  // [N/m] of the stored energy's force
   ContactLaw law;
+  Raised raised;      // by roughness and relief
+  dvec3 gradient{0};  // [1] of the felt height by the tip's centre
+  dvec3 velocity{0};  // [m/s] of the tip on the surface, object frame
 };
 
 // y: free recovery of the surface towards rest.
@@ -82,6 +88,67 @@ dmat3 with_axis(const dmat3& moves, const AxisPlace& axis) {
   return moves + glm::outerProduct(moves * axis.axis, axis.shift);
 }
 
+// Velocity of a contact's tip on the surface, object frame. [m/s]
+dvec3 velocity_on(const Registry& registry, const Pose& pose, const Contact& contact, const SourceState& source,
+                  Tick tick) {
+  const Probe& probe = registry.get<Probe>(contact.probe);
+  const dvec3 at = tip_place(probe, source.tip).at(source.axis.along),
+              before = tip_place_before(probe, source.tip).at(source.axis.along);
+  const dvec3 moving = (at - before) / tick.elapsed() - surface_velocity(registry, contact.object, at);
+  return glm::conjugate(pose.rotation) * moving;
+}
+
+// Height of roughness and drawn relief at a contact, without what passes too fast to be felt.
+Raised raise(World& world, const ObjectState& object, const Deformable& deformable, const Mesh& mesh,
+             const Pressing& pressing, Tick tick) {
+  const FootBlend& place = pressing.source->place;
+  const dvec3 v = pressing.velocity, n = pressing.contact->normal;
+  double& finest = pressing.contact->effects.finest;
+  finest = finest_felt(finest, length(v - dot(v, n) * n), tick.elapsed());
+  Raised out;
+  if (const Texture& texture = object.texture; texture.count > 0) {
+    const double share = detail_share(texture.wavelength, finest);
+    const double rides = riding_share(deformable.texture_amplitude * std::numbers::sqrt2, texture.wavelength,
+                                      pressing.source->tip.radius);
+    const Raised wave = texture.at(place.p, share);
+    out.height += rides * wave.height;
+    out.gradient += rides * (glm::transpose(with_axis(place.moves, pressing.source->axis)) * wave.gradient);
+    if (share < 1) world.dropped |= kDroppedDetail;
+  }
+  if (mesh.relief && deformable.relief > 0) {
+    const FeltRelief felt = felt_relief(*mesh.relief, place, finest);
+    out.height += deformable.relief * felt.height;
+    out.gradient += deformable.relief * with_axis(felt.gradient, pressing.source->axis);
+    if (felt.faded) world.dropped |= kDroppedDetail;
+  }
+  return out;
+}
+
+// A knock: a decaying sinusoid along the normal that an impact starts. Its amplitude is in proportion to the speed of
+// the impact (Okamura, Cutkosky & Dennerlein 2001). It gives back no more than the hand has put into it, as seen one
+// tick later. Returns it outwards, `normal` [N] what it is added to; `inward` [m/s].
+double knock(ContactEffects& now, const Deformable& deformable, double inward, double normal, double dt) {
+  now.knock_account += now.knock_force * inward * dt;
+  const double left = now.knock * std::exp(-deformable.transient_decay * now.knock_time);
+  if (!now.pressed && deformable.transient_amplitude * inward > left &&
+      deformable.transient_frequency * dt <= kMostKnock) {
+    now.knock = deformable.transient_amplitude * inward;
+    now.knock_time = 0.0;
+  } else if (left < 1e-6) {  // [N]
+    now.knock = 0.0;
+  }
+  now.knock_force = 0.0;
+  if (now.knock == 0.0) return 0.0;
+  now.knock_time += dt;
+  const double t = now.knock_time;
+  double force = now.knock * std::exp(-deformable.transient_decay * t) *
+                 std::sin(2 * std::numbers::pi * deformable.transient_frequency * t);
+  const double gives = -force * inward * dt;
+  if (gives > now.knock_account) force *= std::max(0.0, now.knock_account / gives);
+  now.knock_force = std::max(-normal, force);
+  return now.knock_force;
+}
+
 // Stored energy of one contact as if it were alone, and its gradient.
 bool store(const ContactSearch& search, const Deformable& deformable, Pressing& pressing, LoadedContact& out) {
   const ObjectState& object = search.object;
@@ -89,7 +156,7 @@ bool store(const ContactSearch& search, const Deformable& deformable, Pressing& 
   const HeightField& field = search.field;
   const FootBlend& place = pressing.source->place;
   const Contact& contact = *pressing.contact;
-  const double depth = -contact.height;
+  const double depth = pressing.raised.height - contact.height;
   const bool flush = !object.flush_stiffness.empty() && !object.neighbours.empty();
   pressing.stiffness = smooth_painted(place, mesh, flush ? object.flush_stiffness : object.felt_stiffness);
   ContactLaw law = contact_law(deformable, object.motion, pressing.stiffness.value, pressing.source->tip.radius);
@@ -115,7 +182,7 @@ bool store(const ContactSearch& search, const Deformable& deformable, Pressing& 
       (pressing.stored.energy / std::max(pressing.stiffness.value, 1e-12)) * pressing.stiffness.gradient +
       pressing.stored.by_relaxed * relaxed.gradient +
       pressing.stored.by_arm * (law.arm / std::max(relaxation.value, 1e-12)) * relaxation.gradient;
-  out.pull = pressing.stored.force * place.gradient - with_axis(painted, axis);
+  out.pull = pressing.stored.force * pressing.gradient - with_axis(painted, axis);
   out.p = place.p;
   out.normal = place.normal;
   out.moves = with_axis(place.moves, axis);
@@ -185,14 +252,18 @@ class SharedDents {
 
   static bool shared(std::span<const Pressing> pressing, const Pair& pair, const Ridge& ridge, SharedDent& dent) {
     const Pressing &a = pressing[pair.a], &b = pressing[pair.b];
-    const StoredEnergy at_a = a.law.stored(ridge.depth), at_b = b.law.stored(ridge.depth);
+    // Never deeper than one of them: both are lower by their roughness.
+    const Raised& raised = a.raised.height < b.raised.height ? a.raised : b.raised;
+    const double depth = ridge.depth + raised.height;
+    const dvec3 deeper = ridge.slope + raised.gradient;
+    const StoredEnergy at_a = a.law.stored(depth), at_b = b.law.stored(depth);
     if (!(at_a.energy > 0 && at_b.energy > 0)) return false;
     dent.a = pair.a;
     dent.b = pair.b;
     dent.part = std::sqrt(at_a.energy / a.stored.energy * (at_b.energy / b.stored.energy));
-    const dvec3 at_ridge = (at_a.force / at_a.energy + at_b.force / at_b.energy) * ridge.slope,
-                by_a = a.stored.force / a.stored.energy * a.source->place.gradient,
-                by_b = b.stored.force / b.stored.energy * b.source->place.gradient;
+    const dvec3 at_ridge = (at_a.force / at_a.energy + at_b.force / at_b.energy) * deeper,
+                by_a = a.stored.force / a.stored.energy * a.gradient,
+                by_b = b.stored.force / b.stored.energy * b.gradient;
     dent.slope = 0.5 * dent.part * (at_ridge + by_a + by_b);
     dent.turning = 0.5 * dent.part * (cross(ridge.x, at_ridge) + cross(a.source->x, by_a) + cross(b.source->x, by_b));
     return true;
@@ -253,34 +324,41 @@ void feel(World& world, const Deformable& deformable, const Mesh& mesh, const Ob
   const double rate = (contact.previous_height - contact.height) / tick.elapsed();
   const double damped = std::max(-normal, loaded.share * c * rate);
   normal += damped;
-  dvec3 force = loaded.force + (along > 0 ? damped / along : 0.0) * place.gradient;
+  double beside = damped;
+  if (deformable.transient_amplitude > 0) {
+    beside += knock(contact.effects, deformable, along > 0 ? -dot(pressing.velocity, place.gradient) / along : 0.0,
+                    normal, tick.elapsed());
+    normal += contact.effects.knock_force;
+  }
+  contact.effects.pressed = true;
+  dvec3 force = loaded.force + (along > 0 ? beside / along : 0.0) * place.gradient;
   contact.load = loaded.load;
   contact.share = loaded.share;
   contact.normal_force = normal;
   contact.state = normal > 0 ? ContactState::kTouching : ContactState::kInside;
 
-  Probe& probe = registry.get<Probe>(contact.probe);
-  const Tip& tip = pressing.source->tip;
-  const AxisPlace& axis = pressing.source->axis;
-  const dvec3 at = tip_place(probe, tip).at(axis.along);
   // Friction in the tangent plane of this tick; the last tick's deflection is projected onto it.
-  const dvec3 moving = (at - tip_place_before(probe, tip).at(axis.along)) / tick.elapsed() -
-                       surface_velocity(registry, contact.object, at);
-  const dvec3 velocity = glm::conjugate(pose.rotation) * moving;
   const double factor = painted(place, mesh, mesh.friction_factor).value;
   const double K = kBristleStiffness * deformable.stiffness * pressing.stiffness.value, B = K * kBristleDampingTime;
   Bristle bristle{contact.bristle - dot(contact.bristle, contact.normal) * contact.normal, contact.sliding};
-  force -= step_bristle(bristle, velocity - dot(velocity, contact.normal) * contact.normal, K, B,
-                        factor * deformable.friction_static * normal, factor * deformable.friction_sliding * normal,
+  const dvec3 slip = pressing.velocity - dot(pressing.velocity, contact.normal) * contact.normal;
+  const SlidingFriction friction{deformable.friction_static, deformable.friction_sliding, deformable.friction_stribeck,
+                                 deformable.friction_viscous};
+  const double speed = friction.stribeck > 0 || friction.viscous > 0 ? length(slip) : 0.0;
+  const double sliding = factor * friction.at(speed) * normal;
+  force -= step_bristle(bristle, slip, K, B, std::max(factor * deformable.friction_static * normal, sliding), sliding,
                         tick.elapsed());
   contact.bristle = bristle.deflection;
   contact.sliding = bristle.sliding;
   contact.force = pose.rotation * force;
-  contact.gradient = pose.rotation * place.gradient;
+  contact.gradient = pose.rotation * pressing.gradient;
   contact.stiffness = loaded.share * pressing.slope;
   contact.damping = damped > -(normal - damped) ? loaded.share * c : 0.0;
   contact.bristle_stiffness = bristle.sliding ? 0.0 : K;
-  contact.bristle_damping = bristle.sliding ? 0.0 : B;
+  contact.bristle_damping = bristle.sliding ? factor * normal * std::max(0.0, friction.slope(speed)) : B;
+  Probe& probe = registry.get<Probe>(contact.probe);
+  const AxisPlace& axis = pressing.source->axis;
+  const dvec3 at = tip_place(probe, pressing.source->tip).at(axis.along);
   probe.force += contact.force;
   probe.torque += cross(at - probe.position, contact.force);
   if (axis.curvature > 0) {  // a turn moves the place along the axis, where the depth is stationary and all else is not
@@ -303,6 +381,7 @@ void release(Contact& contact) {
   contact.force = contact.bristle = contact.gradient = dvec3(0);
   contact.stiffness = contact.damping = contact.bristle_stiffness = contact.bristle_damping = 0.0;
   contact.sliding = false;
+  contact.effects = {.finest = contact.effects.finest};
 }
 
 }  // namespace
@@ -316,6 +395,8 @@ void friction_feedback(World& world, Tick tick) {
     const Mesh& mesh = world.meshes[deformable.mesh];
     const HeightField& field = world.fields[deformable.field];
     const ContactSearch search{world, object, mesh, field, tick};
+    const Pose& pose = registry.get<Pose>(object.entity);
+    const bool uneven = object.texture.count > 0 || (mesh.relief && deformable.relief > 0);
     std::vector<LoadedContact>& loaded = world.touch->loaded;
     Pressed pressed;
     const std::span<Pressing> pressing = pressed.pressing;
@@ -327,7 +408,12 @@ void friction_feedback(World& world, Tick tick) {
         if (!source.tracked || source.tip.drawn || source.settled != settled) continue;
         Contact& contact = registry.get<Contact>(source.contact);
         advance_free_surface(contact, source.place, mesh, object.motion);
-        pressing[count] = {&source, &contact, {}, {}, 0.0, {}};
+        pressing[count] = {&source, &contact, {}, {}, 0.0, {}, {}, source.place.gradient, {}};
+        if (contact.height < 0) pressing[count].velocity = velocity_on(registry, pose, contact, source, tick);
+        if (contact.height < 0 && uneven) {
+          pressing[count].raised = raise(world, object, deformable, mesh, pressing[count], tick);
+          pressing[count].gradient -= pressing[count].raised.gradient;
+        }
         const bool stores = contact.height < 0 && (settled ? store(search, deformable, pressing[count], loaded[count])
                                                            : settle(search, deformable, pressed, loaded));
         if (stores) {
@@ -348,7 +434,6 @@ void friction_feedback(World& world, Tick tick) {
       world.dropped |= kDroppedNonFinite;
       object.stored = 0.0;
     }
-    const Pose& pose = registry.get<Pose>(object.entity);
     for (std::size_t i = 0; i < count; ++i) {
       if (loaded[i].share > 0) {
         feel(world, deformable, mesh, object, pose, loaded[i], pressing[i], tick);

@@ -228,6 +228,15 @@ Status check(const Deformable& d, const std::string& name) {
       {"contact_radius", d.contact_radius, {R::kContactRadius.min, kMostContactShare * d.reach}, ", 0.95 of its reach"},
       {"friction_static", d.friction_static, kFrictionRange},
       {"friction_sliding", d.friction_sliding, {kFrictionRange.min, d.friction_static}},
+      {"friction_stribeck", d.friction_stribeck, R::kStribeck},
+      {"friction_viscous", d.friction_viscous, R::kViscous},
+      {"texture.amplitude", d.texture_amplitude, R::kTextureAmplitude},
+      {"texture.wavelength", d.texture_wavelength, R::kTextureWavelength},
+      {"texture.seed", d.texture_seed, R::kTextureSeed},
+      {"transient.amplitude", d.transient_amplitude, R::kTransientAmplitude},
+      {"transient.frequency", d.transient_frequency, R::kTransientFrequency},
+      {"transient.decay", d.transient_decay, R::kTransientDecay},
+      {"relief", d.relief, R::kRelief},
   };
   for (const Bound& bound : bounds) {
     if (bound.range.holds(bound.value)) continue;

@@ -189,10 +189,15 @@ TipCount list_probes(Registry& registry, TouchState& touch, double reach) {
   TipCount count;
   for (auto [entity, probe] : registry.view<Probe>()) {
     const bool meets_surfaces = probe.meets != ProbeMeets::kBodies;
-    touch.probes.push_back({entity, {}, meets_surfaces ? tips_of(probe, reach) : std::vector<Tip>(), count.all});
-    for (const Tip& tip : touch.probes.back().tips)
+    ProbeState& state = touch.probes.emplace_back();
+    state.entity = entity;
+    state.first_tip = count.all;
+    if (meets_surfaces) state.tips = tips_of(probe, reach);
+    for (const Tip& tip : state.tips) {
+      state.has_torque = state.has_torque || tip.place != dvec3(0) || tip.is_capsule();
       count.contacts += tip.radius > 0 && !tip.drawn ? kContactsOfASphere : kContactsOfAPoint;
-    count.all += static_cast<std::uint32_t>(touch.probes.back().tips.size());
+    }
+    count.all += static_cast<std::uint32_t>(state.tips.size());
   }
   count.contacts = std::min<std::size_t>(count.contacts, kMaxContactsPerObject);
   return count;
@@ -215,6 +220,7 @@ ObjectState make_object(World& world, Entity entity, const Pose& pose, double dt
   }
   object.motion = motion(deformable, dt);
   object.painted = paint_motion(object.motion, mesh);
+  object.texture = texture_of(deformable);
   const double reach = std::max(deformable.reach, kLeastReach * static_cast<double>(mesh.mean_edge));
   const double contact = contact_radius(deformable, reach);
   object.kernel = share_kernel(deformable.shape, reach, deformable.volume, contact / reach);

@@ -17,6 +17,7 @@
 #include "systems/touch/model/local_model.h"
 #include "systems/touch/model/painted_motion.h"
 #include "systems/touch/model/shape.h"
+#include "systems/touch/model/texture.h"
 #include "systems/touch/prepare/move_objects.h"
 
 namespace pliant {
@@ -139,6 +140,7 @@ struct SeamsFound {
     auto operator<=>(const Zones&) const = default;
   };
   std::vector<Seam> seams;         // by edge, ascending
+  BoxTree boxes;                   // of `seams`, object frame, as wide as a crack
   std::vector<ClosedEdge> closed;  // ascending
   std::vector<Zones> zones;        // ascending
   std::vector<std::uint32_t> bonds;
@@ -168,6 +170,7 @@ struct ObjectState {
   std::vector<std::uint32_t> closed;        // edges of seams, from both sides, ascending: no foot crosses them
   BoxTree crease_boxes;                     // of `creases`, object frame
   std::vector<std::uint32_t> creases;       // convex ones, from both sides: 3 * triangle + edge
+  Texture texture;                          // roughness; no waves: none
   ShareKernel kernel;                       // sharing of the load between contacts
   Box world_box;                            // of the rest surface, for the broad phase
   std::uint32_t probe_sources = 0;          // number of `sources` for probes; presses follow
@@ -194,7 +197,9 @@ struct ObjectState {
 
 struct ProbeState {
   Entity entity;
-  SafetyState safety;
+  SafetyState safety, torque_safety;
+  bool has_torque = false;  // a tip is not at its place
+  dvec3 turned{0};          // [rad] sum of the small rotations
   std::vector<Tip> tips;
   std::uint32_t first_tip = 0;  // index of its first tip in ObjectState::searched
 };
@@ -203,6 +208,7 @@ struct TouchState {
   std::vector<ObjectState> objects;
   BoxTree object_boxes;  // world boxes of the objects over the tick, with room for curved patches
   std::vector<Bond> bonds;
+  double crack = 0.0;  // [m] no crack that is ignored is wider (seams.h)
   std::vector<ProbeState> probes;
   std::vector<std::uint32_t> awake;                // objects with a tracked contact or a moving field; capacity: all
   std::uint32_t unseen = 0;                        // number of successive snapshots that were not taken
