@@ -102,7 +102,9 @@ void write_probe(World& world, ProbeState& state, Tick tick) {
   SafetyLimits limits = force_limits(device), turning = torque_limits(device, HandleParameters{});
   limits.touched = soften(world, state.entity, device, state.safety);
   limits.carried = surface_displacement(world, state.entity, tick.elapsed());
-  limits.weight = effects_beside(world, state.entity, state.safety.share);
+  const BesideObserver beside = effects_beside(world, state.entity, state.safety.share);
+  limits.weight = beside.force;
+  turning.weight = beside.torque;
   const ToolTouchState* const among_bodies = find_tool(world, state.entity);
   if (among_bodies) limits.ease = turning.ease = ease_of_tool(tick.skipped);
   const dvec3 pressed = with_own(
@@ -110,11 +112,14 @@ void write_probe(World& world, ProbeState& state, Tick tick) {
       state.safety.share * (probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0))), tick.dt);
   const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
   const bool known = plausible_rotation(device.rotation);
-  if (probe.placed && !probe.fresh) state.turned += vector_of(probe.rotation * glm::conjugate(probe.previous_rotation));
+  const dvec3 turn =
+      probe.placed && !probe.fresh ? vector_of(probe.rotation * glm::conjugate(probe.previous_rotation)) : dvec3(0);
+  state.turned += turn;
   write_wrench(world, device, {state.safety, state.has_torque ? &state.torque_safety : nullptr, state.turned}, limits,
                turning, known ? rendered(pressed, device.can.renders_force) : unknown,
                known ? rendered(state.safety.share * probe.torque, device.can.renders_torque) : unknown, tick);
-  keep_account(world, state.entity, state.safety, state.safety.share);
+  const bool turns = state.has_torque && device.can.renders_torque;
+  keep_account(world, state.entity, state.safety, state.safety.share, turns ? dvec3(0) : turn);
 }
 
 }  // namespace

@@ -10,7 +10,8 @@
 // where s is the mean share of the force that was sent. While all of it is sent T = U. Where less was sent on the way
 // up than would be on the way down (a limit that has risen, missed ticks), T is spent before U is, and the rest of the
 // force goes to the observer as any other force does. So the hand gets at most what it gave and what the potentials
-// held where they let it in. The work of a moving effect is the motion's. Drag is always the observer's.
+// held where they let it in. The work of a torque that the device does not render is left out: nobody gave it. The work
+// of a moving effect is the motion's. Drag is always the observer's.
 #pragma once
 
 #include "components/world.h"
@@ -18,9 +19,13 @@
 
 namespace pliant {
 
-// [N] Part of the probe's wanted force that is beside the observer: of what is sent at the share `share`.
-dvec3 effects_beside(const World& world, Entity probe, double share);
-// After make_safe with that part as SafetyLimits::weight.
-void keep_account(World& world, Entity probe, const SafetyState& safety, double share);
+// Part of the probe's wanted wrench that is beside the observer: of what is sent at the share `share`.
+struct BesideObserver {
+  dvec3 force{0}, torque{0};  // [N], [N m] world
+};
+BesideObserver effects_beside(const World& world, Entity probe, double share);
+// After make_safe with that part as SafetyLimits::weight. `unfelt` [rad]: the probe's turn in this tick, if its device
+// renders no torque.
+void keep_account(World& world, Entity probe, const SafetyState& safety, double share, dvec3 unfelt);
 
 }  // namespace pliant

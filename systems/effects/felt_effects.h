@@ -23,6 +23,7 @@ struct FeltEffects {
   double before = 0.0;   // [J] last tick's; where a probe or an effect was put elsewhere: this tick's
   double limited = 1.0;  // [1] share of the potentials, for the device's `max_stiffness`
   double reserve = 0.0;  // [J] of the world: what the effects may give to the hand (effect_account.h)
+  dvec3 last_torque{0};  // [N m] last tick's
   double sent = 0.0;     // [1] last tick's share of `force` that was sent
   double let_in = 0.0;   // [1] last tick's share that the safety layer's gate let in
 };
