@@ -102,6 +102,40 @@ TEST(Effects, AHandGetsNoMoreThanItGaveAndWhatThePotentialHeld) {
   EXPECT_LT(most, 0.02 * depth) << "it began at the bottom, where the potential holds nothing";
 }
 
+// In the reverse order a tip is turned uphill for nothing, since the device has no torque, and comes back by force.
+TEST(Effects, ATurnThatNobodyFeelsMakesNoEnergy) {
+  Room room;
+  room.add_effect(EffectKind::kAttraction);
+  const Entity probe = room.add_probe({0, 0, 0});
+  room.world.registry.get<Probe>(probe).points = {vec3(0), vec3(0.015f, 0, 0)};
+  room.device(probe).can.renders_torque = false;
+  room.ready();
+  room.wait(0.6);
+  scenes::WorkMeter meter;
+  double most = -1e9;
+  const auto each = [&](ProbeReading reading) {
+    reading.force = room.sent(probe);
+    meter.add(reading);
+    most = std::max(most, meter.work());
+  };
+  const auto turn = [&](double from, double to) {
+    for (int i = 1; i <= 200; ++i) {
+      const double half = 0.5 * (from + (to - from) * i / 200.0);
+      room.device(probe).rotation = dquat(std::cos(half), 0, 0, std::sin(half));
+      room.tick();
+      each(room.read(probe));
+    }
+  };
+  const double pi = 3.14159265358979323846, held = 0.5 * 200.0 * 0.02 * 0.02 / 6.0;  // [J] of the second tip
+  for (int round = 0; round < 20; ++round) {
+    turn(0.0, pi);
+    room.move(probe, {0.01, 0, 0}, 0.2, each);
+    turn(pi, 0.0);
+    room.move(probe, {0, 0, 0}, 0.2, each);
+  }
+  EXPECT_LT(most, 1.05 * held) << "no more than it began with, in twenty rounds";
+}
+
 TEST(Effects, DragTakesEnergyAndNothingOfItIsGiven) {
   Room room;
   room.add_effect(EffectKind::kViscosity, [](Effect& it) { it.damping = 5.0, it.radius = 0.03, it.edge = 0.02; });
