@@ -1,5 +1,5 @@
 // Effects in space: what a probe feels without touching a surface. Keys of PLIANT_effect. Arithmetic:
-// systems/effects, equations: docs/methods.md 1.11.
+// systems/effects, equations: docs/methods.md 1.13.
 #pragma once
 
 #include <array>

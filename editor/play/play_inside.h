@@ -62,6 +62,10 @@ struct PlayRun::Inside {
   Level remember(const SessionEffector& effector) const;
   void bring_back(SessionEffector& effector, const Level& level);
   void apply(const std::string& name, const PlaySource& source);
+  std::pair<PlaySource::Kind, std::string> wanted(const std::string& name, const PlaySource& source,
+                                                  const Level& level);
+  Status follow(const std::string& name, const PlaySource& source);
+  Status take(SessionEffector& effector, dquat rotation);
   // Connects a device, or the mouse if there is none.
   Status connect(const SessionEffector& effector, const std::string& id, bool& by_mouse);
   bool feels() const;  // a real device, or one that cannot be stepped

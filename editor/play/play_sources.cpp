@@ -27,18 +27,15 @@ void PlayRun::Inside::bring_back(SessionEffector& effector, const Level& level) 
   effector.placed = false;
 }
 
-// If the source is not available, the probe has none.
-void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
-  SessionEffector* const effector = inner->find_effector(name);
-  if (!effector) return;
-  const auto index = static_cast<std::size_t>(effector - inner->effectors.data());
+// The kind of a source and the name of its device: of the level's, what that is, and none that the level may not open.
+std::pair<PlaySource::Kind, std::string> PlayRun::Inside::wanted(const std::string& name, const PlaySource& source,
+                                                                 const Level& level) {
   PlaySource::Kind kind = source.kind;
   std::string id = source.what;
-  if (kind == PlaySource::Kind::kLevel && of_level[index].driver == DriverKind::kMouse) kind = PlaySource::Kind::kMouse;
-  if (kind == PlaySource::Kind::kLevel && of_level[index].driver == DriverKind::kExternal &&
-      !of_level[index].id.empty()) {
+  if (kind == PlaySource::Kind::kLevel && level.driver == DriverKind::kMouse) kind = PlaySource::Kind::kMouse;
+  if (kind == PlaySource::Kind::kLevel && level.driver == DriverKind::kExternal && !level.id.empty()) {
     kind = PlaySource::Kind::kDriver;
-    id = of_level[index].id;
+    id = level.id;
     if (!run.options_.allowed.contains(id)) {
       DeviceRequest request = device_request(id);
       for (const std::string& sentence : request.refused)
@@ -50,6 +47,52 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
       if (id.empty()) kind = PlaySource::Kind::kNone;
     }
   }
+  return {kind, std::move(id)};
+}
+
+Status PlayRun::Inside::follow(const std::string& name, const PlaySource& source) {
+  Result<Path> path = source.path ? Result<Path>(*source.path) : load_script(source.what);
+  if (!path) return path.error();
+  Path followed = run.options_.repeats && !path->rows.empty() && !path->repeats
+                      ? repeated(*path, std::max(period, period_of(*path)))
+                      : std::move(path).value();
+  if (source.from > 0.0)
+    for (PathRow& row : followed.rows) row.time += source.from;
+  return session->follow(name, std::move(followed));
+}
+
+// The mouse moves it from where it is. `rotation`: its device's.
+Status PlayRun::Inside::take(SessionEffector& effector, dquat rotation) {
+  const HapticDevice& device = inner->world.registry.get<HapticDevice>(effector.device);
+  if (!moved.empty()) {  // there is only one mouse
+    const std::string before = moved;
+    apply(before, {PlaySource::Kind::kNone, {}});
+    say(fmt::format("the mouse moves `{}` now; nothing moves `{}`", effector.name, before));
+  }
+  dvec3 at = device.position;
+  if (const Probe* probe = inner->world.registry.find<Probe>(effector.entity)) {
+    run.hand.take_probe(inner->world, *probe, run.options_.view,
+                        inner->ticks > 0 ? std::optional(device.position) : std::nullopt);
+    at = run.hand.update(0.0).value_or(at);
+  } else {
+    if (inner->ticks == 0)
+      if (const Pose* pose = inner->world.registry.find<Pose>(effector.entity)) at = pose->position;
+    run.hand.take_tool(inner->world, effector.entity, at);
+  }
+  held = rotation;
+  if (const Pose* pose = inner->world.registry.find<Pose>(effector.entity); pose && inner->ticks == 0)
+    held = pose->rotation;
+  Status done = session->move(effector.name, at, held);
+  if (done) moved = effector.name;
+  return done;
+}
+
+// If the source is not available, the probe has none.
+void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
+  SessionEffector* const effector = inner->find_effector(name);
+  if (!effector) return;
+  const auto index = static_cast<std::size_t>(effector - inner->effectors.data());
+  auto [kind, id] = wanted(name, source, of_level[index]);
   if (moved == name) {
     moved.clear();
     run.hand.let_go();
@@ -91,43 +134,12 @@ void PlayRun::Inside::apply(const std::string& name, const PlaySource& source) {
       break;
     case PlaySource::Kind::kDriver:  // above
       break;
-    case PlaySource::Kind::kScript: {
-      Result<Path> path = source.path ? Result<Path>(*source.path) : load_script(source.what);
-      if (!path) {
-        done = path.error();
-        break;
-      }
-      Path followed = run.options_.repeats && !path->rows.empty() && !path->repeats
-                          ? repeated(*path, std::max(period, period_of(*path)))
-                          : std::move(path).value();
-      if (source.from > 0.0)
-        for (PathRow& row : followed.rows) row.time += source.from;
-      done = session->follow(name, std::move(followed));
+    case PlaySource::Kind::kScript:
+      done = follow(name, source);
       break;
-    }
-    case PlaySource::Kind::kMouse: {
-      if (!moved.empty()) {  // there is only one mouse
-        const std::string before = moved;
-        apply(before, {PlaySource::Kind::kNone, {}});
-        say(fmt::format("the mouse moves `{}` now; nothing moves `{}`", name, before));
-      }
-      dvec3 at = device.position;
-      if (const Probe* probe = inner->world.registry.find<Probe>(effector->entity)) {
-        run.hand.take_probe(inner->world, *probe, run.options_.view,
-                            inner->ticks > 0 ? std::optional(device.position) : std::nullopt);
-        at = run.hand.update(0.0).value_or(at);
-      } else {
-        if (inner->ticks == 0)
-          if (const Pose* pose = inner->world.registry.find<Pose>(effector->entity)) at = pose->position;
-        run.hand.take_tool(inner->world, effector->entity, at);
-      }
-      held = rotation;
-      if (const Pose* pose = inner->world.registry.find<Pose>(effector->entity); pose && inner->ticks == 0)
-        held = pose->rotation;
-      done = session->move(name, at, held);
-      if (done) moved = name;
+    case PlaySource::Kind::kMouse:
+      done = take(*effector, rotation);
       break;
-    }
   }
   if (done) return;
   say(done.error().message());

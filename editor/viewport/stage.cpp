@@ -159,6 +159,21 @@ void Stage::answer(const StageOrder& order, std::uint64_t number) {
   if (last_.question && last_.question_number == done_.question) last_.question.reset();
 }
 
+void Stage::resize(Target& target, int width, int height) {
+  if (target.width == width && target.height == height) return;
+  glDeleteFramebuffers(1, &target.frame);
+  glDeleteTextures(1, &target.texture);
+  glCreateTextures(GL_TEXTURE_2D, 1, &target.texture);
+  glTextureStorage2D(target.texture, 1, GL_RGBA8, width, height);
+  glTextureParameteri(target.texture, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(target.texture, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(target.texture, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glCreateFramebuffers(1, &target.frame);
+  glNamedFramebufferTexture(target.frame, GL_COLOR_ATTACHMENT0, target.texture, 0);
+  target.width = width;
+  target.height = height;
+}
+
 void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
   const bool same = solid_ && !scenery_ && drawn_ && drawn_->width == order.width && drawn_->height == order.height &&
                     same_scene(drawn_->solid, order.solid);
@@ -176,19 +191,7 @@ void Stage::draw(const StageOrder& order, std::uint64_t number, bool refine) {
   Target& target = targets_[at];
   const int width = std::max(1, static_cast<int>(std::lround(order.width * share))),
             height = std::max(1, static_cast<int>(std::lround(order.height * share)));
-  if (target.width != width || target.height != height) {
-    glDeleteFramebuffers(1, &target.frame);
-    glDeleteTextures(1, &target.texture);
-    glCreateTextures(GL_TEXTURE_2D, 1, &target.texture);
-    glTextureStorage2D(target.texture, 1, GL_RGBA8, width, height);
-    glTextureParameteri(target.texture, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTextureParameteri(target.texture, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTextureParameteri(target.texture, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    glCreateFramebuffers(1, &target.frame);
-    glNamedFramebufferTexture(target.frame, GL_COLOR_ATTACHMENT0, target.texture, 0);
-    target.width = width;
-    target.height = height;
-  }
+  resize(target, width, height);
   const std::uint64_t began = now_ns();
   StagePicture done;
   done.trouble = failure_.empty() ? shader_trouble_ : failure_;

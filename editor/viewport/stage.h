@@ -100,6 +100,7 @@ class Stage {
     GLuint texture = 0, frame = 0;
     int width = 0, height = 0;
   };
+  static void resize(Target& target, int width, int height);
   Target targets_[3];
   std::unique_ptr<SolidView> solid_;
   std::unique_ptr<Scenery> scenery_;

@@ -74,9 +74,10 @@ std::map<std::string, double> figures_of(const PressRecord& record) {
   return out;
 }
 
-Result<Nearest> nearest_run(const SweepTable& table, const PressRecord& target, const std::string& probe) {
-  Nearest out;
-  out.target = figures_of(target);
+namespace {
+
+// The probe whose runs are compared: `probe`, or the only one.
+Result<std::string> chosen_probe(const SweepTable& table, const std::string& probe) {
   std::set<std::string> probes, tools;
   for (const std::string& figure : table.figures)
     for (const auto& [ending, found] : {std::pair(std::string(".max_depth_m"), &probes), {".max_offset_m", &tools}})
@@ -92,32 +93,12 @@ Result<Nearest> nearest_run(const SweepTable& table, const PressRecord& target, 
   if (probe.empty() && probes.size() > 1)
     return Error{"--sweep", fmt::format("has several probes, {} and {} among them", *probes.begin(), *probes.rbegin()),
                  "choose one with --probe NAME"};
-  out.probe = probe.empty() ? *probes.begin() : probe;
+  return probe.empty() ? *probes.begin() : probe;
+}
 
-  std::vector<std::map<std::string, double>> runs(table.rows.size());
-  out.distance.assign(table.rows.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    runs[i] = figures_of(table.rows[i], out.probe);
-    if (!runs[i].contains(kMaxDepth) || !runs[i].contains(kMaxForce) || !runs[i].contains(kRmsContact)) continue;
-    out.distance[i] = distance_of(out.target, runs[i]);
-    out.order.push_back(i);
-  }
-  if (out.order.empty()) return Error{"--sweep", "has no run that was done and has the figures to compare"};
-  std::stable_sort(out.order.begin(), out.order.end(),
-                   [&](std::size_t a, std::size_t b) { return out.distance[a] < out.distance[b]; });
-  const std::size_t best = out.order[0];
-  if (differs(runs[best][kMaxDepth], out.target[kMaxDepth], kOtherDepth))
-    out.notes.push_back(
-        fmt::format("the runs press {:.3g} mm deep and the measurement {:.3g} mm: give the runs the path "
-                    "that was measured, or their forces do not compare",
-                    runs[best][kMaxDepth] * 1e3, out.target[kMaxDepth] * 1e3));
-  if (out.target.contains(kContactTime) && runs[best].contains(kContactTime) &&
-      differs(runs[best][kContactTime], out.target[kContactTime], kOtherSpan))
-    out.notes.push_back(
-        fmt::format("the nearest run is in contact for {:.3g} s and the measurement for {:.3g} s: give the runs the "
-                    "path that was measured, or their RMS forces do not compare",
-                    runs[best][kContactTime], out.target[kContactTime]));
-
+// Along each axis, the best place between the nearest run and its neighbours, by a parabola of their figures.
+void find_between(const SweepTable& table, std::vector<std::map<std::string, double>>& runs, std::size_t best,
+                  Nearest& out) {
   for (std::size_t axis = 0; axis < table.axes.size(); ++axis) {
     const AxisValues values = values_along(table, axis);
     if (!values.scale.words.empty()) continue;
@@ -155,6 +136,42 @@ Result<Nearest> nearest_run(const SweepTable& table, const PressRecord& target, 
     }
     out.between.push_back(found);
   }
+}
+
+}  // namespace
+
+Result<Nearest> nearest_run(const SweepTable& table, const PressRecord& target, const std::string& probe) {
+  Nearest out;
+  out.target = figures_of(target);
+  Result<std::string> chosen = chosen_probe(table, probe);
+  if (!chosen) return chosen.error();
+  out.probe = std::move(*chosen);
+
+  std::vector<std::map<std::string, double>> runs(table.rows.size());
+  out.distance.assign(table.rows.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    runs[i] = figures_of(table.rows[i], out.probe);
+    if (!runs[i].contains(kMaxDepth) || !runs[i].contains(kMaxForce) || !runs[i].contains(kRmsContact)) continue;
+    out.distance[i] = distance_of(out.target, runs[i]);
+    out.order.push_back(i);
+  }
+  if (out.order.empty()) return Error{"--sweep", "has no run that was done and has the figures to compare"};
+  std::stable_sort(out.order.begin(), out.order.end(),
+                   [&](std::size_t a, std::size_t b) { return out.distance[a] < out.distance[b]; });
+  const std::size_t best = out.order[0];
+  if (differs(runs[best][kMaxDepth], out.target[kMaxDepth], kOtherDepth))
+    out.notes.push_back(
+        fmt::format("the runs press {:.3g} mm deep and the measurement {:.3g} mm: give the runs the path "
+                    "that was measured, or their forces do not compare",
+                    runs[best][kMaxDepth] * 1e3, out.target[kMaxDepth] * 1e3));
+  if (out.target.contains(kContactTime) && runs[best].contains(kContactTime) &&
+      differs(runs[best][kContactTime], out.target[kContactTime], kOtherSpan))
+    out.notes.push_back(
+        fmt::format("the nearest run is in contact for {:.3g} s and the measurement for {:.3g} s: give the runs the "
+                    "path that was measured, or their RMS forces do not compare",
+                    runs[best][kContactTime], out.target[kContactTime]));
+
+  find_between(table, runs, best, out);
   return out;
 }
 

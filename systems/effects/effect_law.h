@@ -1,5 +1,5 @@
 // The law of an effect on one tip of a probe, in the effect's frame. Potentials and their derivatives are exact
-// (methods.md 1.11): force = -dU/dx, stiffness = d2U/dx2.
+// (methods.md 1.13): force = -dU/dx, stiffness = d2U/dx2.
 #pragma once
 
 #include <cstdint>

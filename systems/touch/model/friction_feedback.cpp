@@ -4,89 +4,19 @@
 #include "systems/touch/model/friction_feedback.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <type_traits>
 
-#include "systems/touch/collide/capsule.h"
 #include "systems/touch/collide/collision.h"
-#include "systems/touch/model/contact_law.h"
-#include "systems/touch/model/field_kernels.h"
 #include "systems/touch/model/friction.h"
 #include "systems/touch/model/relief.h"
-#include "systems/touch/model/smooth_paint.h"
+#include "systems/touch/model/shared_dents.h"
+#include "systems/touch/model/stored_contact.h"
 #include "systems/touch/model/texture.h"
-#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {
-
-// A shallower contact stores no energy: its share would divide by it. [1] of the reach
-constexpr double kLeastDepth = 1e-9;
-
-// Room for values that are written before they are read: clearing it would cost as much as a contact.
-template <class Value, std::size_t size>
-union Room {
-  static_assert(std::is_trivially_copyable_v<Value>);
-  std::array<Value, size> all;
-  Room() {}  // NOLINT
-};
-
-// One contact of this tick, from collision to force.
-struct Pressing {
-  SourceState* source;
-  Contact* contact;
-  StoredEnergy stored;
-  Painted stiffness;
-  double slope = 0.0;  // [N/m] of the stored energy's force
-  ContactLaw law;
-  Raised raised;      // by roughness and relief
-  dvec3 gradient{0};  // [1] of the felt height by the tip's centre
-  dvec3 velocity{0};  // [m/s] of the tip on the surface, object frame
-};
-
-// y: free recovery of the surface towards rest.
-void advance_free_surface(Contact& contact, const FootBlend& place, const Mesh& mesh, const Motion& motion) {
-  if (contact.free_height == 0.0 && contact.free_velocity == 0.0) return;
-  const HeightState y =
-      step_free(motion, painted(place, mesh, mesh.stiffness_factor).value,
-                painted(place, mesh, mesh.damping_factor).value, {contact.free_height, contact.free_velocity});
-  contact.free_height = y.height < -1e-12 ? y.height : 0.0;
-  contact.free_velocity = contact.free_height < 0 ? y.velocity : 0.0;
-}
-
-// q, the creep depth of the tissue at a place, and its slope. The slope is that of the dent, which the field stores
-// with every height (its normal correction is -dh/dx). The slope of the interpolated heights would be as jagged as the
-// mesh.
-Painted relaxed_depth(const FootBlend& place, const Mesh& mesh, const Motion& motion, const HeightField& field) {
-  Painted sum{0.0, dvec3(0)};
-  for (std::uint32_t f = 0; f < place.count; ++f) {
-    const Foot& foot = place.foot[f];
-    double depth = 0.0;
-    dvec3 slope(0);
-    for (int i = 0; i < 3; ++i) {
-      const std::uint32_t v = mesh.triangles[foot.triangle][i];
-      const float r1 = arm_stiffness(motion, mesh, v);
-      // Under the targets, plus the part taken over by the residual: q = k1 / k (h - z).
-      const vec4 z = field.relaxed[v] + (r1 > 0 ? field.residual[v] - field.arm[v] / r1 : vec4(0));
-      depth -= foot.barycentric[i] * static_cast<double>(z.w);
-      slope += foot.barycentric[i] * dvec3(z);
-    }
-    sum.value += place.weight[f] * depth;
-    sum.gradient += place.weight[f] * (glm::transpose(foot.moves) * slope) + depth * place.weight_slope[f];
-  }
-  return sum;
-}
-
-// The place where a capsule touches moves along its axis (AxisPlace).
-dvec3 with_axis(dvec3 gradient, const AxisPlace& axis) {
-  return gradient + dot(gradient, axis.axis) * axis.shift;
-}
-dmat3 with_axis(const dmat3& moves, const AxisPlace& axis) {
-  return moves + glm::outerProduct(moves * axis.axis, axis.shift);
-}
 
 // Velocity of a contact's tip on the surface, object frame. [m/s]
 dvec3 velocity_on(const Registry& registry, const Pose& pose, const Contact& contact, const SourceState& source,
@@ -148,132 +78,6 @@ double knock(ContactEffects& now, const Deformable& deformable, double inward, d
   now.knock_force = std::max(-normal, force);
   return now.knock_force;
 }
-
-// Stored energy of one contact as if it were alone, and its gradient.
-bool store(const ContactSearch& search, const Deformable& deformable, Pressing& pressing, LoadedContact& out) {
-  const ObjectState& object = search.object;
-  const Mesh& mesh = search.mesh;
-  const HeightField& field = search.field;
-  const FootBlend& place = pressing.source->place;
-  const Contact& contact = *pressing.contact;
-  const double depth = pressing.raised.height - contact.height;
-  const bool flush = !object.flush_stiffness.empty() && !object.neighbours.empty();
-  pressing.stiffness = smooth_painted(place, mesh, flush ? object.flush_stiffness : object.felt_stiffness);
-  ContactLaw law = contact_law(deformable, object.motion, pressing.stiffness.value, pressing.source->tip.radius);
-  law.free_depth = std::max(-contact.free_height, contact.unpushed);
-  Painted relaxed{0.0, dvec3(0)}, relaxation;
-  if (!field.arm.empty() && law.arm > 0) {
-    relaxation = smooth_painted(place, mesh, object.felt_relaxation);
-    law.arm *= relaxation.value;
-    relaxed = relaxed_depth(place, mesh, object.motion, field);
-    if (relaxed.value < 0) relaxed = {0.0, dvec3(0)};  // no tensile force
-    law.relaxed_depth = relaxed.value;
-  }
-  pressing.law = law;
-  pressing.stored = law.stored(depth);
-  pressing.slope = law.slope(depth);
-  const double least = kLeastDepth * deformable.reach;
-  if (!(pressing.stored.energy > 0.5 * law.stiffness * least * least)) return false;
-  out.energy = pressing.stored.energy;
-  // W is proportional to the painted stiffness; its dependence on q adds q's slope, that of the arm's own paint its
-  // slope.
-  const AxisPlace& axis = pressing.source->axis;
-  const dvec3 painted =
-      (pressing.stored.energy / std::max(pressing.stiffness.value, 1e-12)) * pressing.stiffness.gradient +
-      pressing.stored.by_relaxed * relaxed.gradient +
-      pressing.stored.by_arm * (law.arm / std::max(relaxation.value, 1e-12)) * relaxation.gradient;
-  out.pull = pressing.stored.force * pressing.gradient - with_axis(painted, axis);
-  out.p = place.p;
-  out.normal = place.normal;
-  out.moves = with_axis(place.moves, axis);
-  out.turns = with_axis(place.turns, axis);
-  out.load = contact.load;
-  return true;
-}
-
-// Pairs of contacts of one sphere in one dent.
-class SharedDents {
- public:
-  // The last contact, which may be in one dent with those before.
-  void add(const ContactSearch& search, std::span<const Pressing> pressing) {
-    const std::size_t last = pressing.size() - 1;
-    const Pressing& b = pressing[last];
-    const double radius = b.source->tip.radius;
-    for (std::size_t i = 0; i < last; ++i) {
-      const Pressing& a = pressing[i];
-      pair_[i][last] = kNone;
-      const bool capsule = b.source->tip.is_capsule();
-      if ((radius == 0.0 && !capsule) || count_ == kMostPairs || a.contact->probe != b.contact->probe ||
-          a.contact->tip != b.contact->tip)
-        continue;
-      const Ridge ridge = capsule ? ridge_along(search, *a.source, *b.source)
-                                  : ridge_between(search.mesh, a.source->place, b.source->place, b.source->x, radius);
-      pair_[i][last] = static_cast<std::uint16_t>(count_);
-      pairs_.all[count_++] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(last), ridge};
-    }
-  }
-
-  // A contact that stores nothing after all.
-  void remove(std::size_t contact) {
-    while (count_ > 0 && pairs_.all[count_ - 1].b == contact) --count_;
-  }
-
-  std::span<SharedDent> of(std::span<const Pressing> pressing) {
-    if (count_ == 0) return {};
-    // The way over a third contact may be the deeper one. The depths of all ridges are then those of a tree, and the
-    // matrix of their energies has no negative eigenvalue.
-    Room<Ridge, kMostPairs> room;
-    std::array<Ridge, kMostPairs>& deepest = room.all;
-    for (std::size_t k = 0; k < count_; ++k) deepest[k] = pairs_.all[k].ridge;
-    for (std::size_t over = 0; over < pressing.size(); ++over)
-      for (std::size_t k = 0; k < count_; ++k) {
-        const std::uint32_t a = pairs_.all[k].a, b = pairs_.all[k].b;
-        if (over == a || over == b || b >= pressing.size()) continue;
-        const std::uint16_t to = between(a, over), on = between(over, b);
-        if (to == kNone || on == kNone) continue;
-        const Ridge& lower = deepest[to].depth < deepest[on].depth ? deepest[to] : deepest[on];
-        if (lower.depth > deepest[k].depth) deepest[k] = lower;
-      }
-    std::size_t dents = 0;
-    for (std::size_t k = 0; k < count_; ++k)
-      if (pairs_.all[k].b < pressing.size() && shared(pressing, pairs_.all[k], deepest[k], dents_.all[dents])) ++dents;
-    return {dents_.all.data(), dents};
-  }
-
- private:
-  static constexpr std::uint16_t kNone = 0xffff;
-  static constexpr std::size_t kMostPairs = 256;
-  struct Pair {
-    std::uint32_t a, b;
-    Ridge ridge;
-  };
-
-  std::uint16_t between(std::size_t a, std::size_t b) const { return a < b ? pair_[a][b] : pair_[b][a]; }
-
-  static bool shared(std::span<const Pressing> pressing, const Pair& pair, const Ridge& ridge, SharedDent& dent) {
-    const Pressing &a = pressing[pair.a], &b = pressing[pair.b];
-    // Never deeper than one of them: both are lower by their roughness.
-    const Raised& raised = a.raised.height < b.raised.height ? a.raised : b.raised;
-    const double depth = ridge.depth + raised.height;
-    const dvec3 deeper = ridge.slope + raised.gradient;
-    const StoredEnergy at_a = a.law.stored(depth), at_b = b.law.stored(depth);
-    if (!(at_a.energy > 0 && at_b.energy > 0)) return false;
-    dent.a = pair.a;
-    dent.b = pair.b;
-    dent.part = std::sqrt(at_a.energy / a.stored.energy * (at_b.energy / b.stored.energy));
-    const dvec3 at_ridge = (at_a.force / at_a.energy + at_b.force / at_b.energy) * deeper,
-                by_a = a.stored.force / a.stored.energy * a.gradient,
-                by_b = b.stored.force / b.stored.energy * b.gradient;
-    dent.slope = 0.5 * dent.part * (at_ridge + by_a + by_b);
-    dent.turning = 0.5 * dent.part * (cross(ridge.x, at_ridge) + cross(a.source->x, by_a) + cross(b.source->x, by_b));
-    return true;
-  }
-
-  std::array<std::array<std::uint16_t, kMaxContactsPerObject>, kMaxContactsPerObject> pair_;
-  Room<Pair, kMostPairs> pairs_;
-  Room<SharedDent, kMostPairs> dents_;
-  std::size_t count_ = 0;
-};
 
 // One object's contacts of a tick.
 struct Pressed {
