@@ -224,7 +224,7 @@ std::vector<HeightMap> height_levels(std::uint32_t width, std::uint32_t height, 
     return static_cast<std::uint32_t>(repeats ? (k + 8 * std::int64_t{n}) % n : std::clamp<std::int64_t>(k, 0, n - 1));
   };
   std::vector<HeightMap> levels;
-  float highest = -1e30f;
+  float highest = 0.0f;  // of the spline of the finest: the coarser are below
   for (;;) {
     HeightMap map;
     map.width = width;
@@ -251,7 +251,7 @@ std::vector<HeightMap> height_levels(std::uint32_t width, std::uint32_t height, 
         }
       check_in();
     }
-    highest = std::max(highest, *std::max_element(map.coefficient.begin(), map.coefficient.end()));
+    if (levels.empty()) highest = *std::max_element(map.coefficient.begin(), map.coefficient.end());
     levels.push_back(std::move(map));
     if (width % 2 != 0 || height % 2 != 0 || std::min(width, height) <= 4) break;
     // The next level: Lanczos' kernel of two lobes, both ways. It keeps what the level can hold, and little aliases.
