@@ -17,6 +17,7 @@ struct HeightMap {
   std::vector<float> coefficient;  // [m] <= 0: the highest place of the map is on the mesh
   bool repeats_u = true, repeats_v = true;
   double wavelength = 0.0;  // [m] shortest that it can hold: two texels
+  bool finer = false;       // it holds what the next level lacks
 
   struct Sample {
     double height = 0.0;  // [m]

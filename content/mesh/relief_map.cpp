@@ -1,6 +1,7 @@
 #include "content/mesh/relief_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <map>
@@ -14,6 +15,7 @@ namespace {
 
 constexpr std::uint32_t kMostTexels = 1024;  // a side; larger maps are averaged: a hand feels no finer
 constexpr double kSameCoordinate = 1e-4;     // [1] of the map
+constexpr double kFeltShare = 0.05;          // [1] of a relief's r.m.s.: what a hand does not miss
 constexpr double kSteepestDrawn = 8.0;       // [1] a normal map's slope: 83 degrees
 
 using Complex = std::complex<double>;
@@ -219,10 +221,10 @@ std::vector<HeightMap> height_levels(std::uint32_t width, std::uint32_t height, 
                                      bool repeats, double texel) {
   const auto neighbour = [repeats](std::uint32_t i, int step, std::uint32_t n) {
     const std::int64_t k = static_cast<std::int64_t>(i) + step;
-    return static_cast<std::uint32_t>(repeats ? (k + n) % n : std::clamp<std::int64_t>(k, 0, n - 1));
+    return static_cast<std::uint32_t>(repeats ? (k + 8 * std::int64_t{n}) % n : std::clamp<std::int64_t>(k, 0, n - 1));
   };
   std::vector<HeightMap> levels;
-  float highest = -1e30f;
+  float highest = 0.0f;  // of the spline of the finest: the coarser are below
   for (;;) {
     HeightMap map;
     map.width = width;
@@ -249,25 +251,42 @@ std::vector<HeightMap> height_levels(std::uint32_t width, std::uint32_t height, 
         }
       check_in();
     }
-    highest = std::max(highest, *std::max_element(map.coefficient.begin(), map.coefficient.end()));
+    if (levels.empty()) highest = *std::max_element(map.coefficient.begin(), map.coefficient.end());
     levels.push_back(std::move(map));
     if (width % 2 != 0 || height % 2 != 0 || std::min(width, height) <= 4) break;
-    // The next level: weights 1 3 3 1 over eight, both ways.
+    // The next level: Lanczos' kernel of two lobes, both ways. It keeps what the level can hold, and little aliases.
+    constexpr std::array<double, 8> kWeight{-0.0089, -0.0420, 0.1164, 0.4345, 0.4345, 0.1164, -0.0420, -0.0089};
     std::vector<float> half(std::size_t{width / 2} * (height / 2));
     for (std::uint32_t y = 0; y < height / 2; ++y)
       for (std::uint32_t x = 0; x < width / 2; ++x) {
-        float sum = 0.0f;
-        constexpr float kWeight[4] = {0.125f, 0.375f, 0.375f, 0.125f};
-        for (int j = 0; j < 4; ++j)
-          for (int i = 0; i < 4; ++i)
-            sum += kWeight[j] * kWeight[i] *
-                   heights[std::size_t{neighbour(2 * y, j - 1, height)} * width + neighbour(2 * x, i - 1, width)];
-        half[std::size_t{y} * (width / 2) + x] = sum;
+        double sum = 0.0;
+        for (int j = 0; j < 8; ++j) {
+          const float* const row = &heights[std::size_t{neighbour(2 * y, j - 3, height)} * width];
+          for (int i = 0; i < 8; ++i)
+            sum += kWeight[static_cast<std::size_t>(j)] * kWeight[static_cast<std::size_t>(i)] *
+                   static_cast<double>(row[neighbour(2 * x, i - 3, width)]);
+        }
+        half[std::size_t{y} * (width / 2) + x] = static_cast<float>(sum);
       }
     heights = std::move(half);
     width /= 2;
     height /= 2;
     texel *= 2;
+  }
+  // What a level lacks of the one before it, against the whole relief.
+  for (std::size_t n = 0; n + 1 < levels.size(); ++n) {
+    double lacks = 0.0, mean = 0.0, squares = 0.0;
+    constexpr std::size_t kPlaces = 64;  // a side
+    for (std::size_t i = 0; i < kPlaces * kPlaces; ++i) {
+      const dvec2 uv((static_cast<double>(i % kPlaces) + 0.3) / kPlaces,
+                     (static_cast<double>(i / kPlaces) + 0.7) / kPlaces);
+      const double fine = levels[n].at(uv).height, difference = fine - levels[n + 1].at(uv).height;
+      lacks += difference * difference;
+      mean += fine / (kPlaces * kPlaces);
+      squares += fine * fine / (kPlaces * kPlaces);
+    }
+    const double whole = squares - mean * mean;
+    levels[n].finer = lacks / (kPlaces * kPlaces) > kFeltShare * kFeltShare * whole;
   }
   for (HeightMap& map : levels)
     for (float& c : map.coefficient) c -= highest;

@@ -253,7 +253,10 @@ TEST(ReliefMap, ItsForceIsMinusTheGradientOfTheStoredEnergyAndFadesWithSpeed) {
   }
   EXPECT_GT(across, 0.02);
   EXPECT_EQ(stage.world.dropped, 0u);
-  stage.move(probe, {0.03, -0.004, 0.03}, 0.03);
+  // What is left out is said where there is something: the map has finer texels than its ripples need.
+  stage.move(probe, {0.03, -0.004, at.z}, length(at - dvec3(0.03, -0.004, at.z)) / 0.7);  // texels at 450 Hz
+  EXPECT_EQ(stage.world.dropped, 0u);
+  stage.move(probe, {-0.03, -0.004, at.z}, 0.06 / 5.0);  // ripples at 167 to 280 Hz
   EXPECT_EQ(stage.world.dropped, std::uint32_t{kDroppedDetail});
 }
 

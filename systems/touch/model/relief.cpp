@@ -8,9 +8,10 @@ namespace {
 // The map's levels pass into each other over an octave: the coarsest that is too fine, and the next.
 HeightMap::Sample sample(const std::vector<HeightMap>& levels, dvec2 uv, double finest, bool& faded) {
   std::size_t level = 0;
-  while (level + 1 < levels.size() && levels[level].wavelength <= finest) ++level;
+  for (; level + 1 < levels.size() && levels[level].wavelength <= finest; ++level)
+    faded = faded || levels[level].finer;
   const double share = detail_share(levels[level].wavelength, finest);
-  faded = faded || level > 0 || share < 1;
+  faded = faded || (share < 1 && levels[level].finer);
   HeightMap::Sample out = levels[level].at(uv);
   if (share == 1 || level + 1 == levels.size()) return out;
   const HeightMap::Sample coarse = levels[level + 1].at(uv);
