@@ -24,7 +24,7 @@ Spline quadratic(double t) {
 }  // namespace
 
 HeightMap::Sample HeightMap::at(dvec2 uv) const {
-  // Beyond this no texel can be told; far coordinates are the file's fault, not a fault of the tick.
+  // Beyond this no texel is exact; far coordinates are the file's fault, not a fault of the tick.
   constexpr double kFar = 1e9;
   const double x = std::clamp(uv.x * width - 0.5, -kFar, kFar), y = std::clamp(uv.y * height - 0.5, -kFar, kFar);
   const double column = std::floor(x + 0.5), row = std::floor(y + 0.5);

@@ -1,4 +1,4 @@
-// `effects`: six plates that can be told apart blind, each stroked by a finger of its own.
+// `effects`: six plates that can be distinguished blind, each stroked by a finger of its own.
 #pragma once
 
 #include <filesystem>

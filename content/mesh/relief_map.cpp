@@ -273,7 +273,7 @@ std::vector<HeightMap> height_levels(std::uint32_t width, std::uint32_t height, 
     height /= 2;
     texel *= 2;
   }
-  // What a level lacks of the one before it, against the whole relief.
+  // The part of the level before it that a level lacks, against the whole relief.
   for (std::size_t n = 0; n + 1 < levels.size(); ++n) {
     double lacks = 0.0, mean = 0.0, squares = 0.0;
     constexpr std::size_t kPlaces = 64;  // a side

@@ -52,9 +52,9 @@ struct SafetyPair {
   dvec3 turned{0};      // [rad] place of the torque: sum of the small rotations
 };
 
-// A wrench, by the same layer: its torque as if it were a force, work counted over the angles turned. What is unknown
-// of the one is unknown of the other, so that both are let go and engaged together. They share one account of energy: a
-// push at a fingertip is a force and a torque about the wrist, which give and take only together. NaN: unknown.
+// A wrench, by the same layer: its torque as if it were a force, work counted over the angles turned. Both are let go
+// and engaged together. They share one account of energy: a push at a fingertip is a force and a torque about the wrist,
+// which give and take only together. NaN: unknown.
 void write_wrench(World& world, HapticDevice& device, const SafetyPair& safety, SafetyLimits limits,
                   SafetyLimits turning, dvec3 force, dvec3 torque, Tick tick) {
   if (safety.torque) {

@@ -10,7 +10,7 @@
 // where s is the mean share of the force that was sent. While all of it is sent T = U. Where less was sent on the way
 // up than would be on the way down (a limit that has risen, missed ticks), T is spent before U is, and the rest of the
 // force goes to the observer as any other force does. So the hand gets at most what it gave and what the potentials
-// held where they let it in. The work of a torque that the device does not render is left out: nobody gave it. The work
+// held where they let it in. The work of a torque that the device does not render is left out: no hand gave it. The work
 // of a moving effect is the motion's. Drag is always the observer's.
 #pragma once
 

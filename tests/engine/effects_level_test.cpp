@@ -1,4 +1,4 @@
-// The six plates of content/levels/effects.glb can be told apart from the forces of a stroke alone: nearest mean over
+// The six plates of content/levels/effects.glb can be distinguished by the forces of a stroke alone: nearest mean over
 // five numbers, learnt from some strokes and tried on others of other depths, speeds and directions.
 #include <gtest/gtest.h>
 

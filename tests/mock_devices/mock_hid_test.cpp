@@ -276,7 +276,7 @@ const std::vector<std::uint8_t> kPad{0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x85, 0
 TEST_F(Bench, AfterKillNineAGuardProcessLetsAPadRest) {
   plug({1, 0x054c, 0x0ce6, "DualSense Wireless Controller", "a0:b1", kPad, false});
   const int line = umockdev_testbed_get_dev_fd(bed, "/dev/hidraw1");
-  const int held = ::open("/dev/hidraw1", O_RDWR | O_NOCTTY);  // a pseudo terminal that nobody has open ends
+  const int held = ::open("/dev/hidraw1", O_RDWR | O_NOCTTY);  // a pseudo terminal that no process has open ends
   const pid_t engine = rendering("dualsense", "a0:b1", {0, 2, 0});
   std::vector<std::uint8_t> last;
   const auto shakes = [&] { return last[3] != 0 || last[4] != 0; };

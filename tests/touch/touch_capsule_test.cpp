@@ -71,7 +71,7 @@ TEST(TouchCapsule, FlatOnAPlaneTheForceIsTheLawsForAnyLength) {
       stage.wait(0.5);
       EXPECT_NEAR(raw_force(stage, probe).y, 300 * kDepth, 1e-9) << long_;
       EXPECT_NEAR(raw_torque(stage, probe).z, 0.5 * long_ * raw_force(stage, probe).y, 1e-6 * long_);
-      // What is drawn gives way under the whole shaft.
+      // The drawn surface is dented under the whole shaft.
       const Mesh& mesh = stage.mesh(sheet);
       for (std::size_t v = 0; v < mesh.px.size(); ++v)
         if (std::abs(mesh.px[v]) < 0.5 * long_ && std::abs(mesh.pz[v] - 0.003) < 1e-3)
@@ -218,6 +218,74 @@ TEST(TouchCapsule, AClosedLoopDoesNoWork) {
     most = std::max(most, stored(stage));
   }
   EXPECT_LT(std::abs(work), 1e-3 * most);
+}
+
+// The torque goes to the device with the force, in one account of energy.
+TEST(TouchCapsule, TheTorqueIsSentAndAHandGetsNoEnergyByTurning) {
+  Stage stage;
+  Deformable d = frictionless();
+  d.reach = 0.02;
+  stage.add(scenes::sheet(40, 0.2), d);
+  const Entity probe = add_capsule(stage, {0, 1, 0}, 0.005, 0.06);
+  stage.prepare();
+  double work = 0.0, most = 0.0;
+  Pose last;
+  dvec3 force(0), torque(0);
+  bool begun = false;
+  const auto go = [&](const Pose& p) {
+    stage.place(probe, p.position);
+    turn(stage, probe, p.rotation);
+    stage.tick();
+    const HapticDevice& device = stage.device(stage.world.registry.get<Probe>(probe).device);
+    const dquat step = p.rotation * glm::conjugate(last.rotation);
+    if (begun)
+      work += 0.5 * dot(device.force_sent + force, p.position - last.position) +
+              dot(device.torque_sent + torque, dvec3(step.x, step.y, step.z));
+    begun = true;
+    last = p;
+    force = device.force_sent;
+    torque = device.torque_sent;
+    most = std::max(most, work);
+  };
+  const Pose start{{-0.03, 0.02, 0.001}, kAlongX};
+  for (int i = 0; i <= 100; ++i) go({start.position - dvec3(0, 0.00017 * i, 0), start.rotation});
+  EXPECT_NEAR(torque.z, 0.03 * force.y, 1e-3 * 0.03 * force.y);
+  EXPECT_LT(torque.z, 0.2);  // below the limit
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-1, 1);
+  dvec3 at = last.position;
+  for (int leg = 0; leg < 60; ++leg) {
+    const dvec3 to(-0.03 + 0.01 * any(random), 0.0035 + 0.003 * any(random), 0.01 * any(random));
+    const dquat tilt = glm::angleAxis(0.1 * any(random), normalize(dvec3(any(random), any(random), any(random))));
+    const dquat from = last.rotation;
+    for (int i = 1; i <= 100; ++i)
+      go({at + (to - at) * (i / 100.0), glm::slerp(from, normalize(tilt * kAlongX), i / 100.0)});
+    at = to;
+  }
+  for (int i = 1; i <= 200; ++i) go({at + dvec3(0, 0.0002 * i, 0), last.rotation});
+  EXPECT_EQ(force, dvec3(0));
+  EXPECT_LT(most, 1e-4 * 0.5 * 300 * 0.0055 * 0.0055 + 1e-9);
+  const SafetyState& safety = stage.world.touch->probes[0].safety;
+  EXPECT_EQ(safety.tally.of(SafetyLimit::kWithheld).ticks, 0u);
+}
+
+// At its first pose behind the surface nothing is felt, and that is said.
+TEST(TouchCapsule, AProbeThatBeginsInsideIsNamed) {
+  for (const double radius : {0.0, 0.01}) {
+    Stage stage;
+    stage.add(scenes::sphere(16, 0.05), frictionless());
+    const Entity probe = stage.add_probe({0, 0.05 + radius - 0.002, 0}, radius);
+    stage.prepare();
+    stage.tick();
+    EXPECT_EQ(raw_force(stage, probe), dvec3(0));
+    EXPECT_EQ(stage.world.dropped & kDroppedInside, std::uint32_t{kDroppedInside}) << radius;
+    Stage outside;
+    outside.add(scenes::sphere(16, 0.05), frictionless());
+    const Entity free = outside.add_probe({0, 0.051 + radius, 0}, radius);
+    outside.prepare();
+    outside.move(free, {0, 0.05 + radius - 0.002, 0}, 0.1);
+    EXPECT_EQ(outside.world.dropped & kDroppedInside, 0u) << radius;
+  }
 }
 
 }  // namespace

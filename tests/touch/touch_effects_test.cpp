@@ -1,4 +1,4 @@
-// What is felt beside the law: friction that depends on speed, roughness and knocks (methods.md 1.6, 1.11, 1.12).
+// Effects at a surface: friction that depends on speed, roughness and knocks (methods.md 1.6, 1.11, 1.12).
 #include <gtest/gtest.h>
 
 #include <algorithm>

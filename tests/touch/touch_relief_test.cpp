@@ -56,7 +56,7 @@ Image normal_map(std::uint32_t size, dvec3 by_u, dvec3 by_v, const DrawVertex& v
   return out;
 }
 
-// What bump.glsl makes of the map at (u, v): slopes along tangent and bitangent, bilinear, repeated.
+// The slopes that bump.glsl makes of the map at (u, v): slopes along tangent and bitangent, bilinear, repeated.
 dvec2 drawn_slope(const Image& image, double u, double v) {
   const double x = u * image.width - 0.5, y = v * image.height - 0.5;
   dvec3 m(0);
@@ -253,7 +253,7 @@ TEST(ReliefMap, ItsForceIsMinusTheGradientOfTheStoredEnergyAndFadesWithSpeed) {
   }
   EXPECT_GT(across, 0.02);
   EXPECT_EQ(stage.world.dropped, 0u);
-  // What is left out is said where there is something: the map has finer texels than its ripples need.
+  // Left-out detail is said where there is some: the map has finer texels than its ripples need.
   stage.move(probe, {0.03, -0.004, at.z}, length(at - dvec3(0.03, -0.004, at.z)) / 0.7);  // texels at 450 Hz
   EXPECT_EQ(stage.world.dropped, 0u);
   stage.move(probe, {-0.03, -0.004, at.z}, 0.06 / 5.0);  // ripples at 167 to 280 Hz

@@ -34,7 +34,7 @@ struct ContactSearch {
   Foot downhill(std::uint32_t triangle, dvec3 barycentric, dvec3 x) const {
     return descend(mesh, triangle, barycentric, x, true, object.closed);
   }
-  // What is only drawn leaves half of the pool to what bears force.
+  // Tips that are only drawn leave half of the pool to those that bear force.
   SourceState* free_source(const Tip& tip) const {
     for (std::uint32_t i = tip.drawn ? object.probe_sources / 2 : 0; i < object.probe_sources; ++i)
       if (!object.sources[i].tracked) return &object.sources[i];
@@ -47,8 +47,7 @@ struct TipContact;
 // Writes the place of a contact.
 void put_contact(SourceState& source, Contact& contact, const TipContact& at);
 
-// Begins a contact. What of its initial depth is more than the way from `from` was not pushed: its force starts from
-// zero.
+// Begins a contact. Its initial depth beyond the way from `from` was not pushed, so that its force starts from zero.
 void begin_contact(const ContactSearch& s, const ProbeTip& tip, const TipContact& at, dvec3 from);
 
 // Whether x is past the rim of an open surface. Edges in `but` are not rims (3 * triangle + edge, ascending).

@@ -1,4 +1,4 @@
-// What one contact stores as if it were alone.
+// The energy that one contact stores as if it were alone.
 #pragma once
 
 #include "systems/touch/collide/contact_search.h"
