@@ -60,7 +60,7 @@ Level fields_level() {
   Level level;
   level.name = "fields";
   level.about =
-      "Felt in the air: drag, a magnet, weight, a forbidden ball, detents and a rail, and a soft board below.";
+      "Felt in the air: drag, a magnet, weight, a forbidden ball, detents, a rail; a soft board below.";
   LevelNode& board = add_shape(level, "board", rounded_box({0.21, 0.01, 0.065}, 0.006), around({0.22, 0.02, 0.075}),
                                0.0045, add_material(level, "wood", {0.50f, 0.30f, 0.14f}, 0.5f));
   board.deformable = Deformable{};

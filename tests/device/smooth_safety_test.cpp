@@ -147,7 +147,7 @@ TEST(SmoothSafety, AStiffnessLimitIsASofterSpringAndNoEngine) {
   });
 }
 
-// What nobody has given: a surface that stiffens under a hand, a force that comes in late. It is felt as a smaller
+// Energy that no hand has given: a surface that stiffens under a hand, a force that comes in late. It is felt as a smaller
 // force, and the next press is whole.
 TEST(SmoothSafety, ASpentAccountIsFeltAsASmallerForceNotAsASwitchedOne) {
   for_hands([](SafePress& press, double goal, double seconds, const std::string& who) {

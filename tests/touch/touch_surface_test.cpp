@@ -380,6 +380,54 @@ TEST(TouchSurface, ACrackBetweenClosedPartsDoesNotExist) {
       }
 }
 
+// Where four parts meet in a corner, pressed exactly there and slid over it any way.
+TEST(TouchSurface, ACornerWhereFourPartsMeetIsASurface) {
+  constexpr double kSize = 0.1;
+  const Primitive quarter = scenes::slab(8, kSize, 0.04);
+  const Deformable d = frictionless();
+  const double whole = law(d, 0.003);
+  for (const bool one_node : {true, false})
+    for (const double crack : {0.0, 1e-7, 1e-5, 4e-5})
+      for (const double radius : {0.0, 0.006}) {
+        const double half = kSize / 2 + crack / 2;
+        const auto build = [&](Stage& stage) {
+          Primitive all;
+          for (const dvec3 at : {dvec3(half, 0, half), {-half, 0, half}, {half, 0, -half}, {-half, 0, -half}}) {
+            if (!one_node) stage.add(quarter, d, Pose{at});
+            const auto first = static_cast<std::uint32_t>(all.position.size());
+            for (const vec3& p : quarter.position) all.position.push_back(vec3(dvec3(p) + at));
+            for (const std::uint32_t v : quarter.index) all.index.push_back(first + v);
+          }
+          if (one_node) stage.add(all, d);
+        };
+        const std::string what = std::to_string(one_node) + " crack " + std::to_string(crack * 1e6) + " um, radius " +
+                                 std::to_string(radius);
+        const double most_off = (0.005 + 1.5 * crack / 0.003) * whole;
+        for (const double angle : {0.0, 0.3, M_PI / 4, 2.0}) {
+          const dvec3 way(std::cos(angle), 0, std::sin(angle));
+          Stage stage;
+          build(stage);
+          const Entity probe = stage.add_probe({0, radius + 0.002, 0}, radius);
+          stage.prepare();
+          stage.move(probe, {0, radius - 0.003, 0}, 0.1);
+          EXPECT_NEAR(raw_force(stage, probe).y, whole, most_off) << what << " pressed";
+          double least = 1e9, most = 0, sideways = 0;
+          for (const double x : {0.01, -0.01, 0.0})
+            stage.move(probe, x * way + dvec3(0, radius - 0.003, 0), 0.3, [&](const ProbeReading&) {
+              const dvec3 f = raw_force(stage, probe);
+              least = std::min(least, f.y);
+              most = std::max(most, f.y);
+              sideways = std::max(sideways, std::hypot(f.x, f.z));
+            });
+          EXPECT_NEAR(least, whole, most_off) << what << " slid at " << angle;
+          EXPECT_NEAR(most, whole, most_off) << what << " slid at " << angle;
+          EXPECT_LT(sideways, (1e-4 + 1.5 * crack / 0.003) * whole) << what << " slid at " << angle;
+          stage.move(probe, {0, radius + 0.001, 0}, 0.1);
+          EXPECT_EQ(raw_force(stage, probe), dvec3(0)) << what << " lifted";
+        }
+      }
+}
+
 // Wherever along its length that is (flat on a surface: touch_capsule_test.cpp).
 TEST(TouchSurface, ACapsuleAcrossABoxsEdgeTouchesInOnePlace) {
   Stage box;

@@ -5,7 +5,7 @@
 
 #include "systems/touch/collide/capsule.h"
 #include "systems/touch/collide/collision.h"
-#include "systems/touch/collide/seams.h"
+#include "systems/touch/collide/over_seams.h"
 #include "systems/touch/collide/triangle_tree.h"
 #include "systems/touch/model/seam_dents.h"
 
@@ -19,23 +19,17 @@ constexpr double kUnexplained = 0.1;
 // Two feet of a tip closer than this are the same. [1] of the mean edge
 constexpr double kSameFoot = 1e-6;
 
-// A foot at a seam moves to the other surface, with the contact's whole state, or waits between both. `distance` [m]:
-// its distance.
+// A foot at a seam moves to the other surface, with the contact's whole state, or waits between both.
 enum class AtSeam { kStays, kBetween, kCarried };
-AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source, Contact& contact, dvec3 world,
-                  double distance) {
+AtSeam carry_over(const ContactSearch& s, const SideFoot& side, SourceState& source, Contact& contact, dvec3 world) {
   TouchState& touch = *s.world.touch;
-  ObjectState& object = touch.objects[seam.object];
+  ObjectState& object = touch.objects[side.object];
   const ProbeTip tip{contact.probe, contact.tip, source.tip};
   const Deformable& deformable = s.world.registry.get<Deformable>(object.entity);
   const ContactSearch there{s.world, object, s.world.meshes[deformable.mesh], s.world.fields[deformable.field], s.tick};
   const Pose& pose = s.world.registry.get<Pose>(object.entity);
   const dvec3 x = pose.to_local(world);
-  Foot foot = there.downhill(seam.triangle, closest_on_triangle(there.mesh, seam.triangle, x).barycentric, x);
-  // Over the crack it stays with the nearer side.
-  if (seam_at(object, foot) && std::abs(foot.height) >= distance) return AtSeam::kBetween;
-  if (foot.height >= tip.tip.radius * (1 + kAhead) || (foot.height < 0) != (source.place.height < 0))
-    return AtSeam::kStays;
+  const Foot& foot = side.foot;
   if (!is_known(there, tip, foot)) {
     const Contact before = contact;
     SourceState* to = there.free_source(tip.tip);
@@ -56,18 +50,32 @@ AtSeam carry_over(const ContactSearch& s, const Seam& seam, SourceState& source,
     after.sliding = before.sliding;
     after.load = before.load;
     after.effects = before.effects;
-    hand_over_dents(touch, static_cast<std::uint32_t>(&s.object - touch.objects.data()), source, seam.object, *to);
+    hand_over_dents(touch, static_cast<std::uint32_t>(&s.object - touch.objects.data()), source, side.object, *to);
   }
   drop_contact(source, contact);
   return AtSeam::kCarried;
 }
 
-// The same over a crack in one mesh, where the contact goes on as it is.
-AtSeam step_over(const ContactSearch& s, const Seam& seam, dvec3 x, Foot& foot) {
-  const Foot far = s.downhill(seam.triangle, closest_on_triangle(s.mesh, seam.triangle, x).barycentric, x);
-  const bool between = seam_at(s.object, far);
-  if ((far.height < 0) == (foot.height < 0) && (!between || std::abs(far.height) < std::abs(foot.height))) foot = far;
-  return between ? AtSeam::kBetween : AtSeam::kStays;
+// Over a seam the contact goes to the side that has the place's foot inside; over the crack, to the nearest.
+AtSeam step_over(const ContactSearch& s, SourceState& source, Contact& contact, dvec3 x, Foot& foot) {
+  Sides sides;
+  const std::size_t count = feet_over_seams(s, foot, x, sides);
+  if (count < 2) return AtSeam::kStays;
+  const double radius = source.tip.radius;
+  std::size_t best = 0;
+  bool between = true;
+  for (std::size_t i = 1; i < count; ++i) {
+    const SideFoot& side = sides[i];
+    between = between && side.at_seam;
+    if (side.foot.height >= radius * (1 + kAhead) || (side.foot.height < 0) != (source.place.height < 0)) continue;
+    const double far = std::abs(side.foot.height), least = std::abs(sides[best].foot.height);
+    if (sides[best].at_seam != side.at_seam ? sides[best].at_seam : far < least) best = i;
+  }
+  if (best == 0) return between ? AtSeam::kBetween : AtSeam::kStays;
+  if (sides[best].object != sides[0].object)
+    return carry_over(s, sides[best], source, contact, s.world.registry.get<Pose>(s.object.entity).to_world(x));
+  foot = sides[best].foot;
+  return sides[best].at_seam ? AtSeam::kBetween : AtSeam::kStays;
 }
 
 }  // namespace
@@ -84,14 +92,7 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
   Foot foot = follow_foot(s, before, source.x, x);
   contact.older_height = contact.previous_height;
   contact.previous_height = contact.height;
-  AtSeam at_seam = AtSeam::kStays;
-  if (const Seam* seam = seam_at(s.object, foot)) {
-    if (&s.world.touch->objects[seam->object] == &s.object)
-      at_seam = step_over(s, *seam, x, foot);
-    else
-      at_seam = carry_over(s, *seam, source, contact, s.world.registry.get<Pose>(s.object.entity).to_world(x),
-                           std::abs(foot.height));
-  }
+  const AtSeam at_seam = step_over(s, source, contact, x, foot);
   if (at_seam == AtSeam::kCarried) return;
   const bool front = foot.height >= 0;
   // Past the rim of an open surface, or too far away for a meaningful foot.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "systems/touch/collide/capsule.h"
-#include "systems/touch/collide/seam_entry.h"
+#include "systems/touch/collide/over_seams.h"
 #include "systems/touch/collide/seams.h"
 #include "systems/touch/collide/surface_query.h"
 #include "systems/touch/collide/triangle_tree.h"
@@ -34,12 +34,13 @@ bool pressed_through(const ContactSearch& s, const ProbeTip& tip, dvec3 p, dvec3
 }
 
 // Feet of the walls within `within` of x: triangles that are nearer than all their neighbours.
-void find_walls(const ContactSearch& s, dvec3 x, double within, std::array<Foot, kMostFootSeeds>& feet,
-                std::size_t& count) {
+void find_walls(const ContactSearch& s, const ProbeTip& tip, dvec3 x, double within,
+                std::array<Foot, kMostFootSeeds>& feet, std::size_t& count) {
   const Mesh& mesh = s.mesh;
   const double limit = within + static_cast<double>(mesh.tree.bulge);
   const float limit2 = static_cast<float>(limit * limit * 1.0001);
   const double same = 1e-3 * static_cast<double>(mesh.mean_edge);
+  const bool seamless = s.object.seams.empty();
   visit_runs_near(
       mesh, x, [&] { return limit; },
       [&](std::uint32_t first, std::uint32_t run) {
@@ -56,12 +57,13 @@ void find_walls(const ContactSearch& s, dvec3 x, double within, std::array<Foot,
             const std::uint32_t next = mesh.across[t][edge];
             if (next == kBorder) continue;
             const double other = closest_on_triangle(mesh, next, x).distance2;
-            lowest = other >= enough && !(next < t && other <= at.distance2 * (1 + 1e-9));
+            // Of equals the first; at a seam each is tried: the foot of a side wall is covered.
+            lowest = other >= enough && !(seamless && next < t && other <= at.distance2 * (1 + 1e-9));
           }
           if (!lowest) continue;
           const Foot foot = s.downhill(t, at.barycentric, x);
           if (!(foot.height >= 0) || foot.height > within) continue;
-          if (at_seam(s.object, foot) && !bears_between(s, foot, x)) continue;
+          if (at_seam(s.object, foot) && !bears_between(s, tip, foot, x)) continue;
           const auto is_same = [&](const Foot& f) { return length(f.p - foot.p) < same; };
           if (std::none_of(feet.begin(), feet.begin() + static_cast<std::ptrdiff_t>(count), is_same))
             feet[count++] = foot;
@@ -80,7 +82,7 @@ bool inside_neighbour(const ContactSearch& s, const ProbeTip& tip) {
     }
     return false;
   };
-  return behind(s.object) || std::any_of(s.object.neighbours.begin(), s.object.neighbours.end(),
+  return behind(s.object) || std::any_of(s.object.joined.begin(), s.object.joined.end(),
                                          [&](std::uint32_t slot) { return behind(s.world.touch->objects[slot]); });
 }
 
@@ -131,14 +133,14 @@ void find_entry(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, 
   if (const EntryPlace entry = entry_place(s, tip, from - early, to, early); entry.triangle != Foot::kNone) {
     const Foot foot = s.downhill(entry.triangle, entry.barycentric, dot(entry.x - from, d) > 0 ? entry.x : from);
     enter(follow_foot(s, foot, foot.p, to));
-  } else if (const std::optional<SeamEntry> crack = seam_entry(s, from - early, to);
+  } else if (const std::optional<SeamEntry> crack = seam_entry(s, tip, from - early, to);
              crack && !pressed_through(s, tip, crack->x, crack->outward)) {
     enter(s.downhill(crack->triangle, crack->barycentric, to));
   } else if (bulge > 0 && tip.tip.radius == 0) {
     // The curved surface is slightly in front of or behind its triangles: walls that were in front of the point.
     std::array<Foot, kMostFootSeeds> feet;
     std::size_t count = 0;
-    find_walls(s, from, 1.5 * bulge + length(d), feet, count);
+    find_walls(s, tip, from, 1.5 * bulge + length(d), feet, count);
     for (std::size_t f = 0; f < count; ++f) {
       const Foot foot = follow_foot(s, feet[f], from, to);
       // Deeper than the way: that minimum ended, and the foot is on another wall.
@@ -171,7 +173,7 @@ void find_near(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, d
     const dvec3 x = from + (to - from) * (double(i) / steps);
     std::array<Foot, kMostFootSeeds> feet;
     std::size_t count = 0;
-    find_walls(s, x, within, feet, count);
+    find_walls(s, tip, x, within, feet, count);
     for (std::size_t f = 0; f < count; ++f) {
       const Foot foot = i == steps ? feet[f] : follow_foot(s, feet[f], x, to);
       if (foot.height <= within && !pressed_through(s, tip, foot.p, foot.normal)) begin_at(s, tip, way, foot, along);

@@ -272,23 +272,33 @@ Pose relative_pose(const Pose& first, const Pose& second) {
   return {back * (second.position - first.position), back * second.rotation};
 }
 
-const Seam* seam_at(const ObjectState& object, const Foot& foot) {
-  if (object.seams.empty()) return nullptr;
-  const auto find = [&](std::uint32_t key) -> const Seam* {
+std::array<const Seam*, 3> seams_at(const ObjectState& object, const Foot& foot) {
+  std::array<const Seam*, 3> found{};
+  if (object.seams.empty()) return found;
+  for (std::uint32_t e = 0; e < 3; ++e) {
+    if (!(foot.barycentric[static_cast<int>((e + 2) % 3)] < kOnSeam)) continue;
+    const std::uint32_t key = 3 * foot.triangle + e;
     const auto at = std::lower_bound(object.seams.begin(), object.seams.end(), key,
                                      [](const Seam& seam, std::uint32_t edge) { return seam.edge < edge; });
-    return at != object.seams.end() && at->edge == key ? &*at : nullptr;
-  };
-  for (std::uint32_t e = 0; e < 3; ++e)  // of the edges under the foot
-    if (foot.barycentric[static_cast<int>((e + 2) % 3)] < kOnSeam)
-      if (const Seam* seam = find(3 * foot.triangle + e)) return seam;
-  return nullptr;
+    if (at != object.seams.end() && at->edge == key) found[e] = &*at;
+  }
+  return found;
 }
 
 bool at_seam(const ObjectState& object, const Foot& foot) {
   if (object.closed.empty()) return false;
   for (std::uint32_t e = 0; e < 3; ++e)
     if (foot.barycentric[static_cast<int>((e + 2) % 3)] < kOnSeam &&
+        std::binary_search(object.closed.begin(), object.closed.end(), 3 * foot.triangle + e))
+      return true;
+  return false;
+}
+
+bool is_covered(const ObjectState& object, const Foot& foot) {
+  if (object.closed.empty()) return false;
+  const std::array<const Seam*, 3> own = seams_at(object, foot);
+  for (std::uint32_t e = 0; e < 3; ++e)
+    if (foot.barycentric[static_cast<int>((e + 2) % 3)] < kOnSeam && !own[e] &&
         std::binary_search(object.closed.begin(), object.closed.end(), 3 * foot.triangle + e))
       return true;
   return false;

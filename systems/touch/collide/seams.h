@@ -2,6 +2,8 @@
 // other, an organ in parts, and cracks in one mesh. A foot that reaches such an edge continues on the other surface.
 #pragma once
 
+#include <array>
+
 #include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
@@ -12,10 +14,12 @@ inline constexpr double kCrack = 0.02;
 // [m] Twice that: no crack that is ignored is wider.
 double crack_of(const Mesh& mesh);
 
-// The seam under a foot, or null.
-const Seam* seam_at(const ObjectState& object, const Foot& foot);
+// The seams under a foot: of a vertex, up to two. Null: none.
+std::array<const Seam*, 3> seams_at(const ObjectState& object, const Foot& foot);
 // Whether a foot is on either side of a seam.
 bool at_seam(const ObjectState& object, const Foot& foot);
+// Whether another surface covers a foot: it is at a seam of others, as the side wall of a crack is at that of its top.
+bool is_covered(const ObjectState& object, const Foot& foot);
 
 // Pose of the second in the first's frame.
 Pose relative_pose(const Pose& first, const Pose& second);
