@@ -111,7 +111,7 @@ std::vector<Features> feel_all(const Scene& scene, const Stroke& stroke) {
   return out;
 }
 
-TEST(EffectsLevel, ItsSixPlatesAreToldApartBlind) {
+TEST(EffectsLevel, ItsSixPlatesAreDistinguishedBlind) {
   const auto scene = load_scene(PLIANT_SOURCE_DIR "/content/levels/effects.glb");
   ASSERT_TRUE(scene) << scene.error().message();
   std::mt19937 random(17);
