@@ -6,6 +6,7 @@
 #include "systems/touch/collide/capsule.h"
 #include "systems/touch/collide/collision.h"
 #include "systems/touch/collide/over_seams.h"
+#include "systems/touch/collide/seams.h"
 #include "systems/touch/collide/triangle_tree.h"
 #include "systems/touch/model/seam_dents.h"
 
@@ -58,6 +59,7 @@ AtSeam carry_over(const ContactSearch& s, const SideFoot& side, SourceState& sou
 
 // Over a seam the contact goes to the side that has the place's foot inside; over the crack, to the nearest.
 AtSeam step_over(const ContactSearch& s, SourceState& source, Contact& contact, dvec3 x, Foot& foot) {
+  if (!at_seam(s.object, foot)) return AtSeam::kStays;
   Sides sides;
   const std::size_t count = feet_over_seams(s, foot, x, sides);
   if (count < 2) return AtSeam::kStays;
