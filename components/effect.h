@@ -19,14 +19,15 @@ namespace pliant {
 struct Path;
 
 // EFFECT(enumerator, word, tips, reads): a kind is one line here and effect_<word> in systems/effects/<word>.cpp.
-//   tips   of a probe with several: kMean, its energy is the mean over them; kSum, each one stands for itself
+//   tips   of a probe with several: kMean, its energy is the mean over them; kParts, each part stands for itself, a
+//          capsule with its deepest sphere
 //   reads  keys of PLIANT_effect beside `kind`
 #define PLIANT_EFFECTS(EFFECT)                                                 \
   EFFECT(kViscosity, viscosity, kMean, "region radius box edge damping")       \
   EFFECT(kGravity, gravity, kMean, "region radius box edge force")             \
   EFFECT(kAttraction, attraction, kMean, "target length size stiffness range") \
   EFFECT(kGuidance, guidance, kMean, "path stiffness range")                   \
-  EFFECT(kForbidden, forbidden, kSum, "region radius box stiffness")           \
+  EFFECT(kForbidden, forbidden, kParts, "region radius box stiffness")         \
   EFFECT(kDetents, detents, kMean, "region radius box edge detents spacing count peak")
 
 enum class EffectKind : std::uint8_t {
@@ -35,7 +36,7 @@ enum class EffectKind : std::uint8_t {
 #undef PLIANT_ENUMERATOR
 };
 
-enum class EffectTips : std::uint8_t { kMean, kSum };
+enum class EffectTips : std::uint8_t { kMean, kParts };
 
 struct EffectRow {
   const char* word;

@@ -78,7 +78,7 @@ std::uint8_t HandSafety::now() const {
 HandSafety find_safety(const World& world, Entity hand) {
   if (world.touch)
     for (const ProbeState& probe : world.touch->probes)
-      if (probe.entity == hand) return {&probe.safety, probe.has_torque ? &probe.torque_safety : nullptr};
+      if (probe.entity == hand) return {&probe.safety, probe.lever > 0 ? &probe.torque_safety : nullptr};
   if (world.tools)
     for (const std::unique_ptr<ToolTouchState>& tool : world.tools->tools)
       if (tool->entity == hand) return {&tool->force_safety, &tool->torque_safety};
@@ -98,10 +98,9 @@ std::vector<Note> explain_limits(const World& world, Entity hand, const std::str
   if (std::optional<Note> softened = softened_note(world, hand, name, safety.force->least_share))
     notes.push_back(std::move(*softened));
   if (!safety.torque) return notes;
-  const SafetyLimits torque =
-      torque_limits(*device, handle ? static_cast<const HandleParameters&>(*handle) : HandleParameters{});
-  explain(safety.torque->tally, who, name, {"torque", "max_torque", "N m", torque.force, torque.slew, 0.0, "0.2 N m"},
-          notes);
+  const SafetyLimits torque = handle ? torque_limits(*device, *handle) : probe_torque_limits(*device);
+  explain(safety.torque->tally, who, name,
+          {"torque", handle ? "max_torque" : "max_force", "N m", torque.force, torque.slew, 0.0, "0.2 N m"}, notes);
   return notes;
 }
 

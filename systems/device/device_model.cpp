@@ -112,9 +112,9 @@ DeviceModel device_model(const World& world, Entity effector, Entity entity, Tic
     for (const ProbeState& state : world.touch->probes)
       if (state.entity == effector) {
         pushing = &state.safety;
-        if (state.has_torque) turning = &state.torque_safety;
+        if (state.lever > 0) turning = &state.torque_safety;
       }
-    if (turning) model.max_torque = torque_limits(device, HandleParameters{}).force;
+    if (turning) model.max_torque = probe_torque_limits(device).force;
     add_contacts(world, effector, slopes);
     add_effects(world, effector, slopes);
     slopes.of = surface_displacement(world, effector, tick.dt) / tick.dt;

@@ -53,8 +53,8 @@ struct SafetyPair {
 };
 
 // A wrench, by the same layer: its torque as if it were a force, work counted over the angles turned. Both are let go
-// and engaged together. They share one account of energy: a push at a fingertip is a force and a torque about the wrist,
-// which give and take only together. NaN: unknown.
+// and engaged together. They share one account of energy: a push at a fingertip is a force and a torque about the
+// wrist, which give and take only together. NaN: unknown.
 void write_wrench(World& world, HapticDevice& device, const SafetyPair& safety, SafetyLimits limits,
                   SafetyLimits turning, dvec3 force, dvec3 torque, Tick tick) {
   if (safety.torque) {
@@ -99,8 +99,9 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
 void write_probe(World& world, ProbeState& state, Tick tick) {
   const Probe& probe = world.registry.get<Probe>(state.entity);
   HapticDevice& device = world.registry.get<HapticDevice>(probe.device);
-  SafetyLimits limits = force_limits(device), turning = torque_limits(device, HandleParameters{});
+  SafetyLimits limits = force_limits(device), turning = probe_torque_limits(device);
   limits.touched = soften(world, state.entity, device, state.safety);
+  turning.touched = limits.touched * state.lever * state.lever;
   limits.carried = surface_displacement(world, state.entity, tick.elapsed());
   const BesideObserver beside = effects_beside(world, state.entity, state.safety.share);
   limits.weight = beside.force;
@@ -115,10 +116,10 @@ void write_probe(World& world, ProbeState& state, Tick tick) {
   const dvec3 turn =
       probe.placed && !probe.fresh ? vector_of(probe.rotation * glm::conjugate(probe.previous_rotation)) : dvec3(0);
   state.turned += turn;
-  write_wrench(world, device, {state.safety, state.has_torque ? &state.torque_safety : nullptr, state.turned}, limits,
+  write_wrench(world, device, {state.safety, state.lever > 0 ? &state.torque_safety : nullptr, state.turned}, limits,
                turning, known ? rendered(pressed, device.can.renders_force) : unknown,
                known ? rendered(state.safety.share * probe.torque, device.can.renders_torque) : unknown, tick);
-  const bool turns = state.has_torque && device.can.renders_torque;
+  const bool turns = state.lever > 0 && device.can.renders_torque;
   keep_account(world, state.entity, state.safety, state.safety.share, turns ? dvec3(0) : turn);
 }
 

@@ -24,40 +24,50 @@ bool finite(const EffectValue& value) {
   return std::isfinite(value.energy) && std::isfinite(f.x + f.y + f.z) && std::isfinite(value.damping);
 }
 
-void act_on_tip(World& world, const EffectPair& pair, EffectTip& tip, Tick tick, FeltEffects& felt) {
+dvec3 place_before(const Probe& probe, const EffectTip& tip) {
+  return probe.fresh ? probe.position + probe.rotation * tip.place
+                     : probe.previous + probe.previous_rotation * tip.place;
+}
+
+void look_at_tip(World& world, const EffectPair& pair, EffectTip& tip, Tick tick) {
   const Registry& registry = world.registry;
   const Probe& probe = registry.get<Probe>(pair.probe);
   EffectMemory& memory = tip.memory;
   const Pose& pose = registry.get<Pose>(pair.effect);
-  const dvec3 at = probe.position + probe.rotation * tip.place;
-  const dvec3 last = probe.fresh ? at : probe.previous + probe.previous_rotation * tip.place;
-  const Effect& effect = registry.get<Effect>(pair.effect);
   const GuidedBy* const guide = registry.find<GuidedBy>(pair.effect);
-  const EffectInput in{effect,
+  const dvec3 at = probe.position + probe.rotation * tip.place;
+  const EffectInput in{registry.get<Effect>(pair.effect),
                        guide ? &guide->path : nullptr,
                        pose.to_local(at),
-                       pose_before(registry, pair.effect).to_local(last),
+                       pose_before(registry, pair.effect).to_local(place_before(probe, tip)),
                        probe.radius,
                        tick.elapsed()};
   if (probe.fresh || (memory.begun && length(in.before - memory.last) > kElsewhere)) memory = {};
-  EffectValue value = effect_value(in, memory);
-  if (!finite(value)) {
+  tip.value = effect_value(in, memory);
+  if (!finite(tip.value)) {
     world.dropped |= kDroppedNonFinite;
-    value = {};
+    tip.value = {};
     memory = {};
   }
-  const double part = row_of(effect.kind).tips == EffectTips::kMean ? 1.0 / static_cast<double>(pair.tips.size()) : 1.0;
-  felt.energy += part * value.energy;
-  felt.before += part * (memory.begun ? memory.energy : value.energy);
+  tip.before = memory.begun ? memory.energy : tip.value.energy;
   memory.begun = true;
   memory.last = in.x;
-  memory.energy = value.energy;
+  memory.energy = tip.value.energy;
+}
+
+void act_on_tip(const Registry& registry, const EffectPair& pair, const EffectTip& tip, double part, Tick tick,
+                FeltEffects& felt) {
+  const Probe& probe = registry.get<Probe>(pair.probe);
+  const Pose& pose = registry.get<Pose>(pair.effect);
+  const EffectValue& value = tip.value;
+  const dvec3 at = probe.position + probe.rotation * tip.place;
+  felt.energy += part * value.energy;
   const dvec3 force = part * (pose.rotation * value.force);
   felt.force += force;
   dvec3 drag(0);
   if (value.damping > 0.0) {
     const dvec3 moves = surface_velocity(registry, pair.effect, at);
-    drag = -part * value.damping * ((at - last) / tick.elapsed() - moves);
+    drag = -part * value.damping * ((at - place_before(probe, tip)) / tick.elapsed() - moves);
     felt.drag += drag;
     felt.damping += part * value.damping;
     felt.carried += length(drag) * moves;
@@ -66,6 +76,32 @@ void act_on_tip(World& world, const EffectPair& pair, EffectTip& tip, Tick tick,
   felt.drag_torque += cross(at - probe.position, drag);
   const dmat3 turn = glm::mat3_cast(pose.rotation);
   felt.stiffness += part * (turn * value.stiffness * glm::transpose(turn));
+}
+
+// Each part of the probe stands for itself: of a capsule the sphere with the most energy.
+void act_on_parts(const Registry& registry, const EffectPair& pair, Tick tick, FeltEffects& felt) {
+  for (std::size_t first = 0; first < pair.tips.size();) {
+    std::size_t best = first, next = first;
+    double before = 0.0;
+    for (; next < pair.tips.size() && pair.tips[next].part == pair.tips[first].part; ++next) {
+      if (pair.tips[next].value.energy > pair.tips[best].value.energy) best = next;
+      before = std::max(before, pair.tips[next].before);
+    }
+    act_on_tip(registry, pair, pair.tips[best], 1.0, tick, felt);
+    felt.before += before;
+    first = next;
+  }
+}
+
+void act(World& world, EffectPair& pair, Tick tick, FeltEffects& felt) {
+  for (EffectTip& tip : pair.tips) look_at_tip(world, pair, tip, tick);
+  if (row_of(world.registry.get<Effect>(pair.effect).kind).tips == EffectTips::kParts)
+    return act_on_parts(world.registry, pair, tick, felt);
+  const double part = 1.0 / static_cast<double>(pair.tips.size());
+  for (const EffectTip& tip : pair.tips) {
+    act_on_tip(world.registry, pair, tip, part, tick, felt);
+    felt.before += part * tip.before;
+  }
 }
 
 // Without its negative eigenvalues: between two ticks a force that falls with the way is kept as it is.
@@ -110,11 +146,14 @@ std::vector<EffectTip> tips_of_effects(const Registry& registry, Entity entity) 
   constexpr int kMost = 16;
   const Probe& probe = registry.get<Probe>(entity);
   std::vector<EffectTip> tips;
+  std::uint32_t number = 0;
   for (const ProbePart& part : probe_parts(probe)) {
     const dvec3 axis = part.to - part.from;
     const double apart = std::max(0.5 * probe.radius, length(axis) / (kMost - 1));
     const int count = part.is_sphere() ? 0 : std::max(1, static_cast<int>(std::ceil(length(axis) / apart)));
-    for (int i = 0; i <= count; ++i) tips.push_back({part.from + axis * (double(i) / std::max(count, 1)), {}});
+    for (int i = 0; i <= count; ++i)
+      tips.push_back({part.from + axis * (double(i) / std::max(count, 1)), number, {}, {}});
+    ++number;
   }
   return tips;
 }
@@ -127,7 +166,7 @@ void effects(World& world, Tick tick) {
   for (auto [entity, pair] : registry.view<EffectPair>()) {
     if (!registry.get<Probe>(pair.probe).placed) continue;
     FeltEffects& felt = registry.get<FeltEffects>(pair.probe);
-    for (EffectTip& tip : pair.tips) act_on_tip(world, pair, tip, tick, felt);
+    act(world, pair, tick, felt);
   }
   for (auto [entity, felt, probe] : registry.view<FeltEffects, Probe>()) {
     felt.stiffness = positive_part(felt.stiffness);

@@ -30,8 +30,11 @@ struct FeltEffects {
 
 // A tip on which effects act: of a capsule one of the spheres along its axis.
 struct EffectTip {
-  dvec3 place{0};  // [m] its centre, probe frame
+  dvec3 place{0};          // [m] its centre, probe frame
+  std::uint32_t part = 0;  // of the probe: spheres of one capsule have one
   EffectMemory memory;
+  EffectValue value;    // this tick's
+  double before = 0.0;  // [J] last tick's energy
 };
 
 // One effect on one probe, an entity of its own. Rate: touch. Writer: effects.

@@ -278,6 +278,13 @@ SafetyLimits torque_limits(const HapticDevice& device, const HandleParameters& h
   return limits;
 }
 
+SafetyLimits probe_torque_limits(const HapticDevice& device) {
+  HandleParameters handle;
+  handle.max_force = device.max_force;
+  handle.max_torque = kProbeLever * device.max_force;
+  return torque_limits(device, handle);
+}
+
 dvec3 with_own(SafetyState& state, SafetyLimits& limits, dvec3 pressed, double dt) {
   if (state.added == dvec3(0) && state.own == dvec3(0)) return pressed;
   state.added_share = state.engaged ? std::min(1.0, state.added_share + dt / kWeightTime) : 0.0;

@@ -151,6 +151,9 @@ dvec3 with_own(SafetyState& state, SafetyLimits& limits, dvec3 pressed, double d
 // The smaller of the level's and the driver's limits. 0 for components that are not rendered.
 SafetyLimits force_limits(const HapticDevice& device);
 SafetyLimits torque_limits(const HapticDevice& device, const HandleParameters& handle);
+// Of a probe, which has no handle: its largest force at kProbeLever.
+inline constexpr double kProbeLever = 0.1;  // [m]
+SafetyLimits probe_torque_limits(const HapticDevice& device);
 
 // Whether the device reached `position` faster than a hand can. For a device sampled more slowly than the touch clock,
 // the time since its last sample counts.

@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "systems/touch/collide/contact_place.h"
+#include "systems/touch/collide/over_seams.h"
 
 namespace pliant {
 namespace {
 
 constexpr int kMostSteps = 24;
 constexpr double kExactly = 1e-10;  // [1] of the axis
+constexpr int kMostClimbs = 4;
 
 // A bent axis.
 struct Axis {
@@ -18,6 +20,7 @@ struct Axis {
 
   Axis(const TipPlace& place, double radius)
       : tip(place), bend(std::max(kBend * radius, kLeastBend * length(place.axis))) {}
+  double same_dent(double radius) const { return std::max(kSameDent * radius, 4 * bend); }
   double raised(double along) const { return 4 * bend * (along - 0.5) * (along - 0.5); }
 };
 
@@ -30,8 +33,9 @@ struct AxisSphere {
   bool on_surface = true;               // not behind the rim of an open surface
 };
 
-AxisSphere sphere_at(const ContactSearch& s, const Axis& axis, const Foot& foot, double along) {
+AxisSphere sphere_at(const ContactSearch& s, const Axis& axis, const Foot& at, double along) {
   const dvec3 x = axis.tip.at(along);
+  const Foot foot = foot_over_seam(s, at, x);
   AxisSphere out{foot, contact_place(s.object, s.mesh, foot, x), along};
   out.slope = dot(out.place.gradient, axis.tip.axis) + 8 * axis.bend * (along - 0.5);
   out.curvature = dot(axis.tip.axis, out.place.turns * axis.tip.axis) + 8 * axis.bend;
@@ -69,12 +73,47 @@ AxisSphere lowest(const ContactSearch& s, const Axis& axis, AxisSphere at) {
   return at;
 }
 
+// A deeper sphere than `at` on the same dent: up to where a ridge is kSameDent lower. Of the spheres half a radius
+// apart, and then downhill. The contact is at the deepest one as soon as that is deeper, so that its energy depends on
+// the pose alone.
+bool climb(const ContactSearch& s, const Axis& axis, double radius, AxisSphere& at) {
+  constexpr double kMostSpheres = 64;
+  const double size = length(axis.tip.axis), edge = static_cast<double>(s.mesh.mean_edge),
+               step = std::max(0.5 * (radius > 0 ? radius : edge) / size, 1 / kMostSpheres),
+               same = axis.same_dent(radius), begun = at.foot.height + axis.raised(at.along);
+  Foot found = at.foot;
+  double lowest_height = begun, along = at.along;
+  for (const double way : {-step, step}) {
+    Foot foot = at.foot;
+    for (double from = at.along; from != (way < 0 ? 0.0 : 1.0);) {
+      const double to = std::clamp(from + way, 0.0, 1.0);
+      const dvec3 x = axis.tip.at(to);
+      foot = foot_over_seam(s, follow_foot(s, foot, axis.tip.at(from), x), x);
+      from = to;
+      const double height = foot.height + axis.raised(to);
+      if (height > begun + same || (foot.height < 0 && beyond_border(s.mesh, foot, x))) break;
+      if (height < lowest_height) {
+        lowest_height = height;
+        found = foot;
+        along = to;
+      }
+    }
+  }
+  if (along == at.along) return false;
+  const AxisSphere other = lowest(s, axis, sphere_at(s, axis, found, along));
+  const auto height = [&](const AxisSphere& sphere) { return sphere.place.height + axis.raised(sphere.along); };
+  if (!(height(other) < height(at) - kExactly * size)) return false;
+  at = other;
+  return true;
+}
+
 }  // namespace
 
 TipContact deepest_on_tip(const ContactSearch& s, const TipPlace& tip, double radius, Foot foot, double along) {
   if (tip.axis == dvec3(0)) return {contact_place(s.object, s.mesh, foot, tip.end), {}, tip.end};
   const Axis axis(tip, radius);
-  const AxisSphere at = lowest(s, axis, sphere_at(s, axis, foot, along));
+  AxisSphere at = lowest(s, axis, sphere_at(s, axis, foot, along));
+  for (int i = 0; i < kMostClimbs && climb(s, axis, radius, at);) ++i;
   TipContact out{at.place, {at.along, 0.0, tip.axis}, tip.at(at.along), axis.raised(at.along)};
   if (at.along > 0 && at.along < 1 && at.curvature > 0) {
     out.axis.curvature = at.curvature;
@@ -100,12 +139,22 @@ Ridge ridge_along(const ContactSearch& s, const SourceState& a, const SourceStat
   }
   const double raised = axis.raised(from.along), same = 1e-3 * static_cast<double>(s.mesh.mean_edge);
   const dvec3 x = axis.tip.at(from.along);
-  if (length(from.foot.p - to.foot.p) < same + std::abs(to.along - from.along) * length(axis.tip.axis))
-    return {radius - from.place.height - raised, -from.place.gradient, x};
-  if (radius == 0.0) return {};
-  Ridge across = ridge_between(s.mesh, from.place, to.place, x, radius);
-  across.depth -= raised;
-  return across;
+  Ridge ridge;
+  if (length(from.foot.p - to.foot.p) < same + std::abs(to.along - from.along) * length(axis.tip.axis)) {
+    ridge = {radius - from.place.height - raised, -from.place.gradient, x};
+  } else if (radius > 0.0) {
+    ridge = ridge_between(s.mesh, from.place, to.place, x, radius);
+    ridge.depth -= raised;
+  } else {
+    return {};
+  }
+  ridge.depth += axis.same_dent(radius);
+  const auto depth = [&](const SourceState& source) {
+    return radius - source.place.height - axis.raised(source.axis.along);
+  };
+  const SourceState& shallower = depth(a) < depth(b) ? a : b;
+  if (ridge.depth >= depth(shallower)) return {depth(shallower), -shallower.place.gradient, shallower.x};
+  return ridge;
 }
 
 }  // namespace pliant

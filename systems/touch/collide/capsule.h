@@ -15,7 +15,9 @@
 namespace pliant {
 
 // Less: a shaft that lies flat tips over from end to end at a smaller tilt.
-inline constexpr double kBend = 1.5e-3;     // [1] of the radius
+inline constexpr double kBend = 1.5e-3;  // [1] of the radius
+// Local minima of the height with a ridge between them that is less than this above them are one: the ripple of a mesh.
+inline constexpr double kSameDent = 0.02;   // [1] of the radius
 inline constexpr double kLeastBend = 2e-5;  // [1] of the length
 
 // Place of a contact of a tip. Object frame.

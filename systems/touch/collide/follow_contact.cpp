@@ -73,10 +73,13 @@ AtSeam step_over(const ContactSearch& s, SourceState& source, Contact& contact, 
     const double far = std::abs(side.foot.height), least = std::abs(sides[best].foot.height);
     if (sides[best].at_seam != side.at_seam ? sides[best].at_seam : far < least) best = i;
   }
-  if (best == 0) return between ? AtSeam::kBetween : AtSeam::kStays;
+  if (best == 0) {
+    if (between) foot = foot_over_crack(s.mesh, foot, x);
+    return between ? AtSeam::kBetween : AtSeam::kStays;
+  }
   if (sides[best].object != sides[0].object)
     return carry_over(s, sides[best], source, contact, s.world.registry.get<Pose>(s.object.entity).to_world(x));
-  foot = sides[best].foot;
+  foot = sides[best].at_seam ? foot_over_crack(s.mesh, sides[best].foot, x) : sides[best].foot;
   return sides[best].at_seam ? AtSeam::kBetween : AtSeam::kStays;
 }
 

@@ -73,6 +73,34 @@ std::size_t feet_over_seams(const ContactSearch& s, const Foot& foot, dvec3 x, S
   return list.count;
 }
 
+Foot foot_over_crack(const Mesh& mesh, Foot foot, dvec3 x) {
+  const uvec3 corner = mesh.triangles[foot.triangle];
+  const dvec3 a(mesh.position(corner.x)),
+      n = normalize(cross(dvec3(mesh.position(corner.y)) - a, dvec3(mesh.position(corner.z)) - a));
+  foot.height = dot(x - foot.p, n);
+  foot.p = x - foot.height * n;
+  foot.normal = n;
+  foot.moves = dmat3(1.0) - glm::outerProduct(n, n);
+  foot.turns = dmat3(0.0);
+  foot.shifts = {};
+  return foot;
+}
+
+Foot foot_over_seam(const ContactSearch& s, const Foot& foot, dvec3 x) {
+  if (!at_seam(s.object, foot)) return foot;
+  Sides sides;
+  const std::size_t count = feet_over_seams(s, foot, x, sides);
+  std::size_t best = 0;
+  bool between = count > 1;
+  for (std::size_t i = 1; i < count; ++i) {
+    between = between && sides[i].at_seam;
+    if (sides[i].object != sides[0].object || (sides[i].foot.height < 0) != (foot.height < 0)) continue;
+    const bool nearer = std::abs(sides[i].foot.height) < std::abs(sides[best].foot.height);
+    if (sides[best].at_seam != sides[i].at_seam ? sides[best].at_seam : nearer) best = i;
+  }
+  return between ? foot_over_crack(s.mesh, sides[best].foot, x) : sides[best].foot;
+}
+
 namespace {
 
 bool has_contact(const ContactSearch& s, const ProbeTip& tip, const SideFoot& side) {

@@ -22,6 +22,12 @@ using Sides = std::array<SideFoot, kMostSides>;
 // `foot` itself. Returns their number; 1: it is at no seam.
 std::size_t feet_over_seams(const ContactSearch& s, const Foot& foot, dvec3 x, Sides& sides);
 
+// The foot of x on the side of the same mesh that has it inside. Over a crack, where none has: the nearest side's, with
+// the plane of its triangle instead of the edge, so that the force is along its normal. Elsewhere `foot`.
+Foot foot_over_seam(const ContactSearch& s, const Foot& foot, dvec3 x);
+// The same of a foot that is known to be over a crack.
+Foot foot_over_crack(const Mesh& mesh, Foot foot, dvec3 x);
+
 // Whether this foot of x bears a tip over a crack: all feet are at seams, this one is chosen of all, and the tip has no
 // contact at another.
 bool bears_between(const ContactSearch& s, const ProbeTip& tip, const Foot& foot, dvec3 x);

@@ -194,7 +194,7 @@ TipCount list_probes(Registry& registry, TouchState& touch, double reach) {
     state.first_tip = count.all;
     if (meets_surfaces) state.tips = tips_of(probe, reach);
     for (const Tip& tip : state.tips) {
-      state.has_torque = state.has_torque || tip.place != dvec3(0) || tip.is_capsule();
+      state.lever = std::max({state.lever, length(tip.place), length(tip.place + tip.axis)});
       count.contacts += tip.radius > 0 && !tip.drawn ? kContactsOfASphere : kContactsOfAPoint;
     }
     count.all += static_cast<std::uint32_t>(state.tips.size());

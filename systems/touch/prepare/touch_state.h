@@ -198,7 +198,7 @@ struct ObjectState {
 struct ProbeState {
   Entity entity;
   SafetyState safety, torque_safety;
-  bool has_torque = false;  // a tip is not at its place
+  double lever = 0.0;       // [m] farthest that a tip is from its place
   dvec3 turned{0};          // [rad] sum of the small rotations
   std::vector<Tip> tips;
   std::uint32_t first_tip = 0;  // index of its first tip in ObjectState::searched
