@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -350,18 +351,21 @@ TEST(TouchSurface, ACrackBetweenClosedPartsDoesNotExist) {
         const double middle = kSize / 2 + crack / 2;
         const std::string what = std::to_string(one_node) + " crack " + std::to_string(crack * 1e6) + " um, radius " +
                                  std::to_string(radius);
-        for (const double x : {0.0, 0.3 * crack, -0.3 * crack, crack, -crack, 1e-4, -1e-3}) {  // pressed
-          Stage stage;
-          build(stage);
-          const Entity probe = stage.add_probe({middle + x, radius + 0.002, 0.0037}, radius);
-          stage.prepare();
-          stage.move(probe, {middle + x, radius - 0.003, 0.0037}, 0.1);
-          stage.wait(0.01);
-          EXPECT_NEAR(raw_force(stage, probe).y, whole, (0.005 + crack / 0.003) * whole) << what << " pressed at " << x;
-          EXPECT_LT(std::abs(raw_force(stage, probe).x), (1e-6 + crack / 0.003) * whole) << what << " pressed at " << x;
-          stage.move(probe, {middle + x, radius + 0.001, 0.0037}, 0.1);
-          EXPECT_EQ(raw_force(stage, probe), dvec3(0)) << what << " lifted at " << x;
-        }
+        for (const double x : {0.0, 0.3 * crack, -0.3 * crack, crack, -crack, 1e-4, -1e-3})  // pressed
+          for (const double z : {0.0037, 0.0}) {  // there, and at a vertex of both sides
+            Stage stage;
+            build(stage);
+            const Entity probe = stage.add_probe({middle + x, radius + 0.002, z}, radius);
+            stage.prepare();
+            stage.move(probe, {middle + x, radius - 0.003, z}, 0.1);
+            stage.wait(0.01);
+            EXPECT_NEAR(raw_force(stage, probe).y, whole, (0.005 + crack / 0.003) * whole)
+                << what << " pressed at " << x;
+            EXPECT_LT(std::abs(raw_force(stage, probe).x), (1e-6 + crack / 0.003) * whole)
+                << what << " pressed at " << x;
+            stage.move(probe, {middle + x, radius + 0.001, z}, 0.1);
+            EXPECT_EQ(raw_force(stage, probe), dvec3(0)) << what << " lifted at " << x;
+          }
         Stage stage;  // slid over it, and back
         build(stage);
         const Entity probe = stage.add_probe({middle - 0.01, radius + 0.002, 0.0037}, radius);
@@ -380,52 +384,79 @@ TEST(TouchSurface, ACrackBetweenClosedPartsDoesNotExist) {
       }
 }
 
+// A welded box of cells on all six faces, its top at y = 0.
+Primitive box_of_cells(int n, double size) {
+  Primitive p;
+  std::map<std::array<int, 3>, std::uint32_t> known;
+  const auto vertex = [&](std::array<int, 3> at) {
+    const auto [it, is_new] = known.emplace(at, static_cast<std::uint32_t>(p.position.size()));
+    if (is_new) p.position.push_back(vec3(size / n * dvec3(at[0] - n / 2.0, at[1] - n, at[2] - n / 2.0)));
+    return it->second;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const int side : {0, n})
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          std::array<int, 3> at{};
+          at[axis] = side;
+          const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+          const auto corner = [&](int k, int l) {
+            at[u] = i + k, at[v] = j + l;
+            return vertex(at);
+          };
+          const std::uint32_t a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
+          for (const std::uint32_t w : side ? std::array{a, b, c, a, c, d} : std::array{a, c, b, a, d, c})
+            p.index.push_back(w);
+        }
+  return p;
+}
+
 // Where four parts meet in a corner, pressed exactly there and slid over it any way.
 TEST(TouchSurface, ACornerWhereFourPartsMeetIsASurface) {
   constexpr double kSize = 0.1;
-  const Primitive quarter = scenes::slab(8, kSize, 0.04);
   const Deformable d = frictionless();
   const double whole = law(d, 0.003);
-  for (const bool one_node : {true, false})
-    for (const double crack : {0.0, 1e-7, 1e-5, 4e-5})
-      for (const double radius : {0.0, 0.006}) {
-        const double half = kSize / 2 + crack / 2;
-        const auto build = [&](Stage& stage) {
-          Primitive all;
-          for (const dvec3 at : {dvec3(half, 0, half), {-half, 0, half}, {half, 0, -half}, {-half, 0, -half}}) {
-            if (!one_node) stage.add(quarter, d, Pose{at});
-            const auto first = static_cast<std::uint32_t>(all.position.size());
-            for (const vec3& p : quarter.position) all.position.push_back(vec3(dvec3(p) + at));
-            for (const std::uint32_t v : quarter.index) all.index.push_back(first + v);
+  for (const Primitive& quarter : {scenes::slab(8, kSize, 0.04), box_of_cells(8, kSize)})
+    for (const bool one_node : {true, false})
+      for (const double crack : {0.0, 1e-9, 1e-7, 1e-5, 4e-5})
+        for (const double radius : {0.0, 0.006}) {
+          const double half = kSize / 2 + crack / 2;
+          const auto build = [&](Stage& stage) {
+            Primitive all;
+            for (const dvec3 at : {dvec3(half, 0, half), {-half, 0, half}, {half, 0, -half}, {-half, 0, -half}}) {
+              if (!one_node) stage.add(quarter, d, Pose{at});
+              const auto first = static_cast<std::uint32_t>(all.position.size());
+              for (const vec3& p : quarter.position) all.position.push_back(vec3(dvec3(p) + at));
+              for (const std::uint32_t v : quarter.index) all.index.push_back(first + v);
+            }
+            if (one_node) stage.add(all, d);
+          };
+          const std::string what = std::to_string(one_node) + " crack " + std::to_string(crack * 1e6) + " um, radius " +
+                                   std::to_string(radius);
+          const double most_off = (0.005 + 1.5 * crack / 0.003) * whole;
+          for (const double angle : {0.0, 0.3, M_PI / 4, 2.0}) {
+            const dvec3 way(std::cos(angle), 0, std::sin(angle));
+            Stage stage;
+            build(stage);
+            const Entity probe = stage.add_probe({0, radius + 0.002, 0}, radius);
+            stage.prepare();
+            stage.move(probe, {0, radius - 0.003, 0}, 0.1);
+            EXPECT_NEAR(raw_force(stage, probe).y, whole, most_off) << what << " pressed";
+            double least = 1e9, most = 0, sideways = 0;
+            for (const double x : {0.01, -0.01, 0.0})
+              stage.move(probe, x * way + dvec3(0, radius - 0.003, 0), 0.3, [&](const ProbeReading&) {
+                const dvec3 f = raw_force(stage, probe);
+                least = std::min(least, f.y);
+                most = std::max(most, f.y);
+                sideways = std::max(sideways, std::hypot(f.x, f.z));
+              });
+            EXPECT_NEAR(least, whole, most_off) << what << " slid at " << angle;
+            EXPECT_NEAR(most, whole, most_off) << what << " slid at " << angle;
+            EXPECT_LT(sideways, (1e-4 + 1.5 * crack / 0.003) * whole) << what << " slid at " << angle;
+            stage.move(probe, {0, radius + 0.001, 0}, 0.1);
+            EXPECT_EQ(raw_force(stage, probe), dvec3(0)) << what << " lifted";
           }
-          if (one_node) stage.add(all, d);
-        };
-        const std::string what = std::to_string(one_node) + " crack " + std::to_string(crack * 1e6) + " um, radius " +
-                                 std::to_string(radius);
-        const double most_off = (0.005 + 1.5 * crack / 0.003) * whole;
-        for (const double angle : {0.0, 0.3, M_PI / 4, 2.0}) {
-          const dvec3 way(std::cos(angle), 0, std::sin(angle));
-          Stage stage;
-          build(stage);
-          const Entity probe = stage.add_probe({0, radius + 0.002, 0}, radius);
-          stage.prepare();
-          stage.move(probe, {0, radius - 0.003, 0}, 0.1);
-          EXPECT_NEAR(raw_force(stage, probe).y, whole, most_off) << what << " pressed";
-          double least = 1e9, most = 0, sideways = 0;
-          for (const double x : {0.01, -0.01, 0.0})
-            stage.move(probe, x * way + dvec3(0, radius - 0.003, 0), 0.3, [&](const ProbeReading&) {
-              const dvec3 f = raw_force(stage, probe);
-              least = std::min(least, f.y);
-              most = std::max(most, f.y);
-              sideways = std::max(sideways, std::hypot(f.x, f.z));
-            });
-          EXPECT_NEAR(least, whole, most_off) << what << " slid at " << angle;
-          EXPECT_NEAR(most, whole, most_off) << what << " slid at " << angle;
-          EXPECT_LT(sideways, (1e-4 + 1.5 * crack / 0.003) * whole) << what << " slid at " << angle;
-          stage.move(probe, {0, radius + 0.001, 0}, 0.1);
-          EXPECT_EQ(raw_force(stage, probe), dvec3(0)) << what << " lifted";
         }
-      }
 }
 
 // Wherever along its length that is (flat on a surface: touch_capsule_test.cpp).

@@ -39,7 +39,7 @@ AxisSphere sphere_at(const ContactSearch& s, const Axis& axis, const Foot& at, d
   AxisSphere out{foot, contact_place(s.object, s.mesh, foot, x), along};
   out.slope = dot(out.place.gradient, axis.tip.axis) + 8 * axis.bend * (along - 0.5);
   out.curvature = dot(axis.tip.axis, out.place.turns * axis.tip.axis) + 8 * axis.bend;
-  out.on_surface = foot.height >= 0 || !beyond_border(s.mesh, foot, x);
+  out.on_surface = foot.height >= 0 || (!beyond_border(s.mesh, foot, x) && !past_seam(s, foot, x));
   return out;
 }
 
@@ -91,7 +91,8 @@ bool climb(const ContactSearch& s, const Axis& axis, double radius, AxisSphere& 
       foot = foot_over_seam(s, follow_foot(s, foot, axis.tip.at(from), x), x);
       from = to;
       const double height = foot.height + axis.raised(to);
-      if (height > begun + same || (foot.height < 0 && beyond_border(s.mesh, foot, x))) break;
+      if (height > begun + same || (foot.height < 0 && (beyond_border(s.mesh, foot, x) || past_seam(s, foot, x))))
+        break;
       if (height < lowest_height) {
         lowest_height = height;
         found = foot;

@@ -59,7 +59,7 @@ AtSeam carry_over(const ContactSearch& s, const SideFoot& side, SourceState& sou
 
 // Over a seam the contact goes to the side that has the place's foot inside; over the crack, to the nearest.
 AtSeam step_over(const ContactSearch& s, SourceState& source, Contact& contact, dvec3 x, Foot& foot) {
-  if (!at_seam(s.object, foot)) return AtSeam::kStays;
+  if (!meets_seam(s.object, s.mesh, foot)) return AtSeam::kStays;
   Sides sides;
   const std::size_t count = feet_over_seams(s, foot, x, sides);
   if (count < 2) return AtSeam::kStays;
@@ -74,7 +74,7 @@ AtSeam step_over(const ContactSearch& s, SourceState& source, Contact& contact, 
     if (sides[best].at_seam != side.at_seam ? sides[best].at_seam : far < least) best = i;
   }
   if (best == 0) {
-    if (between) foot = foot_over_crack(s.mesh, foot, x);
+    if (between && !beyond_border(s.mesh, foot, x, s.object.closed)) foot = foot_over_crack(s.mesh, foot, x);
     return between ? AtSeam::kBetween : AtSeam::kStays;
   }
   if (sides[best].object != sides[0].object)

@@ -63,7 +63,7 @@ void find_walls(const ContactSearch& s, const ProbeTip& tip, dvec3 x, double wit
           if (!lowest) continue;
           const Foot foot = s.downhill(t, at.barycentric, x);
           if (!(foot.height >= 0) || foot.height > within) continue;
-          if (at_seam(s.object, foot) && !bears_between(s, tip, foot, x)) continue;
+          if (meets_seam(s.object, s.mesh, foot) && (!faces(s.mesh, foot) || !bears_between(s, tip, foot, x))) continue;
           const auto is_same = [&](const Foot& f) { return length(f.p - foot.p) < same; };
           if (std::none_of(feet.begin(), feet.begin() + static_cast<std::ptrdiff_t>(count), is_same))
             feet[count++] = foot;
@@ -84,6 +84,19 @@ bool inside_neighbour(const ContactSearch& s, const ProbeTip& tip) {
   };
   return behind(s.object) || std::any_of(s.object.joined.begin(), s.object.joined.end(),
                                          [&](std::uint32_t slot) { return behind(s.world.touch->objects[slot]); });
+}
+
+// Whether a capsule has a contact with an adjoining surface. It goes over to this one where it gets deeper here.
+bool is_beside(const ContactSearch& s, const ProbeTip& tip) {
+  return tip.tip.is_capsule() && std::any_of(s.object.joined.begin(), s.object.joined.end(), [&](std::uint32_t slot) {
+           const ObjectState& object = s.world.touch->objects[slot];
+           for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
+             if (!object.sources[i].tracked) continue;
+             const Contact& contact = s.world.registry.get<Contact>(object.sources[i].contact);
+             if (contact.probe == tip.probe && contact.tip == tip.index) return true;
+           }
+           return false;
+         });
 }
 
 // Of the walls on a way, the first that is entered from outside and is not ignored for this tip. `along` [m] steps past
@@ -203,6 +216,7 @@ void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, TipPlace& se
   if (low.x > box.max.x || low.y > box.max.y || low.z > box.max.z || high.x < box.min.x || high.y < box.min.y ||
       high.z < box.min.z)
     return;
+  if (is_beside(s, tip)) return;
   const TipWay way{from, to};
   const int count = intervals(s, tip.tip);
   const auto along = [&](int i) { return count == 0 ? 0.0 : double(i) / count; };

@@ -4,10 +4,45 @@
 #include <cmath>
 #include <tuple>
 
+#include "systems/touch/collide/around_vertex.h"
 #include "systems/touch/collide/seams.h"
 #include "systems/touch/collide/triangle_tree.h"
 
 namespace pliant {
+
+namespace {
+
+// The corner of the triangle that a foot is at, or -1.
+int corner_under(const Foot& foot) {
+  constexpr double kAtCorner = 1 - 1e-6;  // [1] barycentric
+  for (int corner = 0; corner < 3; ++corner)
+    if (foot.barycentric[corner] > kAtCorner) return corner;
+  return -1;
+}
+
+dvec3 normal_of(const Mesh& mesh, std::uint32_t triangle) {
+  const uvec3 corner = mesh.triangles[triangle];
+  const dvec3 a(mesh.position(corner.x));
+  return normalize(cross(dvec3(mesh.position(corner.y)) - a, dvec3(mesh.position(corner.z)) - a));
+}
+
+}  // namespace
+
+bool meets_seam(const ObjectState& object, const Mesh& mesh, const Foot& foot) {
+  if (object.closed.empty()) return false;
+  if (at_seam(object, foot)) return true;
+  const int corner = corner_under(foot);
+  if (corner < 0) return false;
+  const std::uint32_t vertex = mesh.triangles[foot.triangle][corner];
+  bool meets = false;
+  around_vertex(mesh, vertex, foot.triangle, [&](std::uint32_t t) {
+    const int at = corner_of(mesh.triangles[t], vertex);
+    for (const int edge : {at, (at + 2) % 3})
+      meets = meets ||
+              std::binary_search(object.closed.begin(), object.closed.end(), 3 * t + static_cast<std::uint32_t>(edge));
+  });
+  return meets;
+}
 
 namespace {
 
@@ -38,21 +73,19 @@ struct SideList {
       return side.object == slot && side.foot.triangle == foot.triangle;
     };
     if (std::none_of(sides.begin(), sides.begin() + static_cast<std::ptrdiff_t>(count), is_same))
-      sides[count++] = {slot, foot, at_seam(object(slot), foot)};
+      sides[count++] = {slot, foot, meets_seam(object(slot), mesh(slot), foot)};
   }
 };
 
 // The other triangles of the same surface at a corner, which may have seams of their own.
 void add_around_corner(SideList& list, const SideFoot& side) {
-  constexpr double kAtCorner = 1 - 1e-6;  // [1] barycentric
-  for (int corner = 0; corner < 3; ++corner) {
-    if (!(side.foot.barycentric[corner] > kAtCorner)) continue;
-    for (const int edge : {corner, (corner + 2) % 3}) {
-      const std::uint32_t key = 3 * side.foot.triangle + static_cast<std::uint32_t>(edge);
-      const std::uint32_t next = list.mesh(side.object).across[side.foot.triangle][edge];
-      const std::vector<std::uint32_t>& closed = list.object(side.object).closed;
-      if (next != kBorder && !std::binary_search(closed.begin(), closed.end(), key)) list.add(side.object, next);
-    }
+  const int corner = corner_under(side.foot);
+  if (corner < 0) return;
+  for (const int edge : {corner, (corner + 2) % 3}) {
+    const std::uint32_t key = 3 * side.foot.triangle + static_cast<std::uint32_t>(edge);
+    const std::uint32_t next = list.mesh(side.object).across[side.foot.triangle][edge];
+    const std::vector<std::uint32_t>& closed = list.object(side.object).closed;
+    if (next != kBorder && !std::binary_search(closed.begin(), closed.end(), key)) list.add(side.object, next);
   }
 }
 
@@ -73,11 +106,22 @@ std::size_t feet_over_seams(const ContactSearch& s, const Foot& foot, dvec3 x, S
   return list.count;
 }
 
+bool past_seam(const ContactSearch& s, const Foot& foot, dvec3 x) {
+  if (foot.height >= 0 || !meets_seam(s.object, s.mesh, foot)) return false;
+  const dvec3 n = normal_of(s.mesh, foot.triangle), way = x - foot.p;
+  return length(way - dot(way, n) * n) > crack_of(s.mesh);
+}
+
+bool faces(const Mesh& mesh, const Foot& foot) {
+  constexpr double kFaces = 0.5;  // [1] cosine
+  return dot(normal_of(mesh, foot.triangle), foot.normal) > kFaces;
+}
+
 Foot foot_over_crack(const Mesh& mesh, Foot foot, dvec3 x) {
-  const uvec3 corner = mesh.triangles[foot.triangle];
-  const dvec3 a(mesh.position(corner.x)),
-      n = normalize(cross(dvec3(mesh.position(corner.y)) - a, dvec3(mesh.position(corner.z)) - a));
-  foot.height = dot(x - foot.p, n);
+  const dvec3 n = normal_of(mesh, foot.triangle);
+  const double height = dot(x - foot.p, n);
+  if (length(x - foot.p - height * n) > crack_of(mesh)) return foot;  // past the end of the seam
+  foot.height = height;
   foot.p = x - foot.height * n;
   foot.normal = n;
   foot.moves = dmat3(1.0) - glm::outerProduct(n, n);
@@ -87,7 +131,7 @@ Foot foot_over_crack(const Mesh& mesh, Foot foot, dvec3 x) {
 }
 
 Foot foot_over_seam(const ContactSearch& s, const Foot& foot, dvec3 x) {
-  if (!at_seam(s.object, foot)) return foot;
+  if (!meets_seam(s.object, s.mesh, foot)) return foot;
   Sides sides;
   const std::size_t count = feet_over_seams(s, foot, x, sides);
   std::size_t best = 0;

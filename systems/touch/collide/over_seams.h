@@ -18,6 +18,9 @@ struct SideFoot {
 inline constexpr std::size_t kMostSides = 16;
 using Sides = std::array<SideFoot, kMostSides>;
 
+// Whether a foot is at a seam, or at a corner where one ends.
+bool meets_seam(const ObjectState& object, const Mesh& mesh, const Foot& foot);
+
 // The feet of x (object frame) on all sides of the seams under `foot`, and of the seams under those. The first is
 // `foot` itself. Returns their number; 1: it is at no seam.
 std::size_t feet_over_seams(const ContactSearch& s, const Foot& foot, dvec3 x, Sides& sides);
@@ -25,8 +28,14 @@ std::size_t feet_over_seams(const ContactSearch& s, const Foot& foot, dvec3 x, S
 // The foot of x on the side of the same mesh that has it inside. Over a crack, where none has: the nearest side's, with
 // the plane of its triangle instead of the edge, so that the force is along its normal. Elsewhere `foot`.
 Foot foot_over_seam(const ContactSearch& s, const Foot& foot, dvec3 x);
-// The same of a foot that is known to be over a crack.
+// The same of a foot that is known to be over a crack, as far as a crack is wide.
 Foot foot_over_crack(const Mesh& mesh, Foot foot, dvec3 x);
+
+// Whether x, behind the surface, is past a seam, over the surface of another object: its foot is on the seam's edge.
+bool past_seam(const ContactSearch& s, const Foot& foot, dvec3 x);
+
+// Whether the triangle of a foot in front of the surface faces x: the side walls of a crack have the same corners.
+bool faces(const Mesh& mesh, const Foot& foot);
 
 // Whether this foot of x bears a tip over a crack: all feet are at seams, this one is chosen of all, and the tip has no
 // contact at another.
