@@ -176,9 +176,19 @@ void find_inside(const ContactSearch& s, const ProbeTip& tip, const TipWay& way,
   s.world.dropped |= kDroppedInside;
 }
 
+// Whether no sphere beside that at `along`, `apart` farther, is nearer to this wall. A sphere: always.
+bool is_lowest(const ContactSearch& s, const TipWay& way, const Foot& foot, double along, double apart) {
+  for (const double to : {along - apart, along + apart}) {
+    if (apart == 0 || to < -0.5 * apart || to > 1 + 0.5 * apart) continue;
+    const double beside = std::clamp(to, 0.0, 1.0);
+    if (follow_foot(s, foot, way.to.at(along), way.to.at(beside)).height < foot.height) return false;
+  }
+  return true;
+}
+
 // Begins contacts with the walls within reach of the sphere at `along`: around its way's end, and along the way of a
 // fast one. A sphere touches before its centre crosses.
-void find_near(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, double along) {
+void find_near(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, double along, double apart) {
   const double radius = tip.tip.radius, within = radius * (1 + kAhead);
   const dvec3 from = way.from.at(along), to = way.to.at(along);
   const int steps = std::clamp(static_cast<int>(std::ceil(2 * length(to - from) / radius)), 1, 16);
@@ -189,7 +199,9 @@ void find_near(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, d
     find_walls(s, tip, x, within, feet, count);
     for (std::size_t f = 0; f < count; ++f) {
       const Foot foot = i == steps ? feet[f] : follow_foot(s, feet[f], x, to);
-      if (foot.height <= within && !pressed_through(s, tip, foot.p, foot.normal)) begin_at(s, tip, way, foot, along);
+      if (foot.height <= within && is_lowest(s, way, foot, along, apart) &&
+          !pressed_through(s, tip, foot.p, foot.normal))
+        begin_at(s, tip, way, foot, along);
     }
   }
 }
@@ -228,7 +240,7 @@ void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, TipPlace& se
 
   if (std::max(length(to.end - searched.end), length(to.at(1) - searched.at(1))) < 0.5 * kAhead * radius) return;
   searched = to;
-  for (int i = 0; i <= count; ++i) find_near(s, tip, way, along(i));
+  for (int i = 0; i <= count; ++i) find_near(s, tip, way, along(i), count == 0 ? 0.0 : 1.0 / count);
 }
 
 }  // namespace pliant
