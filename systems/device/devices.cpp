@@ -1,6 +1,7 @@
 #include "systems/device/devices.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "components/soft_body.h"
@@ -39,6 +40,10 @@ double ease_of_tool(double skipped) {
   return std::clamp(kShare * skipped, kToolEase, kLongest);
 }
 
+bool all_finite(dvec3 v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
 void note_events(World& world, const SafetyResult& result) {
   if (result.event == SafetyEvent::kNonFinite) world.dropped |= kDroppedNonFinite;
   if (result.event == SafetyEvent::kStale) world.dropped |= kDroppedStale;
@@ -64,6 +69,7 @@ void write_wrench(World& world, HapticDevice& device, const SafetyPair& safety, 
   const SafetyResult push = make_safe(safety.force, device, limits, force, device.position, tick.time, tick.dt);
   note_events(world, push);
   device.force_sent = push.force;
+  device.torque_sent = dvec3(0);
   if (!safety.torque) return;
   safety.torque->work = safety.force.work;
   const SafetyResult turn = make_safe(*safety.torque, device, turning, torque, safety.turned, tick.time, tick.dt);
@@ -112,7 +118,7 @@ void write_probe(World& world, ProbeState& state, Tick tick) {
       state.safety, limits,
       state.safety.share * (probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0))), tick.dt);
   const dvec3 unknown(std::numeric_limits<double>::quiet_NaN());
-  const bool known = plausible_rotation(device.rotation);
+  const bool known = plausible_rotation(device.rotation) && all_finite(pressed) && all_finite(probe.torque);
   const dvec3 turn =
       probe.placed && !probe.fresh ? vector_of(probe.rotation * glm::conjugate(probe.previous_rotation)) : dvec3(0);
   state.turned += turn;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "scenes/touch_laws.h"
@@ -267,6 +268,22 @@ TEST(TouchCapsule, TheTorqueIsSentAndAHandGetsNoEnergyByTurning) {
   EXPECT_LT(most, 1e-4 * 0.5 * 300 * 0.0055 * 0.0055 + 1e-9);
   const SafetyState& safety = stage.world.touch->probes[0].safety;
   EXPECT_EQ(safety.tally.of(SafetyLimit::kWithheld).ticks, 0u);
+}
+
+// Where the force is no number, the torque goes, too.
+TEST(TouchCapsule, NoTorqueIsSentWithoutItsForce) {
+  Stage stage;
+  stage.add(scenes::sheet(40, 0.2), frictionless());
+  const Entity probe = add_capsule(stage, {-0.03, 0.01, 0}, 0.005, 0.06);
+  turn(stage, probe, kAlongX);
+  stage.prepare();
+  stage.move(probe, {-0.03, 0.003, 0}, 0.1);
+  const HapticDevice& device = stage.device(stage.world.registry.get<Probe>(probe).device);
+  ASSERT_GT(length(device.torque_sent), 0.01);
+  stage.world.touch->probes[0].safety.added = dvec3(std::numeric_limits<double>::quiet_NaN());
+  stage.tick();
+  EXPECT_EQ(device.force_sent, dvec3(0));
+  EXPECT_EQ(device.torque_sent, dvec3(0));
 }
 
 // At its first pose behind the surface nothing is felt, and that is said.
