@@ -139,6 +139,7 @@ void draw_record(Pen& pen, const PressRecord& record, const RecordFit& fit, cons
   draw_dots(pen, right, kept_residual, kBlue, dot, true, 0.75);
   draw_dots(pen, right, held_residual, kOrange, dot, true, 0.75);
   draw_level(pen, right, 0.0, {kInk, 1.2});
+  pen.color(kInk);
   const double title = pen.text(60, 46, 26, 0, "fit", true);
   pen.text(60 + title + 18, 46, 16, 0, record.name);
   double y = 74;

@@ -107,7 +107,7 @@ void add_edit(CLI::App& app, int& status) {
   const auto options = std::make_shared<EditOptions>();
   const auto unit = std::make_shared<std::string>("m");
   CLI::App* verb = app.add_subcommand("edit", "the editor: from a mesh to a level that can be touched");
-  verb->add_option("file", options->file, "a level, or any mesh; none: the start page");
+  verb->add_option("file", options->file, "a level, by path or by name, or any mesh; none: the start page");
   verb->add_option("--unit", *unit, "of a bare mesh: m, cm, mm, in, or metres for one unit")->capture_default_str();
   verb->add_option_function<std::string>(
       "--size",
@@ -127,6 +127,14 @@ void add_edit(CLI::App& app, int& status) {
     if (!metres) {
       status = fail(kUsage, metres.error());
       return;
+    }
+    if (!options->file.empty()) {
+      const auto file = find_level(options->file);
+      if (!file) {
+        status = fail(kFailed, file.error());
+        return;
+      }
+      options->file = file->string();
     }
     options->unit = *metres;
     options->levels = shipped_levels();

@@ -117,8 +117,9 @@ TEST_F(Arguments, AStudyThatIsNotThereIsRefused) {
 
 TEST_F(Arguments, AnEditorWithoutADisplayOrWithAWrongUnitSaysSo) {
   expect_refused({"edit", "--unit", "furlong"}, 2, "furlong");
+  expect_refused({"edit", "no_such_level"}, 1, "no shipped level of that name");
   expect_refused({"edit", "--size", "8"}, 2, "--size");
-  const Said said = pliant({"edit", "level.gltf"}, "env -u DISPLAY -u WAYLAND_DISPLAY");
+  const Said said = pliant({"edit", "minimal"}, "env -u DISPLAY -u WAYLAND_DISPLAY");
   EXPECT_EQ(said.status, 1);
   EXPECT_NE(said.err.find("display"), std::string::npos) << said.err;
   EXPECT_EQ(said.err.find("--headless"), std::string::npos) << said.err;
