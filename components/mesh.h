@@ -89,6 +89,7 @@ struct Mesh {
 
   Box box;                 // [m] of the rest vertices
   float mean_edge = 0.0f;  // [m]
+  float file_edge = 0.0f;  // [m] the same before refinement: what the author resolved
   bool closed = false;     // every edge has exactly two triangles
 
   std::uint32_t zone_count() const { return static_cast<std::uint32_t>(zone_box.size()); }

@@ -16,7 +16,7 @@ namespace {
 
 fs::path g_soft_store;
 
-constexpr std::uint64_t kBegin = 0x32746f6f66546c50, kEnd = ~kBegin;  // of a file
+constexpr std::uint64_t kBegin = 0x33746f6f66546c50, kEnd = ~kBegin;  // of a file
 
 // A structured binding names every member: a new one stops the build here.
 void visit_members(auto& io, auto& of, const BuiltMesh*) {
@@ -26,10 +26,10 @@ void visit_members(auto& io, auto& of, const BuiltMesh*) {
 void visit_members(auto& io, auto& of, const Mesh*) {
   auto& [name, vertex_count, px, py, pz, nx, ny, nz, area, triangles, across, tree, zone_box, zone_neighbour_first,
          zone_neighbours, crease, split_normals, corner_normal, stiffness_factor, friction_factor, damping_factor,
-         relaxation_factor, relief, of_source, box, mean_edge, closed] = of;  // no relief: tissue has none
+         relaxation_factor, relief, of_source, box, mean_edge, file_edge, closed] = of;  // no relief: tissue has none
   io(name, vertex_count, px, py, pz, nx, ny, nz, area, triangles, across, tree, zone_box, zone_neighbour_first,
      zone_neighbours, crease, split_normals, corner_normal, stiffness_factor, friction_factor, damping_factor,
-     relaxation_factor, of_source, box, mean_edge, closed);
+     relaxation_factor, of_source, box, mean_edge, file_edge, closed);
 }
 void visit_members(auto& io, auto& of, const TriangleTree*) {
   auto& [levels, nodes, bulge] = of;

@@ -115,6 +115,7 @@ Status finish(std::span<const Primitive> primitives, const mat4& to_object, cons
               const Welded& welded, BuiltMesh& built) {
   Mesh& mesh = built.mesh;
   mesh.mean_edge = static_cast<float>(mean_edge_length(mesh));
+  if (mesh.file_edge == 0.0f) mesh.file_edge = mesh.mean_edge;
   check_in();
   mesh.tree = build_tree(mesh);
   check_in();
@@ -187,7 +188,7 @@ Result<BuiltMesh> build_finer(const FinerMesh& finer, BuiltMesh coarse) {
   mesh.name = coarse.mesh.name;
   MeshReport of_pieces;  // defects of the file are in the report of the coarse mesh
   check_in();
-  const Welded welded = weld(*gathered, of_pieces);
+  const Welded welded = weld(*gathered, true, of_pieces);
   check_in();
   lay_out(welded, mesh);
   const Corners corners = corners_of(mesh);
@@ -198,6 +199,7 @@ Result<BuiltMesh> build_finer(const FinerMesh& finer, BuiltMesh coarse) {
   check_in();
   take_creases(finer, welded, corners, mesh);
   mesh.of_source = sources_in(mesh, coarse.mesh);
+  mesh.file_edge = static_cast<float>(mean_edge_length(coarse.mesh));
   built.report = coarse.report;
   built.report.refined_from = static_cast<std::uint32_t>(coarse.mesh.triangles.size());
   if (Status s = finish(finer.primitives, as_it_is, *gathered, welded, built); !s) return s.error();
@@ -221,7 +223,7 @@ Result<TouchMesh> build_touch_mesh(const std::string& name, std::span<const Prim
   mesh.name = name;
   if (stops()) return stopped;
 
-  touch.welded = weld(touch.gathered, touch.report);
+  touch.welded = weld(touch.gathered, options.mend_winding, touch.report);
   if (touch.welded.triangle.empty())
     return Error{"mesh `" + name + "`", "no triangle with an area is left",
                  "give it a surface, or remove the mesh from its node"};

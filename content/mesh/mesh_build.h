@@ -21,6 +21,7 @@ struct MeshReport {
   std::uint32_t degenerate_triangles = 0;  // zero area or a repeated corner: dropped
   std::uint32_t duplicate_triangles =
       0;                           // the same three corners again, in any order: not touched (a reversed one is drawn)
+  std::uint32_t flush_walls = 0;   // pairs of triangles at which parts are flush: dropped (flush_walls.h)
   std::uint32_t border_edges = 0;  // edges with one triangle
   std::uint32_t non_manifold_edges = 0;  // edges with three or more, or two that disagree on orientation
   std::uint32_t turned_triangles = 0;    // turned to agree with the larger area of their part

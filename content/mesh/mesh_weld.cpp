@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "content/mesh/flush_walls.h"
 #include "content/mesh/hilbert.h"
 #include "runtime/parallel.h"
 
@@ -115,8 +117,28 @@ Kept drop_degenerate(const Gathered& gathered, const Welded& welded, MeshReport&
   return kept;
 }
 
-// Of triangles with the same corners, the first in the file is kept; a reversed one is still drawn.
-void order_triangles(const Kept& kept, Welded& welded, MeshReport& report) {
+void drop_flush_walls(Welded& welded, std::vector<std::uint32_t>& back, MeshReport& report) {
+  std::vector<std::uint8_t> two_sided(back.size());
+  for (std::size_t t = 0; t < back.size(); ++t) two_sided[t] = back[t] != kNoVertex;
+  const std::vector<std::uint8_t> wall = flush_walls(welded.position, welded.triangle, two_sided);
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < back.size(); ++t) {
+    if (wall[t]) continue;
+    welded.triangle[kept] = welded.triangle[t];
+    welded.source_triangle[kept] = welded.source_triangle[t];
+    back[kept++] = back[t];
+  }
+  const auto dropped = static_cast<std::uint32_t>(back.size() - kept);
+  report.flush_walls = dropped;
+  report.duplicate_triangles -= dropped;
+  welded.triangle.resize(kept);
+  welded.source_triangle.resize(kept);
+  back.resize(kept);
+}
+
+// Of triangles with the same corners, the first in the file is kept; a reversed one is still drawn. Walls at which
+// parts of a touched body are flush are dropped.
+void order_triangles(const Kept& kept, bool touched, Welded& welded, MeshReport& report) {
   std::vector<HilbertItem> items = hilbert_sort(kept.centroid);
   sort_runs(items, [&](std::uint32_t a, std::uint32_t b) {
     const uvec3 ta = sorted(kept.triangle[a]), tb = sorted(kept.triangle[b]);
@@ -124,23 +146,23 @@ void order_triangles(const Kept& kept, Welded& welded, MeshReport& report) {
   });
   welded.triangle.reserve(items.size());
   welded.source_triangle.reserve(items.size());
+  std::vector<std::uint32_t> back;  // of each triangle, kNoVertex: none
   uvec3 previous(kNoVertex);
-  bool has_back = false;
   for (const HilbertItem& item : items) {
     const uvec3 t = kept.triangle[item.index], corners = sorted(t);
     if (corners != previous) {
       welded.triangle.push_back(t);
       welded.source_triangle.push_back(kept.source[item.index]);
+      back.push_back(kNoVertex);
       previous = corners;
-      has_back = false;
       continue;
     }
     ++report.duplicate_triangles;
-    if (!has_back && even(t) != even(welded.triangle.back())) {
-      welded.backs.push_back(kept.source[item.index]);
-      has_back = true;
-    }
+    if (back.back() == kNoVertex && even(t) != even(welded.triangle.back())) back.back() = kept.source[item.index];
   }
+  if (touched) drop_flush_walls(welded, back, report);
+  std::copy_if(back.begin(), back.end(), std::back_inserter(welded.backs),
+               [](std::uint32_t source) { return source != kNoVertex; });
 }
 
 // Removes vertices that only dropped triangles used; the rest keep their order.
@@ -208,7 +230,7 @@ Result<Gathered> gather(const std::string& name, std::span<const Primitive> prim
   return all;
 }
 
-Welded weld(const Gathered& gathered, MeshReport& report) {
+Welded weld(const Gathered& gathered, bool touched, MeshReport& report) {
   Welded welded;
   welded.sources = order_vertices(gathered);
   welded.touch_vertex.assign(gathered.position.size(), kNoVertex);
@@ -219,7 +241,7 @@ Welded weld(const Gathered& gathered, MeshReport& report) {
   }
   report.welded_vertices = static_cast<std::uint32_t>(welded.sources.size() - welded.position.size());
 
-  order_triangles(drop_degenerate(gathered, welded, report), welded, report);
+  order_triangles(drop_degenerate(gathered, welded, report), touched, welded, report);
   drop_unused(welded);
   return welded;
 }

@@ -31,6 +31,7 @@ struct Welded {
   std::vector<std::uint32_t> touch_vertex;  // of each source vertex, kNoVertex: not used
   std::vector<std::uint32_t> sources;       // used source vertices, by touch vertex, then by source
 };
-Welded weld(const Gathered& gathered, MeshReport& report);
+// `touched`: without walls at which parts are flush (flush_walls.h).
+Welded weld(const Gathered& gathered, bool touched, MeshReport& report);
 
 }  // namespace pliant

@@ -116,6 +116,8 @@ std::vector<std::string> problems(const ObjectReport& object) {
   const MeshReport& r = object.report;
   add(r.degenerate_triangles, "degenerate triangle", "degenerate triangles", "dropped");
   add(r.duplicate_triangles, "duplicate triangle", "duplicate triangles", "dropped");
+  add(r.flush_walls, "pair of triangles", "pairs of triangles",
+      "dropped: parts of the mesh are flush there, and are one body");
   add(r.border_edges, "border edge", "border edges",
       "the surface is open there: it can be touched, but does not enclose a volume");
   add(r.non_manifold_edges, "non-manifold edge", "non-manifold edges",
@@ -170,6 +172,7 @@ OrderedJson describe(const Level& level, const std::vector<ObjectReport>& object
                     {"welded_vertices", object.report.welded_vertices},
                     {"degenerate_triangles", object.report.degenerate_triangles},
                     {"duplicate_triangles", object.report.duplicate_triangles},
+                    {"flush_walls", object.report.flush_walls},
                     {"border_edges", object.report.border_edges},
                     {"non_manifold_edges", object.report.non_manifold_edges},
                     {"turned_triangles", object.report.turned_triangles},

@@ -152,6 +152,63 @@ TEST(MeshBuild, DuplicatesAreTouchedOnceWhateverTheirRotationAndAReversedOneIsSt
   EXPECT_EQ(built.report.non_manifold_edges, 0u);
 }
 
+// A box from low to high; `inward`: a cavity.
+void add_box(Primitive& p, vec3 low, vec3 high, bool inward = false) {
+  const auto first = static_cast<std::uint32_t>(p.position.size());
+  for (int i = 0; i < 8; ++i)
+    p.position.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
+  for (const uvec3 t : {uvec3(0, 4, 6),
+                        {0, 6, 2},
+                        {1, 7, 5},
+                        {1, 3, 7},
+                        {0, 1, 5},
+                        {0, 5, 4},
+                        {2, 6, 7},
+                        {2, 7, 3},
+                        {0, 2, 3},
+                        {0, 3, 1},
+                        {4, 7, 6},
+                        {4, 5, 7}})
+    for (const std::uint32_t v : {t.x, inward ? t.z : t.y, inward ? t.y : t.z}) p.index.push_back(first + v);
+}
+
+TEST(MeshBuild, WallsAtWhichPartsAreFlushAreDroppedAndThePartsAreOneBody) {
+  Primitive two;  // the walls at x = 1 have the same diagonal: 0 to 6 and 1 to 7
+  add_box(two, {0, 0, 0}, {1, 1, 1});
+  add_box(two, {1, 0, 0}, {3, 1, 1});
+  const BuiltMesh built = build(two);
+  EXPECT_EQ(built.report.flush_walls, 2u);
+  EXPECT_EQ(built.report.duplicate_triangles, 0u);
+  EXPECT_EQ(built.mesh.triangles.size(), 20u);
+  EXPECT_TRUE(built.mesh.closed);
+  EXPECT_NEAR(enclosed_volume(built.mesh), 3.0, 1e-6);
+  EXPECT_EQ(built.draw.indices.size(), 60u);
+
+  Primitive four;
+  for (const float x : {0.0f, 1.0f})
+    for (const float z : {0.0f, 1.0f}) add_box(four, {x, 0, z}, {x + 1, 1, z + 1});
+  const BuiltMesh block = build(four);
+  EXPECT_EQ(block.report.flush_walls, 8u);
+  EXPECT_TRUE(block.mesh.closed);
+  EXPECT_NEAR(enclosed_volume(block.mesh), 4.0, 1e-6);
+}
+
+TEST(MeshBuild, ASeptumAndATwoSidedSheetStay) {
+  Primitive hollow;  // two cavities in a box, nothing between them but a septum
+  add_box(hollow, {-1, -1, -1}, {3, 2, 2});
+  add_box(hollow, {0, 0, 0}, {1, 1, 1}, true);
+  add_box(hollow, {1, 0, 0}, {2, 1, 1}, true);
+  EXPECT_EQ(build(hollow).report.flush_walls, 0u);
+  EXPECT_EQ(build(hollow).report.duplicate_triangles, 2u);
+
+  Primitive leaf = sheet(2);
+  const std::vector<std::uint32_t> front = leaf.index;
+  for (std::size_t i = 0; i < front.size(); i += 3)
+    leaf.index.insert(leaf.index.end(), {front[i], front[i + 2], front[i + 1]});
+  EXPECT_EQ(build(leaf).report.flush_walls, 0u);
+  EXPECT_EQ(build(leaf).mesh.triangles.size(), 8u);
+}
+
 TEST(MeshBuild, MinusZeroAndZeroAreOnePosition) {
   Primitive p;
   p.position = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0f, -0.0f, 0}, {1, -0.0f, -0.0f}, {0, -1, 0}};

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "scenes/touch_laws.h"
 #include "scenes/touch_raw.h"
@@ -177,6 +179,71 @@ TEST(TouchCrack, ACornerWhereFourPartsMeetIsASurface) {
             stage.move(probe, {0, radius + 0.001, 0}, 0.1);
             EXPECT_EQ(raw_force(stage, probe), dvec3(0)) << what << " lifted";
           }
+        }
+}
+
+// The same of cells so small that a stroke crosses many, and of parts that meet in a T. On `mixed` boxes the diagonals
+// of opposite faces differ: where two touch, no triangle of one is one of the other.
+TEST(TouchCrack, InnerWallsAreNeverTouched) {
+  constexpr double kSize = 0.04, kDeep = 0.003;
+  const Deformable d = frictionless();
+  const double whole = law(d, kDeep);
+  const Primitive plain = box_of_cells(8, kSize);
+  Primitive mixed = plain;  // faces turned about z by half a turn and back: the walls at +x get the diagonals of -x
+  for (std::size_t t = 0; t + 5 < mixed.index.size(); t += 6) {
+    const auto corner = [&](std::size_t k) { return mixed.position[mixed.index[t + k]]; };
+    if (corner(0).x != corner(1).x || corner(1).x != corner(2).x || corner(0).x < 0) continue;
+    // Two triangles a, b, c and a, c, d become b, c, d and b, d, a.
+    const std::uint32_t a = mixed.index[t], b = mixed.index[t + 1], c = mixed.index[t + 2], e = mixed.index[t + 5];
+    const std::array<std::uint32_t, 6> other{b, c, e, b, e, a};
+    std::copy(other.begin(), other.end(), mixed.index.begin() + static_cast<std::ptrdiff_t>(t));
+  }
+  struct Part {
+    dvec3 at, scale;
+  };
+  const double half = kSize / 2;
+  for (const Primitive* const part : std::initializer_list<const Primitive*>{&plain, &mixed})
+    for (const int kind : {2, 3, 4})
+      for (const bool one_node : {true, false})
+        for (const double crack : {0.0, 1e-9, 1e-6, 1e-5, 4e-5}) {
+          const double far = half + crack / 2;
+          std::vector<Part> parts;
+          if (kind == 2) parts = {{{-far, 0, 0}, dvec3(1)}, {{far, 0, 0}, dvec3(1)}};
+          if (kind == 3) parts = {{{-far, 0, 0}, {1, 1, 2}}, {{far, 0, -far}, dvec3(1)}, {{far, 0, far}, dvec3(1)}};
+          if (kind == 4)
+            parts = {{{-far, 0, -far}, dvec3(1)},
+                     {{-far, 0, far}, dvec3(1)},
+                     {{far, 0, -far}, dvec3(1)},
+                     {{far, 0, far}, dvec3(1)}};
+          for (const double radius : {0.0, 0.004})
+            for (const dvec3& way : {dvec3(0.012, 0, 0), dvec3(0.0071, 0, 0.0097), dvec3(0, 0, 0.012)}) {
+              Stage stage;
+              Primitive all;
+              for (const Part& at : parts) {
+                Primitive one = *part;
+                for (vec3& p : one.position) p = vec3(dvec3(p) * at.scale + at.at);
+                if (!one_node) stage.add(one, d);
+                const auto first = static_cast<std::uint32_t>(all.position.size());
+                all.position.insert(all.position.end(), one.position.begin(), one.position.end());
+                for (const std::uint32_t v : one.index) all.index.push_back(first + v);
+              }
+              if (one_node) stage.add(all, d);
+              const Entity probe = stage.add_probe({0, radius + 0.005, 0}, radius);
+              stage.prepare();
+              stage.move(probe, {0, radius - kDeep, 0}, 0.25);
+              const std::string what = std::to_string(kind) + " parts, one node " + std::to_string(one_node) +
+                                       ", crack " + std::to_string(crack * 1e6) + " um, radius " +
+                                       std::to_string(radius) + ", mixed " + std::to_string(part == &mixed) +
+                                       ", way z " + std::to_string(way.z);
+              double off = length(raw_force(stage, probe) - dvec3(0, whole, 0));
+              for (const double to : {1.0, -1.0})
+                stage.move(probe, to * way + dvec3(0, radius - kDeep, 0), 0.3, [&](const ProbeReading&) {
+                  off = std::max(off, length(raw_force(stage, probe) - dvec3(0, whole, 0)));
+                });
+              EXPECT_LT(off, (0.005 + 2 * crack / kDeep) * whole) << what;
+              stage.move(probe, -way + dvec3(0, radius + 0.001, 0), 0.2);
+              EXPECT_EQ(raw_force(stage, probe), dvec3(0)) << what << " lifted";
+            }
         }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/touch/collide/around_vertex.h"
+#include "systems/touch/collide/seams.h"
 #include "systems/touch/collide/section.h"
 
 namespace pliant {
@@ -150,7 +151,8 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
     nearest_creases(object, mesh, own, x, kCreaseReach * -own.height, farthest, creases, near);
   }
   std::uint32_t count = 1;
-  const double same = kSameContact * static_cast<double>(mesh.mean_edge);
+  // A foot over a crack is beside that on its edge.
+  const double same = object.closed.empty() ? kSameContact * static_cast<double>(mesh.mean_edge) : crack_of(mesh);
   std::array<std::uint32_t, kMostCreases> started;
   std::size_t starts = 0;
   for (std::size_t i = 0; i < near; ++i) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/touch/collide/capsule.h"
+#include "systems/touch/collide/inner_walls.h"
 #include "systems/touch/collide/over_seams.h"
 #include "systems/touch/collide/seams.h"
 #include "systems/touch/collide/surface_query.h"
@@ -62,7 +63,7 @@ void find_walls(const ContactSearch& s, const ProbeTip& tip, dvec3 x, double wit
           }
           if (!lowest) continue;
           const Foot foot = s.downhill(t, at.barycentric, x);
-          if (!(foot.height >= 0) || foot.height > within) continue;
+          if (!(foot.height >= 0) || foot.height > within || is_inner_wall(s.object, foot.triangle)) continue;
           if (meets_seam(s.object, s.mesh, foot) && (!faces(s.mesh, foot) || !bears_between(s, tip, foot, x))) continue;
           const auto is_same = [&](const Foot& f) { return length(f.p - foot.p) < same; };
           if (std::none_of(feet.begin(), feet.begin() + static_cast<std::ptrdiff_t>(count), is_same))
@@ -114,7 +115,8 @@ EntryPlace entry_place(const ContactSearch& s, const ProbeTip& tip, dvec3 from, 
     const dvec3 x = from + entry.fraction * (to - from);
     const uvec3 t = s.mesh.triangles[entry.triangle];
     const dvec3 a(s.mesh.position(t.x)), b(s.mesh.position(t.y)), c(s.mesh.position(t.z));
-    if (!pressed_through(s, tip, x, cross(b - a, c - a))) return {entry.triangle, entry.barycentric, x};
+    if (!is_inner_wall(s.object, entry.triangle) && !pressed_through(s, tip, x, cross(b - a, c - a)))
+      return {entry.triangle, entry.barycentric, x};
     from = x + along;
   }
   return {};

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "systems/touch/collide/around_vertex.h"
+#include "systems/touch/collide/inner_walls.h"
 #include "systems/touch/collide/seams.h"
 #include "systems/touch/collide/triangle_tree.h"
 
@@ -18,12 +19,6 @@ int corner_under(const Foot& foot) {
   for (int corner = 0; corner < 3; ++corner)
     if (foot.barycentric[corner] > kAtCorner) return corner;
   return -1;
-}
-
-dvec3 normal_of(const Mesh& mesh, std::uint32_t triangle) {
-  const uvec3 corner = mesh.triangles[triangle];
-  const dvec3 a(mesh.position(corner.x));
-  return normalize(cross(dvec3(mesh.position(corner.y)) - a, dvec3(mesh.position(corner.z)) - a));
 }
 
 }  // namespace
@@ -66,7 +61,7 @@ struct SideList {
     const dvec3 there = slot == own ? x : s.world.registry.get<Pose>(other.entity).to_local(world);
     const Foot far =
         descend(on, triangle, closest_on_triangle(on, triangle, there).barycentric, there, true, other.closed);
-    if (!is_covered(other, far)) add(slot, far);
+    if (!is_covered(other, far) && !is_inner_wall(other, far.triangle)) add(slot, far);
   }
   void add(std::uint32_t slot, const Foot& foot) {
     const auto is_same = [&](const SideFoot& side) {
@@ -108,17 +103,17 @@ std::size_t feet_over_seams(const ContactSearch& s, const Foot& foot, dvec3 x, S
 
 bool past_seam(const ContactSearch& s, const Foot& foot, dvec3 x) {
   if (foot.height >= 0 || !meets_seam(s.object, s.mesh, foot)) return false;
-  const dvec3 n = normal_of(s.mesh, foot.triangle), way = x - foot.p;
+  const dvec3 n = facet_normal(s.mesh, foot.triangle), way = x - foot.p;
   return length(way - dot(way, n) * n) > crack_of(s.mesh);
 }
 
 bool faces(const Mesh& mesh, const Foot& foot) {
   constexpr double kFaces = 0.5;  // [1] cosine
-  return dot(normal_of(mesh, foot.triangle), foot.normal) > kFaces;
+  return dot(facet_normal(mesh, foot.triangle), foot.normal) > kFaces;
 }
 
 Foot foot_over_crack(const Mesh& mesh, Foot foot, dvec3 x) {
-  const dvec3 n = normal_of(mesh, foot.triangle);
+  const dvec3 n = facet_normal(mesh, foot.triangle);
   const double height = dot(x - foot.p, n);
   if (length(x - foot.p - height * n) > crack_of(mesh)) return foot;  // past the end of the seam
   foot.height = height;
@@ -135,14 +130,12 @@ Foot foot_over_seam(const ContactSearch& s, const Foot& foot, dvec3 x) {
   Sides sides;
   const std::size_t count = feet_over_seams(s, foot, x, sides);
   std::size_t best = 0;
-  bool between = count > 1;
   for (std::size_t i = 1; i < count; ++i) {
-    between = between && sides[i].at_seam;
     if (sides[i].object != sides[0].object || (sides[i].foot.height < 0) != (foot.height < 0)) continue;
     const bool nearer = std::abs(sides[i].foot.height) < std::abs(sides[best].foot.height);
     if (sides[best].at_seam != sides[i].at_seam ? sides[best].at_seam : nearer) best = i;
   }
-  return between ? foot_over_crack(s.mesh, sides[best].foot, x) : sides[best].foot;
+  return count > 1 && sides[best].at_seam ? foot_over_crack(s.mesh, sides[best].foot, x) : sides[best].foot;
 }
 
 namespace {

@@ -25,8 +25,9 @@ bool meets_seam(const ObjectState& object, const Mesh& mesh, const Foot& foot);
 // `foot` itself. Returns their number; 1: it is at no seam.
 std::size_t feet_over_seams(const ContactSearch& s, const Foot& foot, dvec3 x, Sides& sides);
 
-// The foot of x on the side of the same mesh that has it inside. Over a crack, where none has: the nearest side's, with
-// the plane of its triangle instead of the edge, so that the force is along its normal. Elsewhere `foot`.
+// The foot of x on the side of the same mesh that has it inside. Where none has, over a crack or past a seam by no more
+// than a crack: the nearest side's, with the plane of its triangle instead of the edge, so that the force is along its
+// normal. Elsewhere `foot`.
 Foot foot_over_seam(const ContactSearch& s, const Foot& foot, dvec3 x);
 // The same of a foot that is known to be over a crack, as far as a crack is wide.
 Foot foot_over_crack(const Mesh& mesh, Foot foot, dvec3 x);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "systems/touch/collide/inner_walls.h"
 #include "systems/touch/collide/triangle_tree.h"
 #include "systems/touch/prepare/prepare.h"
 
@@ -18,12 +19,6 @@ constexpr double kAlongSeam = 0.76;  // [1] cosine of 40 degrees: largest angle 
 struct SeamPlace {
   dvec3 p, normal;  // world
 };
-
-dvec3 facet_normal(const Mesh& mesh, std::uint32_t t) {
-  const uvec3 c = mesh.triangles[t];
-  const dvec3 a(mesh.position(c.x));
-  return normalize(cross(dvec3(mesh.position(c.y)) - a, dvec3(mesh.position(c.z)) - a));
-}
 
 // The triangle of `mesh` that passes within `within` of p, faces like p's surface and satisfies `may_be`, or kBorder.
 template <class MayBe>
@@ -51,6 +46,7 @@ bool is_closed(const TouchState& touch, std::uint32_t bond) {
 void list_closed(const TouchState& touch, ObjectState& object) {
   object.seams.clear();
   object.closed.clear();
+  object.inner_walls.clear();
   object.seam_zones.clear();
   object.neighbours.clear();
   for (const Seam& seam : object.found.seams) {
@@ -62,6 +58,9 @@ void list_closed(const TouchState& touch, ObjectState& object) {
   for (const SeamsFound::ClosedEdge& edge : object.found.closed)
     if (is_closed(touch, edge.bond) && (object.closed.empty() || object.closed.back() != edge.edge))
       object.closed.push_back(edge.edge);
+  for (const SeamsFound::InnerWall& wall : object.found.inner_walls)
+    if (is_closed(touch, wall.bond) && (object.inner_walls.empty() || object.inner_walls.back() != wall.triangle))
+      object.inner_walls.push_back(wall.triangle);
   for (const SeamsFound::Zones& zones : object.found.zones)
     if (is_closed(touch, zones.bond) && (object.seam_zones.empty() || object.seam_zones.back() != zones.zones))
       object.seam_zones.push_back(zones.zones);
@@ -93,10 +92,6 @@ double farthest_move(const Box& box, const Pose& from, const Pose& to) {
   return farthest;
 }
 
-const Mesh& mesh_of(const World& world, const ObjectState& object) {
-  return world.meshes[world.registry.get<Deformable>(object.entity).mesh];
-}
-
 Pose relative_pose(const World& world, const TouchState& touch, std::uint32_t first, std::uint32_t second) {
   return relative_pose(world.registry.get<Pose>(touch.objects[first].entity),
                        world.registry.get<Pose>(touch.objects[second].entity));
@@ -104,7 +99,7 @@ Pose relative_pose(const World& world, const TouchState& touch, std::uint32_t fi
 
 bool is_at(const World& world, const TouchState& touch, const Bond& bond) {
   const Pose now = relative_pose(world, touch, bond.first, bond.second);
-  return farthest_move(mesh_of(world, touch.objects[bond.second]).box, bond.relative, now) <= bond.slack;
+  return farthest_move(touch_mesh(world, touch.objects[bond.second]).box, bond.relative, now) <= bond.slack;
 }
 
 // Index of the bond of two objects at their current relative pose, among the first `among`; Seam::kCrack if none.
@@ -119,10 +114,9 @@ std::uint32_t bond_of(const World& world, const TouchState& touch, std::uint32_t
 std::uint32_t add_bond(const World& world, TouchState& touch, std::uint32_t here, std::uint32_t there) {
   const std::uint32_t first = std::min(here, there), second = std::max(here, there);
   const auto bond = static_cast<std::uint32_t>(touch.bonds.size());
-  const float edge =
-      std::max(mesh_of(world, touch.objects[first]).mean_edge, mesh_of(world, touch.objects[second]).mean_edge);
-  touch.bonds.push_back(
-      {first, second, relative_pose(world, touch, first, second), kCrack * static_cast<double>(edge)});
+  const double slack = 0.5 * std::max(crack_of(touch_mesh(world, touch.objects[first])),
+                                      crack_of(touch_mesh(world, touch.objects[second])));
+  touch.bonds.push_back({first, second, relative_pose(world, touch, first, second), slack});
   touch.objects[first].found.bonds.push_back(bond);
   touch.objects[second].found.bonds.push_back(bond);
   return bond;
@@ -156,9 +150,9 @@ std::vector<std::uint32_t> parts_of(const Mesh& mesh) {
 void find_seams_of(const World& world, TouchState& touch, std::uint32_t i, std::size_t known, bool cracks) {
   const Registry& registry = world.registry;
   ObjectState& object = touch.objects[i];
-  const Mesh& mesh = mesh_of(world, object);
+  const Mesh& mesh = touch_mesh(world, object);
   const Pose& pose = registry.get<Pose>(object.entity);
-  const double crack = kCrack * static_cast<double>(mesh.mean_edge);  // search distance beyond an edge
+  const double crack = 0.5 * crack_of(mesh);  // search distance beyond an edge
   Box around = object.world_box;
   around.min -= vec3(static_cast<float>(2 * crack));
   around.max += vec3(static_cast<float>(2 * crack));
@@ -184,7 +178,7 @@ void find_seams_of(const World& world, TouchState& touch, std::uint32_t i, std::
         const vec3 out = glm::max(glm::max(box.min - p, p - box.max), vec3(0));
         if (length(out) > static_cast<float>(2 * crack)) continue;
         const std::uint32_t on =
-            goes_on(mesh_of(world, touch.objects[j]), registry.get<Pose>(touch.objects[j].entity), at, kOff * crack,
+            goes_on(touch_mesh(world, touch.objects[j]), registry.get<Pose>(touch.objects[j].entity), at, kOff * crack,
                     [&](std::uint32_t other) { return j != i || (border ? other != t : part[other] != part[t]); });
         if (on == kBorder) continue;
         std::uint32_t bond = Seam::kCrack;
@@ -223,7 +217,7 @@ void sort_unique(std::vector<Value>& values) {
 // zone, in both directions.
 void find_closed_edges_and_zones(const World& world, TouchState& touch, std::uint32_t i) {
   ObjectState& object = touch.objects[i];
-  const Mesh& mesh = mesh_of(world, object);
+  const Mesh& mesh = touch_mesh(world, object);
   const auto ends = [&](std::uint32_t key) {
     const uvec3 corner = mesh.triangles[key / 3];
     const vec3 a = mesh.position(corner[static_cast<int>(key % 3)]),
@@ -245,7 +239,7 @@ void find_closed_edges_and_zones(const World& world, TouchState& touch, std::uin
       for (std::uint32_t e = 0; e < 3; ++e)
         if (mesh.across[next][static_cast<int>(e)] == t) object.found.closed.push_back({3 * next + e, seam.bond});
     const uvec3 here = mesh.triangles[t];
-    const uvec3 there = mesh_of(world, touch.objects[seam.object]).triangles[seam.triangle];
+    const uvec3 there = touch_mesh(world, touch.objects[seam.object]).triangles[seam.triangle];
     for (int k = 0; k < 3; ++k)
       for (int l = 0; l < 3; ++l) {
         const std::uint32_t zone = here[k] / kZoneSize, other = there[l] / kZoneSize;
@@ -263,8 +257,19 @@ void find_closed_edges_and_zones(const World& world, TouchState& touch, std::uin
 
 }  // namespace
 
+dvec3 facet_normal(const Mesh& mesh, std::uint32_t t) {
+  const uvec3 c = mesh.triangles[t];
+  const dvec3 a(mesh.position(c.x));
+  return normalize(cross(dvec3(mesh.position(c.y)) - a, dvec3(mesh.position(c.z)) - a));
+}
+
+const Mesh& touch_mesh(const World& world, const ObjectState& object) {
+  return world.meshes[world.registry.get<Deformable>(object.entity).mesh];
+}
+
 double crack_of(const Mesh& mesh) {
-  return 2 * kCrack * static_cast<double>(mesh.mean_edge);
+  constexpr double kMost = 0.2;  // [1] of the refined mesh's mean edge: its triangles resolve that
+  return 2 * std::min(kCrack * static_cast<double>(mesh.file_edge), kMost * static_cast<double>(mesh.mean_edge));
 }
 
 Pose relative_pose(const Pose& first, const Pose& second) {
@@ -325,13 +330,16 @@ void find_seams(World& world, TouchState& touch) {
       renew_box(world, touch, static_cast<std::uint32_t>(touch.moving[n].object));
     }
 
-  for (std::uint32_t i = 0; i < count; ++i) find_closed_edges_and_zones(world, touch, i);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    find_closed_edges_and_zones(world, touch, i);
+    find_inner_walls(world, touch, i);
+  }
   for (ObjectState& object : touch.objects) {
     std::stable_sort(object.found.seams.begin(), object.found.seams.end(),
                      [](const Seam& a, const Seam& b) { return a.edge < b.edge; });
     sort_unique(object.found.zones);
-    object.found.boxes.build(boxes_of(mesh_of(world, object), object.found.seams));
-    if (!object.found.seams.empty()) touch.crack = std::max(touch.crack, crack_of(mesh_of(world, object)));
+    object.found.boxes.build(boxes_of(touch_mesh(world, object), object.found.seams));
+    if (!object.found.seams.empty()) touch.crack = std::max(touch.crack, crack_of(touch_mesh(world, object)));
     list_closed(touch, object);  // all: this is the room that the lists need
   }
   for (std::uint32_t i = 0; i < count; ++i) list_joined(touch, i);

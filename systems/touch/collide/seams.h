@@ -8,11 +8,16 @@
 
 namespace pliant {
 
-// A crack narrower than this share of the mesh's mean edge is ignored (as is one a third wider). [1]
+// A crack narrower than this share of the mean edge in the file is ignored (as is one a third wider). [1]
 inline constexpr double kCrack = 0.02;
 
 // [m] Twice that: no crack that is ignored is wider.
 double crack_of(const Mesh& mesh);
+
+// Of a triangle, outwards. [1]
+dvec3 facet_normal(const Mesh& mesh, std::uint32_t triangle);
+// Of an object's surface.
+const Mesh& touch_mesh(const World& world, const ObjectState& object);
 
 // The seams under a foot: of a vertex, up to two. Null: none.
 std::array<const Seam*, 3> seams_at(const ObjectState& object, const Foot& foot);

@@ -134,15 +134,20 @@ struct SeamsFound {
     std::uint32_t edge = 0, bond = 0;
     auto operator<=>(const ClosedEdge&) const = default;
   };
+  struct InnerWall {
+    std::uint32_t triangle = 0, bond = 0;
+    auto operator<=>(const InnerWall&) const = default;
+  };
   struct Zones {
     SeamZones zones;
     std::uint32_t bond = 0;
     auto operator<=>(const Zones&) const = default;
   };
-  std::vector<Seam> seams;         // by edge, ascending
-  BoxTree boxes;                   // of `seams`, object frame, as wide as a crack
-  std::vector<ClosedEdge> closed;  // ascending
-  std::vector<Zones> zones;        // ascending
+  std::vector<Seam> seams;             // by edge, ascending
+  BoxTree boxes;                       // of `seams`, object frame, as wide as a crack
+  std::vector<ClosedEdge> closed;      // ascending
+  std::vector<InnerWall> inner_walls;  // ascending
+  std::vector<Zones> zones;            // ascending
   std::vector<std::uint32_t> bonds;
 };
 
@@ -168,6 +173,7 @@ struct ObjectState {
   std::vector<SeamZones> cracks;       // to zones of the same object
   std::vector<std::uint32_t> neighbours;    // objects beyond its seams, each once
   std::vector<std::uint32_t> closed;        // edges of seams, from both sides, ascending: no foot crosses them
+  std::vector<std::uint32_t> inner_walls;   // triangles that are covered (inner_walls.h), ascending: no contact begins
   BoxTree crease_boxes;                     // of `creases`, object frame
   std::vector<std::uint32_t> creases;       // convex ones, from both sides: 3 * triangle + edge
   Texture texture;                          // roughness; no waves: none
@@ -198,8 +204,8 @@ struct ObjectState {
 struct ProbeState {
   Entity entity;
   SafetyState safety, torque_safety;
-  double lever = 0.0;       // [m] farthest that a tip is from its place
-  dvec3 turned{0};          // [rad] sum of the small rotations
+  double lever = 0.0;  // [m] farthest that a tip is from its place
+  dvec3 turned{0};     // [rad] sum of the small rotations
   std::vector<Tip> tips;
   std::uint32_t first_tip = 0;  // index of its first tip in ObjectState::searched
 };
