@@ -12,16 +12,16 @@
 
 #include "components/math.h"
 #include "components/range.h"
+#include "pliant/parameters.h"
 #include "runtime/store.h"
 
 namespace pliant {
 
-struct Path;
-
-// EFFECT(enumerator, word, tips, reads): a kind is one line here and effect_<word> in systems/effects/<word>.cpp.
+// EFFECT(enumerator, word, tips, reads): a kind is one line here and in EffectKind, and effect_<word> in
+// systems/effects/<word>.cpp.
 //   tips   of a probe with several: kMean, its energy is the mean over them; kParts, each part stands for itself, a
 //          capsule with its deepest sphere
-//   reads  keys of PLIANT_effect beside `kind`
+//   reads  keys of PLIANT_effect beside `kind` and `probes`
 #define PLIANT_EFFECTS(EFFECT)                                                 \
   EFFECT(kViscosity, viscosity, kMean, "region radius box edge damping")       \
   EFFECT(kGravity, gravity, kMean, "region radius box edge force")             \
@@ -29,12 +29,6 @@ struct Path;
   EFFECT(kGuidance, guidance, kMean, "path stiffness range")                   \
   EFFECT(kForbidden, forbidden, kParts, "region radius box stiffness")         \
   EFFECT(kDetents, detents, kMean, "region radius box edge detents spacing count peak")
-
-enum class EffectKind : std::uint8_t {
-#define PLIANT_ENUMERATOR(enumerator, word, tips, reads) enumerator,
-  PLIANT_EFFECTS(PLIANT_ENUMERATOR)
-#undef PLIANT_ENUMERATOR
-};
 
 enum class EffectTips : std::uint8_t { kMean, kParts };
 
@@ -48,6 +42,16 @@ inline constexpr EffectRow kEffectRows[] = {
     PLIANT_EFFECTS(PLIANT_ROW)
 #undef PLIANT_ROW
 };
+inline constexpr EffectKind kEffectKinds[] = {
+#define PLIANT_ENUMERATOR(enumerator, word, tips, reads) EffectKind::enumerator,
+    PLIANT_EFFECTS(PLIANT_ENUMERATOR)
+#undef PLIANT_ENUMERATOR
+};
+static_assert([] {
+  for (std::size_t i = 0; i < std::size(kEffectKinds); ++i)
+    if (static_cast<std::size_t>(kEffectKinds[i]) != i) return false;
+  return true;
+}());
 
 constexpr const EffectRow& row_of(EffectKind kind) {
   return kEffectRows[static_cast<std::size_t>(kind)];
@@ -64,45 +68,45 @@ constexpr bool reads_key(EffectKind kind, std::string_view key) {
   return false;
 }
 
-enum class EffectRegion : std::uint8_t {
-  kEverywhere,
-  kSphere,     // of `radius` around the node
-  kBox,        // `box`, in the node's frame
-  kHalfSpace,  // below the plane through the node, whose normal is the node's +Y
-};
-
-enum class EffectTarget : std::uint8_t {
-  kPoint,    // the node
-  kSegment,  // of `length`, from the node along its +Y
-  kPlane,    // the node's XZ plane, of `size` around the node
-};
-
-enum class DetentAxis : std::uint8_t { kAlong, kAround };  // the node's +Y
-
-// All in the node's frame, whose scale does not count.
-struct EffectParameters {
-  EffectKind kind = EffectKind::kAttraction;
-  EffectRegion region = EffectRegion::kSphere;
-  double radius = 0.05;                        // [m] of the sphere
-  Box box;                                     // [m] of the box
-  double edge = 0.01;                          // [m] inside of the region's border, in which the effect comes in
-  double damping = 2.0;                        // [N s/m] viscosity
-  dvec3 force{0, -1, 0};                       // [N] gravity
-  EffectTarget target = EffectTarget::kPoint;  // attraction
-  double length = 0.1;                         // [m] of the segment
-  std::array<double, 2> size{0, 0};            // [m] of the plane along X and Z; 0: without end
-  double stiffness = 200.0;                    // [N/m] attraction, guidance: at the target; forbidden: of the penalty
-  double range = 0.02;                         // [m] attraction, guidance: no force beyond
-  std::string path;                            // guidance: CSV of points, in the node's frame, relative to the level
-  DetentAxis detents = DetentAxis::kAlong;
-  double spacing = 0.01;  // [m] of detents along the axis
-  double count = 12.0;    // [1] of detents around the axis, per turn; a whole number
-  double peak = 0.5;      // [N] largest force along the detents
-};
-
-// Rate: never changes. Writer: content at spawn. Its node has a Pose, and moves as other kinematic objects do.
+// Rate: between ticks. Writer: content at spawn, Session::set. Its node has a Pose, and moves as other kinematic
+// objects do.
 struct Effect : EffectParameters {
   Handle<Path> points;  // guidance: its rows' positions, at least two different ones
+};
+
+// The parameters that may change between two ticks.
+struct EffectSetting {
+  double radius, edge, damping;
+  dvec3 force;
+  double length;
+  std::array<double, 2> size;
+  double stiffness, range, spacing, count, peak;
+
+  explicit EffectSetting(const EffectParameters& from)
+      : radius(from.radius),
+        edge(from.edge),
+        damping(from.damping),
+        force(from.force),
+        length(from.length),
+        size(from.size),
+        stiffness(from.stiffness),
+        range(from.range),
+        spacing(from.spacing),
+        count(from.count),
+        peak(from.peak) {}
+  void to(EffectParameters& effect) const {
+    effect.radius = radius;
+    effect.edge = edge;
+    effect.damping = damping;
+    effect.force = force;
+    effect.length = length;
+    effect.size = size;
+    effect.stiffness = stiffness;
+    effect.range = range;
+    effect.spacing = spacing;
+    effect.count = count;
+    effect.peak = peak;
+  }
 };
 
 // Bounds of the parameters, in a file and in code.

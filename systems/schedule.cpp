@@ -15,6 +15,7 @@
 #include "systems/touch/model/force_field.h"
 #include "systems/touch/model/friction_feedback.h"
 #include "systems/touch/prepare/move_objects.h"
+#include "systems/touch/prepare/vary_surfaces.h"
 
 namespace pliant {
 
@@ -23,6 +24,7 @@ std::vector<System<World>> touch_schedule() {
   return {
       {"read_devices", read_devices},            // HapticDevice -> Probe pose and velocity
       {"move_objects", move_objects},            // Kinematic -> Pose, velocity and box of animated and scripted nodes
+      {"vary_surfaces", vary_surfaces},          // Varying -> Deformable: keys that an animation varies
       {"collision", collision},                  // Probe x Deformable -> Contacts {foot, normal, height}
       {"press", press},                          // tissue of tools x Deformable -> Contact
       {"force_field", force_field},              // Contacts -> amplitudes (small LCP); wakes the zones within reach

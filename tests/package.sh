@@ -188,6 +188,11 @@ run=$work/examples/build
 said=$("$run/hello_touch")
 echo "$said"
 echo "$said" | tail -1 | grep -q 'force 1.200 N' || fail "300 N/m times 4 mm is 1.2 N"
+said=$("$run/effects")
+echo "$said"
+echo "$said" | grep -q 'magnet: finger -0.879 N, thumb 0.000 N' || fail "200 N/m * 5 mm * (1 - 1/16)^2 is 0.879 N"
+echo "$said" | grep -q 'finger -1.758 N' || fail "twice the stiffness is twice the force"
+echo "$said" | grep -q 'texture 0.0 mm: the force is 0.600 to 0.600 N' || fail "300 N/m times 2 mm is 0.6 N"
 said=$("$run/own_device")
 echo "$said"
 echo "$said" | grep -q 'closed; the last force was 0.000 N' || fail "the last force must be zero"

@@ -20,8 +20,8 @@ Effect effect_of(EffectKind kind) {
   return effect;
 }
 
-Box box_of(dvec3 half) {
-  return {vec3(-half), vec3(half)};
+DBox box_of(dvec3 half) {
+  return {-half, half};
 }
 
 LevelNode& add_effect(Level& level, const std::string& name, dvec3 at, const Effect& effect, dvec3 turn = dvec3(0)) {
@@ -59,8 +59,7 @@ Path fields_rail() {
 Level fields_level() {
   Level level;
   level.name = "fields";
-  level.about =
-      "Felt in the air: drag, a magnet, weight, a forbidden ball, detents, a rail; a soft board below.";
+  level.about = "Felt in the air: drag, a magnet, weight, a forbidden ball, detents, a rail; a soft board below.";
   LevelNode& board = add_shape(level, "board", rounded_box({0.21, 0.01, 0.065}, 0.006), around({0.22, 0.02, 0.075}),
                                0.0045, add_material(level, "wood", {0.50f, 0.30f, 0.14f}, 0.5f));
   board.deformable = Deformable{};

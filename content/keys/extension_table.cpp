@@ -110,6 +110,21 @@ Key box(std::string name, Access access, std::string doc) {
       });
 }
 
+Key double_box(std::string name, DBox Effect::*member, std::string doc) {
+  const auto corner = [](dvec3 p) { return Json::array({p.x, p.y, p.z}); };
+  const auto point = [](const Json& json) {
+    return dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
+  };
+  return key(
+      std::move(name), "m", KeyType::kBox, std::move(doc), at(&LevelNode::effect, member),
+      [corner](const DBox& value) {
+        return value.empty() ? Json() : Json{{"min", corner(value.min)}, {"max", corner(value.max)}};
+      },
+      [point](const Json& json) {
+        return json.is_null() ? DBox{} : DBox{point(json["min"]), point(json["max"])};
+      });
+}
+
 std::vector<Key> deformable_keys() {
   using D = Deformable;
   using R = DeformableRange;
@@ -185,7 +200,8 @@ std::vector<Key> deformable_keys() {
   keys.push_back(number("texture.wavelength", "m", {R::kTextureWavelength, {1e-4, 0.05}}, d(&D::texture_wavelength),
                         "length of its waves"));
   keys.push_back(number("texture.seed", "1", R::kTextureSeed, d(&D::texture_seed),
-                        "another number: another roughness of the same kind"));
+                        "a whole number; another one: another roughness of the same kind"));
+  keys.back().whole = true;
   keys.push_back(number("transient.amplitude", "N s/m", {R::kTransientAmplitude, {0.1, 100.0}},
                         d(&D::transient_amplitude), "force of the knock of an impact, per its speed; 0: none"));
   keys.push_back(number("transient.frequency", "Hz", {R::kTransientFrequency, {20.0, 400.0}},
@@ -407,12 +423,17 @@ std::vector<Key> effect_keys() {
   using R = EffectRange;
   const auto e = [](auto member) { return at(&LevelNode::effect, member); };
   std::vector<Key> keys;
-  keys.push_back(choice("kind", e(&E::kind), "what it does to every probe"));
+  keys.push_back(choice("kind", e(&E::kind), "what it does to a probe"));
+  keys.push_back(key(
+      "probes", "", KeyType::kNames,
+      fmt::format("names of the probes that feel it, at most {}; left out: every probe", kMostNames), e(&E::probes),
+      [](const std::vector<std::string>& names) { return names; },
+      [](const Json& json) { return json.get<std::vector<std::string>>(); }));
   keys.push_back(choice("region", e(&E::region),
                         "where it acts: a sphere around the node, `box`, or below the plane through the node across "
                         "its +Y"));
   keys.push_back(number("radius", "m", {R::kWidth, {1e-3, 1.0}}, e(&E::radius), "radius of the sphere"));
-  keys.push_back(box("box", e(&E::box), "the box, in the node's frame"));
+  keys.push_back(double_box("box", &E::box, "the box, in the node's frame"));
   keys.push_back(number("edge", "m", {R::kWidth, {1e-3, 0.1}}, e(&E::edge),
                         "depth below the region's border over which the effect comes in, at most to its middle; around "
                         "the axis of detents the radius within which they fade"));
@@ -447,6 +468,7 @@ std::vector<Key> effect_keys() {
   keys.push_back(number("spacing", "m", {R::kWidth, {1e-4, 0.1}}, e(&E::spacing), "of detents along"));
   keys.push_back(
       number("count", "1", {R::kCount, {2.0, 100.0}}, e(&E::count), "of detents around, in a turn: a whole number"));
+  keys.back().whole = true;
   keys.push_back(number("peak", "N", {R::kPeak, {0.05, 5.0}}, e(&E::peak), "largest force from a detent to the next"));
   return keys;
 }

@@ -11,9 +11,23 @@
 
 namespace pliant {
 
-enum class KeyType { kNumber, kFlag, kText, kChoice, kColor, kPair, kVector, kPoints, kBox, kNode, kNumberOrMaterial };
+enum class KeyType {
+  kNumber,
+  kFlag,
+  kText,
+  kChoice,
+  kColor,
+  kPair,
+  kVector,
+  kPoints,
+  kBox,
+  kNode,
+  kNames,
+  kNumberOrMaterial
+};
 
 inline constexpr std::size_t kMostPoints = 16;  // of a key of type kPoints
+inline constexpr std::size_t kMostNames = 64;   // of a key of type kNames
 
 // One key. The owner, passed as void*, is a LevelNode (node extensions) or Level (scene extensions).
 struct Key {
@@ -25,6 +39,7 @@ struct Key {
   std::vector<std::string> (*choices)() = nullptr;  // of a choice: its words, including registered ones
   std::string doc;
   bool alias = false;  // sets other keys; never saved
+  bool whole = false;  // a number without a fraction
   std::function<Json(const void*)> get;
   std::function<void(void*, const Json&)> set;  // requires a checked value
 };

@@ -78,6 +78,8 @@ std::optional<Note> check_value(const Key& key, const Json& value) {
   };
   const auto number = [&] {
     const double it = value.get<double>();
+    if (key.whole && key.range.holds(it) && it != std::floor(it))
+      return fault("must be a whole number; got " + value.dump());
     if (key.range.holds(it)) return fine;
     return fault(fmt::format("must be in the range {}{}; got {}", range_text(key),
                              key.unit.empty() || key.unit == "1" ? "" : " " + key.unit, value.dump()),
@@ -117,6 +119,12 @@ std::optional<Note> check_value(const Key& key, const Json& value) {
           value.is_array() && value.size() <= kMostPoints &&
           std::all_of(value.begin(), value.end(), [&](const Json& each) { return numbers(each, 3, key.range); });
       return good ? fine : must_be(fmt::format("a list of at most {} points [x, y, z]", kMostPoints));
+    }
+    case KeyType::kNames: {
+      const bool good =
+          value.is_array() && value.size() <= kMostNames &&
+          std::all_of(value.begin(), value.end(), [](const Json& each) { return each.is_string() && each != ""; });
+      return good ? fine : must_be(fmt::format("a list of at most {} names", kMostNames));
     }
     case KeyType::kBox: {
       const Range any{-1e6, 1e6};

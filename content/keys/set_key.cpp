@@ -131,7 +131,7 @@ Status set_one(Level& level, const std::string& assignment, std::vector<Touched>
     return Error{where, "names the node '" + it.node + "', which the level does not have", near.empty() ? hint : near,
                  "name.unknown"};
   if (!done) return Error{where, "names a node without PLIANT_" + it.extension, hint, "name.unknown"};
-  if (key->type == KeyType::kNode)
+  if (key->type == KeyType::kNode || key->type == KeyType::kNames)
     if (const Status status = check_references(level); !status) return status.error().at(where);
   return Done{};
 }

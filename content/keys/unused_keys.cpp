@@ -130,7 +130,7 @@ const UnusedRow kRows[] = {
 
 // Keys of an effect that its kind, region, target or detents do not read.
 std::optional<UnusedWords> unused_of_effect(const Effect& effect, const std::string& key) {
-  if (key == "kind") return std::nullopt;
+  if (key == "kind" || key == "probes") return std::nullopt;
   if (!reads_key(effect.kind, key))
     return only_with("kind", kEffectRows, [&](std::size_t i) { return reads_key(static_cast<EffectKind>(i), key); });
   const auto needs = [](bool has, const char* what) -> std::optional<UnusedWords> {
@@ -172,6 +172,12 @@ void find_in_node(const Level& level, std::size_t n, std::vector<UnusedKey>& fou
       if (const auto words = unused_of_effect(*node.effect, key.name); words && is_set(extension, key, node))
         found.push_back({static_cast<std::int32_t>(n), "PLIANT_effect/" + key.name, words->what, words->cure});
   }
+  for (const char* each : {"friction_static", "friction_sliding"})
+    if (node.deformable && node.stated.contains("deformable.friction") &&
+        node.stated.contains(std::string("deformable.") + each))
+      found.push_back({static_cast<std::int32_t>(n), "PLIANT_deformable/friction",
+                       fmt::format("sets both coefficients, and `{}` is given too, which counts in a file", each),
+                       "remove one of them"});
   if (node.deformable && node.deformable->relief > 0.0 && !draws_relief(level, node))
     found.push_back({static_cast<std::int32_t>(n), "PLIANT_deformable/relief",
                      "is of normal and height maps, and no material of the mesh has one with texture coordinates",

@@ -72,6 +72,7 @@ struct LevelNode {
   std::optional<RigidBody> rigid_body;   // PLIANT_rigid_body
   std::optional<NodeMotion> motion;      // PLIANT_motion
   std::optional<Effect> effect;          // PLIANT_effect
+  Path effect_path;                      // of a program's effect that guides; no rows: the file effect->path
   std::int32_t source = -1;              // /nodes/i of Level::source; -1: new, for instance a copy
   std::set<std::string> stated;          // keys set by the file or --set, even to their default: deformable.shape
   double scaled_with_young = 1.0;        // [1] factor of the deformable's unstated constants in N/m and N/m3
@@ -79,12 +80,13 @@ struct LevelNode {
   bool has_pliant() const;  // any of the above
 };
 
-// Channels of an animation. Times in seconds from 0; values as in glTF, rotations as x, y, z, w.
-enum class NodeProperty : std::uint8_t { kTranslation, kRotation, kScale };
+// Channels of an animation. Times in seconds from 0; values as in glTF, rotations as x, y, z, w, numbers as x.
+enum class NodeProperty : std::uint8_t { kTranslation, kRotation, kScale, kKey };
 struct LevelChannel {
   std::int32_t node = -1;  // into Level::nodes
   NodeProperty property = NodeProperty::kTranslation;
   Track track;
+  std::string key;  // of kKey: of the node's PLIANT_deformable (content/level/varying_keys.h)
 };
 struct LevelAnimation {
   std::string name;

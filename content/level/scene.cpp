@@ -101,4 +101,12 @@ void Scene::add_probe(const std::string& name, const ProbeParameters& parameters
   level_->nodes.push_back(std::move(node));
 }
 
+void Scene::add_effect(const std::string& name, const EffectParameters& parameters, const Placement& placement,
+                       Path path) {
+  LevelNode node = placed(name, placement);
+  node.effect = made_of<Effect>(parameters);
+  node.effect_path = std::move(path);
+  level_->nodes.push_back(std::move(node));
+}
+
 }  // namespace pliant

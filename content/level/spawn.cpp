@@ -15,6 +15,7 @@
 #include "content/level/spawn_relief.h"
 #include "content/level/spawn_soft.h"
 #include "content/level/spawn_state.h"
+#include "content/level/spawn_varying.h"
 
 namespace pliant {
 namespace {
@@ -116,6 +117,7 @@ class Spawner {
       deformable.mesh = baked->touch;
       deformable.field = world_.fields.add({});
       if (deformable.reach <= 0.0) deformable.reach = default_reach(world_.meshes[deformable.mesh]);
+      if (Status s = add_varying(state_, n); !s) return s;
       state_.built.vertices += static_cast<double>(world_.meshes[deformable.mesh].vertex_count);
       // Refined meshes have more.
       if (Status s = state_.within(n, state_.budget.ask_vertices(state_.built.vertices)); !s) return s;

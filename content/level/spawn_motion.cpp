@@ -42,7 +42,7 @@ bool is_even(const dmat4& frame) {
 class MotionMaker {
  public:
   MotionMaker(const Level& level, const std::filesystem::path& folder, ScriptLibrary& scripts)
-      : level_(level), folder_(folder), scripts_(scripts), channels_(level.nodes.size()) {}
+      : level_(level), folder_(folder), scripts_(scripts), channels_(level.nodes.size()), varied_(level.nodes.size()) {}
 
   Result<LevelMotions> make() {
     const std::size_t count = level_.nodes.size();
@@ -52,7 +52,8 @@ class MotionMaker {
     for (const LevelNode& node : level_.nodes) out_.local.push_back(node.local);
     for (std::size_t a = 0; a < level_.animations.size(); ++a)
       for (const LevelChannel& channel : level_.animations[a].channels)
-        channels_[static_cast<std::size_t>(channel.node)].push_back({a, &channel});
+        (channel.property == NodeProperty::kKey ? varied_ : channels_)[static_cast<std::size_t>(channel.node)]
+            .push_back({a, &channel});
     look_below();
     for (std::size_t n = 0; n < count; ++n)
       if (Status s = node(n); !s) return s.error();
@@ -126,6 +127,8 @@ class MotionMaker {
         twice = true;
     }
     if (twice) note(n, "is moved by several animations: the first counts", "name one in PLIANT_motion/animation");
+    for (const Source& source : varied_[n])
+      found = found || asked.animation.empty() || level_.animations[source.animation].name == asked.animation;
     if (found) return Done{};
     if (!asked.animation.empty())
       return at(n,
@@ -195,6 +198,7 @@ class MotionMaker {
   const std::filesystem::path& folder_;
   ScriptLibrary& scripts_;
   std::vector<std::vector<Source>> channels_;  // of each node, in the order of the file
+  std::vector<std::vector<Source>> varied_;    // the same: of its keys (spawn_varying.h)
   std::vector<bool> touched_;
   bool something_is_pushed_ = false;
   std::string left_behind_;  // name of the first static node that is not carried by its moving parent

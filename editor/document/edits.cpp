@@ -22,11 +22,13 @@ std::optional<NodeChange> changing(const State& state, NodeId id) {
 void rename_references(State& state, const std::string from, const std::string to) {
   for (auto& each : state.nodes) {
     const LevelNode& node = each->node;
-    const bool probe = node.probe && node.probe_device == from, handle = node.handle && node.handle->device == from;
-    if (!probe && !handle) continue;
+    const bool probe = node.probe && node.probe_device == from, handle = node.handle && node.handle->device == from,
+               felt = node.effect && std::count(node.effect->probes.begin(), node.effect->probes.end(), from) > 0;
+    if (!probe && !handle && !felt) continue;
     auto changed = std::make_shared<DocumentNode>(*each);
     if (probe) changed->node.probe_device = to;
     if (handle) changed->node.handle->device = to;
+    if (felt) std::replace(changed->node.effect->probes.begin(), changed->node.effect->probes.end(), from, to);
     each = std::move(changed);
   }
 }
@@ -114,6 +116,8 @@ State add_copies(State next, const State& from, NodeIds ids, std::optional<NodeI
     auto copy = std::make_shared<DocumentNode>(*next.nodes[at]);
     follow(copy->node.probe_device);
     if (copy->node.handle) follow(copy->node.handle->device);
+    if (copy->node.effect)
+      for (std::string& probe : copy->node.effect->probes) follow(probe);
     next.nodes[at] = std::move(copy);
   }
   put_in_order(next);

@@ -67,6 +67,28 @@ bool node_field(Editor& editor, const Key& key, Json& value) {
   return true;
 }
 
+// One box per probe; none is ticked: all of them.
+bool names_field(Editor& editor, const Key& key, Json& value) {
+  std::vector<std::string> names =
+      value.is_array() ? value.get<std::vector<std::string>>() : std::vector<std::string>();
+  bool changed = false;
+  for (const auto& each : editor.state().nodes) {
+    if (!each->node.probe) continue;
+    const std::string& name = each->node.name;
+    bool on = std::find(names.begin(), names.end(), name) != names.end();
+    ImGui::PushID(name.c_str());
+    if (ImGui::Checkbox(name.c_str(), &on)) {
+      std::erase(names, name);
+      if (on) names.push_back(name);
+      changed = true;
+    }
+    ui::known_as(key.name + " " + name);
+    ImGui::PopID();
+  }
+  if (changed) value = names;
+  return changed;
+}
+
 // The key for the device's id: requests can be picked from a list.
 const Key* device_id_key() {
   static const Key* const key = find_key(*find_extension("haptic_device"), "id");
@@ -191,6 +213,9 @@ bool key_field(Editor& editor, const Key& key, Json& value) {
       break;
     case KeyType::kPoints:
       changed = points_field(key, value);
+      break;
+    case KeyType::kNames:
+      changed = names_field(editor, key, value);
       break;
     case KeyType::kBox:
       changed = box_field(key, value);

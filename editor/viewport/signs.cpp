@@ -142,7 +142,8 @@ void draw_effect(SignPen& pen, const Effect& effect, dvec3 at, const dmat3& turn
   const auto square = [&](double x, double z) { pen.box(frame, {vec3(dvec3(-x, 0, -z)), vec3(dvec3(x, 0, z))}); };
   if (reads_key(effect.kind, "region")) {
     if (effect.region == EffectRegion::kSphere) pen.sphere(at, turn, effect.radius);
-    if (effect.region == EffectRegion::kBox && !effect.box.empty()) pen.box(frame, effect.box);
+    if (effect.region == EffectRegion::kBox && !effect.box.empty())
+      pen.box(frame, {vec3(effect.box.min), vec3(effect.box.max)});
     if (effect.region == EffectRegion::kHalfSpace) square(6.0 * small, 6.0 * small);
   }
   if (reads_key(effect.kind, "target")) {

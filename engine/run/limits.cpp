@@ -97,6 +97,12 @@ std::vector<Note> explain_limits(const World& world, Entity hand, const std::str
           {"force", "max_force", "N", force.force, force.slew, force.stiffness / force.scale, "0.2 N"}, notes);
   if (std::optional<Note> softened = softened_note(world, hand, name, safety.force->least_share))
     notes.push_back(std::move(*softened));
+  for (std::size_t i = 0; world.touch && i < world.touch->probes.size(); ++i)
+    if (const ProbeState& probe = world.touch->probes[i]; probe.entity == hand && probe.stiffened_sum > 0.0)
+      notes.push_back({fmt::format("{}: what it pressed grew stiffer in time and so gained {:.3g} mJ, which may push "
+                                   "the hand",
+                                   who, 1e3 * probe.stiffened_sum),
+                       "lower the rise of the animated `stiffness`, if that is not meant", "force.stiffened", name});
   if (!safety.torque) return notes;
   const SafetyLimits torque = handle ? torque_limits(*device, *handle) : probe_torque_limits(*device);
   explain(safety.torque->tally, who, name,

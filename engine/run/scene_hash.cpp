@@ -38,6 +38,7 @@ void add_animation(Hash& hash, const LevelAnimation& animation) {
   for (const LevelChannel& channel : animation.channels) {
     hash.add(channel.node);
     hash.add(static_cast<int>(channel.property));
+    add_text(hash, channel.key);
     hash.add(static_cast<int>(channel.track.interpolation));
     add_values(hash, channel.track.times);
     add_values(hash, channel.track.values);
@@ -70,6 +71,8 @@ std::uint64_t scene_hash(const Level& level) {
   hash.add(level.meshes.size());
   for (const LevelMesh& mesh : level.meshes) add_mesh(hash, mesh);
   for (const LevelNode& node : level.nodes) add_node(hash, node);
+  for (const LevelNode& node : level.nodes)
+    for (const PathRow& row : node.effect_path.rows) hash.add_bytes(&row.position, sizeof row.position);
   for (const LevelAnimation& animation : level.animations) add_animation(hash, animation);
   for (const Extension& extension : extension_table()) {
     if (extension.name == "environment") continue;  // visible only

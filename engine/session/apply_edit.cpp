@@ -60,6 +60,10 @@ void take(World& world, Entity entity, const WeightSetting& setting) {
     if (tool->entity == entity) tool->weight = setting.weight;
 }
 
+void take(World& world, Entity entity, const EffectSetting& now) {
+  now.to(world.registry.get<Effect>(entity));
+}
+
 void take(World& world, Entity entity, const EventEdit& event) {
   const bool surface = world.registry.has<Deformable>(entity);
   if (event.kind == EventKind::kHandForce) set_hand_force(world, entity, event.force, event.torque);

@@ -36,6 +36,13 @@ constexpr Fixed kFixed[] = {
     {"handle.attachment", "the tissue's unknowns are laid out when the session opens"},
     {"handle.carried", "the tool's weight is laid out when the session opens"},
     {"handle.force", "its reduced model is laid out when the session opens"},
+    {"effect.kind", "its memory is of that kind"},
+    {"effect.probes", "what feels it is laid out when the session opens"},
+    {"effect.region", "a probe may be in it"},
+    {"effect.box", "a probe may be in it"},
+    {"effect.target", "a probe may be at it"},
+    {"effect.path", "the path is read when the session opens"},
+    {"effect.detents", "a probe may be at them"},
     {"haptic_device.scale", "it goes with the driver, whose workspace is set when it is connected"},
 };
 

@@ -77,7 +77,7 @@ Status check_scene(Level& level) {
     for (LevelNode& node : level.nodes)
       if (Status ok = check_keys(node.name, extension, &node); !ok) return ok;
   }
-  return Done{};
+  return check_references(level);
 }
 
 }  // namespace pliant

@@ -145,6 +145,9 @@ Status SessionRun::list_named() {
   objects.clear();
   object_entities = touchable(world);
   for (const Entity object : object_entities) objects.push_back(name_of(world, object));
+  effects.clear();
+  for (auto [entity, effect] : world.registry.view<const Effect>())
+    if (const auto [it, is_new] = effects.emplace(name_of(world, entity), entity); !is_new) it->second = kNoEntity;
   std::vector<std::string> names;
   for (const SessionEffector& effector : effectors) names.push_back(effector.name);
   if (Status s = check_names(names, "probe or tool"); !s) return s;

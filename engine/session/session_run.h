@@ -95,7 +95,8 @@ struct EventEdit {
 // A change sent to the touch clock, which reports the tick in which it was applied.
 struct Edit {
   Entity entity;
-  std::variant<EventEdit, SurfaceSetting, DeviceParameters, ProbeSetting, CouplingSetting, WeightSetting> now;
+  std::variant<EventEdit, SurfaceSetting, DeviceParameters, ProbeSetting, CouplingSetting, WeightSetting, EffectSetting>
+      now;
   std::uint32_t number = 0;  // of its event in the current recording; 0: none
 };
 
@@ -111,7 +112,8 @@ struct SessionRun {
   // Values set by the owner, by object, by probe or tool. The world's copies belong to the touch clock.
   std::map<std::string, Deformable> surfaces;
   std::map<std::string, DeviceParameters> devices;
-  std::map<std::string, LevelNode> bodies;  // soft and rigid bodies, probes and tools: those extensions alone
+  std::map<std::string, LevelNode> bodies;  // soft and rigid bodies, probes, tools, effects: those extensions alone
+  std::map<std::string, Entity> effects;    // kNoEntity: several have this name
 
   std::unique_ptr<Runner> runner;  // of this world; null after a failed restart
   std::uint64_t ticks = 0;         // done, in lockstep and in earlier real time

@@ -7,6 +7,8 @@
 
 #include "components/probe_shape.h"
 #include "components/soft_body.h"
+#include "components/varying.h"
+#include "content/level/varying_keys.h"
 #include "engine/session/live_keys.h"
 #include "engine/session/scene_check.h"
 #include "engine/session/session_run.h"
@@ -29,6 +31,7 @@ const char* kind_of(const Named& named) {
   if (named.node.deformable) return "a deformable surface";
   if (named.node.probe) return "a probe";
   if (named.node.handle) return "a tool";
+  if (named.node.effect) return "an effect";
   return named.node.soft_body ? "a soft body" : "a rigid body";
 }
 
@@ -45,7 +48,9 @@ Result<Named> find_named(const SessionRun& p, const std::string& name) {
   if (!named.extensions.empty()) return named;
   std::vector<std::string> names = p.objects;
   for (const SessionEffector& effector : p.effectors) names.push_back(effector.name);
-  return error_at("`" + name + "`", unknown("name", name, "the scene", "its objects, probes and tools", names));
+  for (const auto& [effect, entity] : p.effects) names.push_back(effect);
+  return error_at("`" + name + "`",
+                  unknown("name", name, "the scene", "its objects, probes, tools and effects", names));
 }
 
 struct Found {
@@ -188,13 +193,26 @@ SessionChange change_handle(SessionRun& p, const std::string& name, const Handle
   return change;
 }
 
-// `node` contains the new value.
+Result<SessionChange> change_effect(SessionRun& p, const std::string& name, const std::string& where,
+                                    const std::string& key, const Effect& now) {
+  SessionChange change;
+  change.entity = p.effects.at(name);
+  if (change.entity == kNoEntity) return Error{where, "several effects have this name", "give each its own"};
+  if (!reads_key(now.kind, key))
+    return Error{where, fmt::format("is not read by an effect of the kind {}", row_of(now.kind).word),
+                 fmt::format("it reads: {}", row_of(now.kind).reads)};
+  change.touch.push_back({change.entity, EffectSetting(now), 0});
+  return change;
+}
+
+// `node` contains the new value of `key`.
 Result<SessionChange> change_of(SessionRun& p, const std::string& name, const std::string& where,
-                                const Extension& extension, LevelNode& node) {
+                                const Extension& extension, const Key& key, LevelNode& node) {
   if (extension.name == "deformable") return change_surface(p, name, where, *node.deformable);
   if (extension.name == "rigid_body") return change_rigid(p, name, node);
   if (extension.name == "soft_body") return change_soft(p, name, *node.soft_body);
   if (extension.name == "probe") return change_probe(p, name, where, *node.probe);
+  if (extension.name == "effect") return change_effect(p, name, where, key.name, *node.effect);
   if (extension.name == "handle") return change_handle(p, name, *node.handle);
   if (Status s = check_device(name, *node.device); !s) return s.error();
   SessionChange change;
@@ -212,6 +230,7 @@ void keep(SessionRun& p, const std::string& name, const Extension& extension, co
     extension.name == "soft_body"    ? void(p.bodies[name].soft_body = node.soft_body)
     : extension.name == "rigid_body" ? void(p.bodies[name].rigid_body = node.rigid_body)
     : extension.name == "probe"      ? void(p.bodies[name].probe = node.probe)
+    : extension.name == "effect"     ? void(p.bodies[name].effect = node.effect)
                                      : void(p.bodies[name].handle = node.handle);
 }
 
@@ -260,6 +279,18 @@ std::uint32_t note_set(SessionRun& p, const std::string& name, const Extension& 
        {}});
 }
 
+// Whether an animation varies what this key of a surface sets.
+bool is_varied(const SessionRun& p, const std::string& name, const Key& key) {
+  const auto object = p.find_object(name);
+  const Varying* const varying = object ? p.world.registry.find<Varying>(*object) : nullptr;
+  const VaryingKey* const varied = find_varying_key(key.name);
+  if (!varying || !varied) return false;
+  for (const auto member : varied->members)
+    for (const ParameterTrack& track : varying->tracks)
+      if (track.member == member) return true;
+  return false;
+}
+
 // `sent` is false if a new world follows, which begins with the value.
 Status set_value(SessionRun& p, const std::string& name, const std::string& key_name, const Json& value,
                  bool sent = true) {
@@ -271,12 +302,14 @@ Status set_value(SessionRun& p, const std::string& name, const std::string& key_
   const Key* const key = found->key;
   const std::string where = "`" + name + "`: " + key_name;
   if (const std::optional<Note> fault = check_value(*key, value)) return error_at(where, *fault);
+  if (named->node.deformable && is_varied(p, name, *key))
+    return Error{where, "is varied by an animation of the scene", "change its keys, or remove the channel"};
   const LevelNode before = named->node;
   if (before.deformable && before.deformable->young > 0.0 && key->name == "stiffness")
     return Error{where, "follows from its Young's modulus", "set `young` instead"};
   key->set(&named->node, value);
   if (const std::optional<Note> fault = extension->settle(&named->node)) return error_at(where, *fault);
-  Result<SessionChange> change = change_of(p, name, where, *extension, named->node);
+  Result<SessionChange> change = change_of(p, name, where, *extension, *key, named->node);
   if (!change) return change.error();
   if (sent)
     if (Status s = send(p, *change, [&] { return note_set(p, name, *extension, *key, value); }); !s) return s;
@@ -300,8 +333,9 @@ Status SessionRun::apply_setting(const std::string& setting, Setting how) {
       const Json value = Json::parse(text, nullptr, false);
       if (value.is_number() && !std::isfinite(value.get<double>())) break;
       if (value.is_number()) return set_value(*this, object, key.name, value, sent);
-      if (key.type == KeyType::kPair && check_value(key, value)) break;
-      return set_value(*this, object, key.name, key.type == KeyType::kPair ? value : Json(text), sent);
+      const bool several = key.type == KeyType::kPair || key.type == KeyType::kVector;
+      if (several && check_value(key, value)) break;
+      return set_value(*this, object, key.name, several ? value : Json(text), sent);
     }
   return Error{"`" + setting + "`", "cannot change in a session", "set it in the scene"};
 }
@@ -334,6 +368,8 @@ void SessionRun::keep_bodies() {
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (!world.registry.has<Deformable>(object_entities[i])) node_of(object_entities[i], objects[i]);
   for (const SessionEffector& effector : effectors) node_of(effector.entity, effector.name);
+  for (const auto& [name, entity] : effects)
+    if (entity != kNoEntity) bodies[name].effect = world.registry.get<Effect>(entity);
 }
 
 void SessionRun::restore_bodies() {
@@ -351,6 +387,9 @@ void SessionRun::restore_bodies() {
     if (const auto found = bodies.find(objects[i]); found != bodies.end()) restore(object_entities[i], found->second);
   for (const SessionEffector& effector : effectors)
     if (const auto found = bodies.find(effector.name); found != bodies.end()) restore(effector.entity, found->second);
+  for (const auto& [name, entity] : effects)
+    if (const auto found = bodies.find(name); entity != kNoEntity && found != bodies.end() && found->second.effect)
+      static_cast<EffectParameters&>(world.registry.get<Effect>(entity)) = *found->second.effect;
 }
 
 Status Session::set(const std::string& object, const std::string& key, double value) {
@@ -373,7 +412,11 @@ Result<double> Session::get(const std::string& object, const std::string& key) c
   if (!named) return named.error();
   const Result<Found> found = find_named_key(*named, object, key, false);
   if (!found) return found.error();
-  const Json value = found->key->get(&named->node);
+  LevelNode now = named->node;
+  const auto entity = run_->find_object(object);
+  const Varying* const varying = entity ? run_->world.registry.find<Varying>(*entity) : nullptr;
+  if (varying && now.deformable) vary(*varying, run_->time, *now.deformable);
+  const Json value = found->key->get(&now);
   if (!value.is_number()) return Error{"`" + object + "`: " + key, "is no single number"};
   return value.get<double>();
 }

@@ -59,6 +59,8 @@ Result<Scene> with_more(const Scene& scene, const Scene& more, std::vector<std::
   for (LevelNode& node : from.nodes) {
     if (node.probe || node.device || node.handle)
       return Error{kAdd, "`" + node.name + "` is a probe, a device or a tool", "open a session with it"};
+    if (node.effect)
+      return Error{kAdd, "`" + node.name + "` is an effect", "open a session with it, and set() its strength"};
     if (node.motion) return Error{kAdd, "`" + node.name + "` follows a motion", "open a session with it"};
     if (node.deformable || node.soft_body || node.rigid_body) names.push_back(node.name);
     node.source = -1;

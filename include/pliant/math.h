@@ -77,4 +77,12 @@ struct Box {
   float diagonal() const { return empty() ? 0.0f : length(max - min); }
 };
 
+// The same in double precision, as written by a person.
+struct DBox {
+  dvec3 min{std::numeric_limits<double>::max()};
+  dvec3 max{std::numeric_limits<double>::lowest()};
+  bool empty() const { return min.x > max.x; }
+  bool operator==(const DBox&) const = default;
+};
+
 }  // namespace pliant

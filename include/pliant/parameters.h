@@ -164,6 +164,53 @@ struct DeviceParameters {
   double max_slew = 1000.0;  // [N/s] of the norm of the change; released force falls by at least 1000 N/s
 };
 
+// What an effect does to a probe, without a surface (methods.md 1.13).
+enum class EffectKind : std::uint8_t {
+  kViscosity,   // drag
+  kGravity,     // constant force
+  kAttraction,  // magnet
+  kGuidance,    // rail
+  kForbidden,   // wall
+  kDetents,     // rests along or around an axis
+};
+
+enum class EffectRegion : std::uint8_t {
+  kEverywhere,
+  kSphere,     // of `radius` around the node
+  kBox,        // `box`, in the node's frame
+  kHalfSpace,  // below the plane through the node, whose normal is the node's +Y
+};
+
+enum class EffectTarget : std::uint8_t {
+  kPoint,    // the node
+  kSegment,  // of `length`, from the node along its +Y
+  kPlane,    // the node's XZ plane, of `size` around the node
+};
+
+enum class DetentAxis : std::uint8_t { kAlong, kAround };  // the node's +Y
+
+// Acts on probes in space. All in its own frame, whose scale does not count. Keys of PLIANT_effect.
+struct EffectParameters {
+  EffectKind kind = EffectKind::kAttraction;
+  EffectRegion region = EffectRegion::kSphere;
+  double radius = 0.05;                        // [m] of the sphere
+  DBox box;                                    // [m] of the box
+  double edge = 0.01;                          // [m] inside of the region's border, in which the effect comes in
+  double damping = 2.0;                        // [N s/m] viscosity
+  dvec3 force{0, -1, 0};                       // [N] gravity
+  EffectTarget target = EffectTarget::kPoint;  // attraction
+  double length = 0.1;                         // [m] of the segment
+  std::array<double, 2> size{0, 0};            // [m] of the plane along X and Z; 0: without end
+  double stiffness = 200.0;                    // [N/m] attraction, guidance: at the target; forbidden: of the penalty
+  double range = 0.02;                         // [m] attraction, guidance: no force beyond
+  std::string path;                            // guidance: CSV of points, in the node's frame, relative to the level
+  DetentAxis detents = DetentAxis::kAlong;
+  double spacing = 0.01;            // [m] of detents along the axis
+  double count = 12.0;              // [1] of detents around the axis, per turn; a whole number
+  double peak = 0.5;                // [N] largest force along the detents
+  std::vector<std::string> probes;  // names of those that feel it; empty: all
+};
+
 // A path in time: script files and orbits. Linear between rows, slerp for rotation; stays at the last row.
 struct PathRow {
   double time = 0.0;  // [s] ascending

@@ -1,5 +1,5 @@
-// A level built in code: deformable surfaces, soft and rigid bodies, tools, probes. A level file can be loaded as one
-// too (pliant/content.h).
+// A level built in code: deformable surfaces, soft and rigid bodies, tools, probes, effects. A level file can be loaded
+// as one too (pliant/content.h).
 #pragma once
 
 #include <memory>
@@ -61,6 +61,10 @@ class Scene {
                     const DeviceParameters& device = {});
   void add_probe(const std::string& name, const ProbeParameters& parameters = {}, const DeviceParameters& device = {},
                  const Placement& placement = {});
+  // Acts on probes in space, on all or on those that it names. `path`: of the kind guidance, in the effect's frame; its
+  // times do not count, and no file is read.
+  void add_effect(const std::string& name, const EffectParameters& parameters = {}, const Placement& placement = {},
+                  Path path = {});
 
   // The level format's own description (content/level/level.h); not part of the public interface.
   const Level& level() const { return *level_; }

@@ -176,9 +176,9 @@ class Session {
   // the first tick.
   Status replay(const std::filesystem::path& file);
 
-  // --- Parameters, set between ticks: keys of a surface, body, probe, tool or its device by the level format's names
-  // (docs/embedding.md lists the live ones). The error tells whether the name, the key or the type of the value is
-  // wrong. `word`: for keys with words, such as `shape`; `values`: for keys with pairs.
+  // --- Parameters, set between ticks: keys of a surface, body, probe, tool or its device, or of an effect, by the
+  // level format's names (docs/embedding.md lists the live ones). The error tells whether the name, the key or the type
+  // of the value is wrong. `word`: for keys with words, such as `shape`; `values`: for keys with pairs.
   Status set(const std::string& object, const std::string& key, double value);
   Status set(const std::string& object, const std::string& key, const std::string& word);
   Status set(const std::string& object, const std::string& key, const std::vector<double>& values);

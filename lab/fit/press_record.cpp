@@ -192,11 +192,12 @@ bool read_number(std::string cell, char mark, double& value) {
 }
 
 Error of_tool(const std::string& where, const std::string& probe) {
-  return {where,
-          fmt::format("`{}` is a tool: what stands as its depth is how far its device is led past its handle, by the "
-                      "coupling, and no press of a surface",
-                      printable(probe)),
-          "take a probe's rows, or measured presses"};
+  return {
+      where,
+      fmt::format("`{}` is a tool, or a capsule or fork, since it has a torque: what stands as its depth is no press "
+                  "of a surface at one place",
+                  printable(probe)),
+      "take the rows of a sphere or a point, or measured presses"};
 }
 
 // Rejects a record that no law can be fitted to.

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <unordered_map>
@@ -99,16 +100,33 @@ bool is_limit(const std::string& code) {
   });
 }
 
+// A sentence with '#' for its numbers, which differ between runs.
+std::string without_numbers(const std::string& sentence) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::string out;
+  for (std::size_t i = 0; i < sentence.size();) {
+    if (!digit(sentence[i])) {
+      out += sentence[i++];
+      continue;
+    }
+    const std::size_t end = std::min(sentence.find_first_not_of("0123456789.,e+-", i), sentence.size());
+    std::size_t last = end;
+    while (!digit(sentence[last - 1])) --last;  // what follows a number is punctuation
+    out += '#';
+    i = last;
+  }
+  return out;
+}
+
 void find_other_notes(const SweepTable& table, SweepNotes& out) {
-  std::map<std::pair<std::string, std::string>, std::size_t> known;  // (code, of) -> index in out.notes
+  std::map<std::array<std::string, 3>, std::size_t> known;  // code, of, sentence -> index in out.notes
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     if (!table.rows[row].done()) continue;
     std::vector<std::size_t> here;
     for (Note& note : notes_of(table.rows[row].line)) {
       if (is_limit(note.code)) continue;
-      // A note without a code is another one wherever its sentence is.
-      const std::pair key =
-          note.code.empty() ? std::pair(std::string(), note.message()) : std::pair(note.code, note.of);
+      // A note without a code is another one wherever its sentence is, one with a code where its words are.
+      const std::array key{note.code, note.of, note.code.empty() ? note.message() : without_numbers(note.message())};
       const auto [place, is_new] = known.try_emplace(key, out.notes.size());
       if (is_new) out.notes.push_back({std::move(note), 0, row});
       if (std::find(here.begin(), here.end(), place->second) != here.end()) continue;

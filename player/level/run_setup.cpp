@@ -300,7 +300,7 @@ Outcome prepare_level(const RunOptions& options, bool windowed, Level& level, st
   if (Outcome wrong = choose_probes(options, windowed, level, bare, run, sources)) return wrong;
   SafetyCap cap;
   if (options.max_force > 0.0) cap.max_force = options.max_force;
-  for (const std::string& sentence : cap_safety(level, cap)) say(run, sentence);
+  for (const std::string& sentence : cap_safety(level, cap)) say(run, Note{sentence, {}, "device.capped", {}});
   if (Outcome wrong = apply_settings(options, *unit, level, run)) return wrong;
   if (Outcome wrong = refuse_requests(windowed, level, run)) return wrong;
   // Budgets are measured at the run's rate.
@@ -318,7 +318,7 @@ Outcome make_world(const RunOptions& options, bool windowed, Level& level, std::
   auto spawned = spawn_moving_images(level, &notes);
   if (!spawned) return failed(spawned.error());
   run.world = std::move(spawned).value();
-  for (const std::string& sentence : notes) say(run, sentence);
+  for (const std::string& sentence : notes) say(run, Note{sentence, {}, "level.note", {}});
   for (const Note& unused : unused_key_notes(level)) say(run, unused);
   if (const std::optional<Note> relief = unfelt_relief(level)) say(run, *relief);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
@@ -349,7 +349,7 @@ void say(Prepared& run, const Note& said) {
   run.notes.push_back(said);
 }
 void say(Prepared& run, const std::string& sentence) {
-  say(run, Note{sentence, {}, {}, {}});
+  say(run, Note{sentence, {}, "run.note", {}});
 }
 
 Outcome prepare(const RunOptions& options, bool windowed, Prepared& run) {

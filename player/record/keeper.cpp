@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kColumns =
     "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft,objects";
-constexpr const char* kTorqueColumns = ",tx,ty,tz";  // only if there is a tool: probes have no torque
+constexpr const char* kTorqueColumns = ",tx,ty,tz";  // only if a hand can have torque
 
 std::string name_of(const World& world, Entity entity) {
   const Name* name = world.registry.find<Name>(entity);
@@ -32,8 +32,8 @@ Result<Keeper> Keeper::create(const World& world, const std::vector<Entity>& pro
   auto file = GrowingFile::create(csv);
   if (!file) return file.error();
   keeper.csv_.emplace(std::move(file).value());
-  keeper.torque_ =
-      std::any_of(probes.begin(), probes.end(), [&](Entity hand) { return !world.registry.has<Probe>(hand); });
+  keeper.torque_ = std::any_of(probes.begin(), probes.end(),
+                               [&](Entity hand) { return find_safety(world, hand).torque != nullptr; });
   std::string header = kColumns;
   for (std::size_t i = 0; i < kSafetyLimits; ++i) header += std::string(",") + key_of(static_cast<SafetyLimit>(i));
   keeper.csv_->add(header + (keeper.torque_ ? kTorqueColumns : "") + '\n');
@@ -85,8 +85,7 @@ void Keeper::keep(const TickRow& row) {
   put(line_, r.normal_force);
   put(line_, r.tangential_force);
   put(line_, row.objects);
-  for (std::size_t i = 0; i < kSafetyLimits; ++i)
-    line_ += row.limited & bit(static_cast<SafetyLimit>(i)) ? ",1" : ",0";
+  for (std::size_t i = 0; i < kSafetyLimits; ++i) line_ += row.limited & bit(static_cast<SafetyLimit>(i)) ? ",1" : ",0";
   if (torque_) put(line_, row.torque);
   line_ += '\n';
   csv_->add(line_);
@@ -106,7 +105,7 @@ void Keeper::keep(const TickRow& row) {
   const bool jumped = length(r.position - last.position) > kFastestHand * (row.time - last.time) * (1 + 1e-9);
   if (last.any && placed && !jumped) {
     summary.net_work += 0.5 * dot(last.force + r.force, r.position - last.position);
-    const dvec3 torque = last.torque + row.torque;  // only tools have torque
+    const dvec3 torque = last.torque + row.torque;  // of tools, and of probes with an arm of lever
     if (torque != dvec3(0))
       summary.net_work += 0.5 * dot(torque, vector_of(row.device_rotation * glm::conjugate(last.rotation)));
   }

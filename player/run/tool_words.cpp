@@ -54,8 +54,11 @@ std::vector<Note> explain_soft_steps(const World& world, const SoftFigures& figu
         "press with a smaller area, or coarsen the meshes in contact");
   if (tally.began_inside > 0.0)
     add("soft.began_inside",
-        fmt::format("{} and {} begin {:.2f} mm inside each other and are pushed apart",
-                    body_name(world, tally.inside_a), body_name(world, tally.inside_b), tally.began_inside * 1e3),
+        fmt::format("{} and {} begin {:.2f} mm inside each other{}", body_name(world, tally.inside_a),
+                    body_name(world, tally.inside_b), tally.began_inside * 1e3,
+                    world.soft->bodies[tally.inside_a]->kind == BodyKind::kProbe
+                        ? ", where the probe is not felt as from outside"
+                        : " and are pushed apart"),
         "move one of them in the level");
   if (tally.halted_for > 0.0)
     add("soft.halted",

@@ -98,7 +98,9 @@ Result<Plan> plan_of(const AuthorOptions& options, const Level& level) {
     }
   if (plan.soft.empty() && plan.surface.empty()) plan.soft.push_back(all.front());
   plan.preset = find_preset(options.preset);
-  if (options.pin != "none") plan.side = side_of(options.pin);
+  if (!options.pin.empty() && plan.soft.empty())
+    return Error{"--pin " + options.pin, "is for soft bodies, and --surface makes none", "use --soft, or leave it out"};
+  if (options.pin != "none") plan.side = side_of(options.pin.empty() ? "bottom" : options.pin);
   // A tool touches bodies, a probe also surfaces.
   const std::string tool = !options.tool.empty() ? options.tool : plan.soft.empty() ? "none" : "rod";
   if (tool != "none") plan.tool = find_instrument(tool);

@@ -29,10 +29,22 @@ int fit(const FitOptions& options) {
       return fail(kUsage, {"fit " + options.in, "stands beside --sweep", "name what was measured with --target"});
     if (!options.out.empty() || !options.object.empty() || options.unit)
       return fail(kUsage, {"--sweep", "writes no level", "leave out -o, --object and --unit"});
+    if (options.radius > 0.0 || options.poisson >= 0.0)
+      return fail(kUsage, {options.radius > 0.0 ? "--radius" : "--poisson", "is of a law, and --sweep fits none",
+                           "leave it out: the sweep's plan says it"});
     return fit_sweep(options);
   }
   if (!options.target.empty())
     return fail(kUsage, {"--target", "is for --sweep DIR", "without it, name the file first"});
+  if (elements && !options.probe.empty())
+    return fail(kUsage, {"--probe", "is for a run's forces.csv or a sweep", "give the indenter's --radius instead"});
+  if (measured && options.level.empty() && !options.object.empty())
+    return fail(kUsage, {"--object", "is a node of the level that --level names", "name that, too, or leave it out"});
+  if (measured && options.law != "auto" && options.law != "hertz" && (options.radius > 0.0 || options.poisson >= 0.0))
+    return fail(kUsage, {options.radius > 0.0 ? "--radius" : "--poisson",
+                         "is of the law hertz, and --law asks for " + options.law, "leave one of them out"});
+  if (measured && options.poisson >= 0.0 && !(options.radius > 0.0))
+    return fail(kUsage, {"--poisson", "is of the law hertz, which needs a sphere", "give its --radius, too"});
   if (measured && options.level.empty() && options.unit)
     return fail(kUsage, {"--unit", "is of the bare mesh that --level names", "a table's units stand in its header"});
   if (options.in.empty())

@@ -35,7 +35,7 @@ struct AuthorOptions {
   std::string in, out;
   std::vector<std::string> soft, surface;  // names of nodes; none: the largest becomes soft
   std::string preset = "liver";            // content/author/presets.h
-  std::string pin = "bottom";              // a Side, or none
+  std::string pin;                         // a Side, or none; empty: bottom
   std::string tool;                        // an Instrument, or none; empty: rod where something is soft
   bool probe = false;
   std::optional<double> unit;  // [m] of the input; empty: not said

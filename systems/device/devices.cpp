@@ -109,6 +109,8 @@ void write_probe(World& world, ProbeState& state, Tick tick) {
   limits.touched = soften(world, state.entity, device, state.safety);
   turning.touched = limits.touched * state.lever * state.lever;
   limits.carried = surface_displacement(world, state.entity, tick.elapsed());
+  limits.stiffened = state.stiffened * joules_of(world, state);
+  if (state.safety.engaged) state.stiffened_sum += std::max(0.0, limits.stiffened);
   const BesideObserver beside = effects_beside(world, state.entity, state.safety.share);
   limits.weight = beside.force;
   turning.weight = beside.torque;

@@ -8,12 +8,6 @@
 namespace pliant {
 namespace {
 
-// Joules of a hand per joule of the world, where its device renders a share or has a scaled workspace.
-double joules_of(const World& world, const ProbeState& hand) {
-  const Probe& probe = world.registry.get<Probe>(hand.entity);
-  return hand.safety.share / world.registry.get<HapticDevice>(probe.device).workspace;
-}
-
 // Adds the work of this tick to what each hand has given to the object, and sets what its contacts store.
 void update(const World& world, const TouchState& touch, ObjectState& object, Tick tick) {
   const Registry& registry = world.registry;
@@ -49,6 +43,11 @@ double stored_for(const TouchState& touch, std::size_t hand) {
 }
 
 }  // namespace
+
+double joules_of(const World& world, const ProbeState& hand) {
+  const Probe& probe = world.registry.get<Probe>(hand.entity);
+  return hand.safety.share / world.registry.get<HapticDevice>(probe.device).workspace;
+}
 
 void share_accounts(World& world, Tick tick) {
   TouchState& touch = *world.touch;

@@ -13,6 +13,11 @@
 
 namespace pliant {
 
+struct ProbeState;
+
+// Joules of a hand per joule of the world, where its device renders a share or has a scaled workspace.
+double joules_of(const World& world, const ProbeState& hand);
+
 // Before the forces of this tick go into the safety layer.
 void share_accounts(World& world, Tick tick);
 

@@ -29,8 +29,8 @@ RegionWeight weight_in_sphere(const Effect& effect, dvec3 x) {
 }
 
 RegionWeight weight_in_box(const Effect& effect, dvec3 x) {
-  const dvec3 middle(0.5 * (dvec3(effect.box.min) + dvec3(effect.box.max)));
-  const dvec3 half(0.5 * (dvec3(effect.box.max) - dvec3(effect.box.min)));
+  const dvec3 middle = 0.5 * (effect.box.min + effect.box.max);
+  const dvec3 half = 0.5 * (effect.box.max - effect.box.min);
   double value[3], slope[3], curvature[3];
   for (int i = 0; i < 3; ++i) {
     const double edge = std::min(effect.edge, half[i]), away = x[i] - middle[i];

@@ -158,6 +158,12 @@ std::vector<EffectTip> tips_of_effects(const Registry& registry, Entity entity) 
   return tips;
 }
 
+bool is_felt(const Registry& registry, Entity effect, Entity probe) {
+  const std::vector<std::string>& names = registry.get<Effect>(effect).probes;
+  const Name* const name = registry.find<Name>(probe);
+  return names.empty() || (name && std::find(names.begin(), names.end(), name->value) != names.end());
+}
+
 }  // namespace
 
 void effects(World& world, Tick tick) {
@@ -199,7 +205,8 @@ Status prepare_effects(World& world) {
   for (const ProbeState& state : world.touch->probes) {
     if (!sources.empty() && !registry.has<FeltEffects>(state.entity)) registry.add<FeltEffects>(state.entity, {});
     for (const Entity source : sources)
-      if (std::find(known.begin(), known.end(), std::pair(source, state.entity)) == known.end())
+      if (is_felt(registry, source, state.entity) &&
+          std::find(known.begin(), known.end(), std::pair(source, state.entity)) == known.end())
         registry.add<EffectPair>(registry.create(), {source, state.entity, tips_of_effects(registry, state.entity)});
   }
   return Done{};

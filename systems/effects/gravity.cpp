@@ -15,7 +15,7 @@ EffectValue effect_gravity(const EffectInput& in, EffectMemory&) {
   double least = kRoom * length(g);
   if (effect.region == EffectRegion::kSphere) least = effect.radius * length(g);
   if (effect.region == EffectRegion::kBox) {
-    const dvec3 low(effect.box.min), high(effect.box.max);
+    const dvec3 low = effect.box.min, high = effect.box.max;
     middle = 0.5 * (low + high);
     least = 0.5 * dot(glm::abs(g), high - low);
   }

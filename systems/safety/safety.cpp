@@ -324,6 +324,10 @@ SafetyResult make_safe(SafetyState& state, const HapticDevice& device, const Saf
     result.event = SafetyEvent::kJumped;
     state.engaged = false;
   }
+  if (state.engaged) {
+    state.work -= std::max(0.0, limits.stiffened);
+    forfeit(state, std::max(0.0, -limits.stiffened));
+  }
   Share felt = engage(state, limits, wanted, jumped, dt);
   if (missed > 0.0) ease_in(state, felt.force, felt.weight, dx, missed, limits.ease, dt);
   if (state.eased < 1.0) felt = eased(state, felt, dt);

@@ -29,6 +29,9 @@
 // that left last, and after kForceHolds none. What is let go has had the time: it falls by as much as in the ticks that
 // were missed.
 //
+// A surface whose stiffness rises in time (components/varying.h) may push a hand with what it gains: that goes to the
+// hand's account, as if the hand had given it. What it loses as its stiffness falls is forfeit.
+//
 // A surface with prescribed motion may push a hand, as a motor would: passivity and the stiffness limit apply to the
 // hand's motion relative to that surface. Clamp and slew bound the rest.
 #pragma once
@@ -137,6 +140,7 @@ struct SafetyLimits {
   bool jumped = false;            // the device is elsewhere, regardless of `position`
   double fall = kLeastFall;       // [N/s] rate of fall of force that is no longer wanted, if `slew` is lower
   double scale = 1.0;             // [1] world metres per metre of the hand
+  double stiffened = 0.0;         // [J] of the hand: what is touched has gained as its stiffness changed, by no hand
   double own_rise = 0.0;          // [N] change of the program's own part in this tick: no answer to displacement
   double ease = kEase;            // [s] in which it comes back after a stall
   double touched = 0.0;           // [N/m] per metre of the hand: slope and secant of the law at most; 0: unknown

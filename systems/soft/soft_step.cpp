@@ -78,12 +78,15 @@ void stop_before(SoftState& soft, const Crossings& left, double T) {
 
 }  // namespace
 
-void take_edits(World& world, Tick) {
+void take_edits(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   for (ParameterEdit edit; soft.parameter_edits.pop(edit);)
     for (const std::unique_ptr<Body>& body : soft.bodies)
       if (body->entity == edit.body) std::visit([&](const auto& now) { change(*body, now); }, edit.now);
+  for (auto [entity, varying] : world.registry.view<const Varying>())
+    for (const std::uint32_t i : soft.yielding)
+      if (soft.bodies[i]->entity == entity) static_cast<YieldingBody&>(*soft.bodies[i]).vary(varying, tick.time);
   take_body_edits(world);
 }
 

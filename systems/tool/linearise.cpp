@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/soft/body/tool_body.h"
@@ -103,6 +105,40 @@ bool got_away(const ToolBody& body) {
   return length(linear(w)) > kRunaway || length(angular(w)) > kRunawayTurn;
 }
 
+// How often a body's surface winds around a point: 1 inside of a closed one, 0 outside (van Oosterom & Strackee 1983).
+double winding(const Body& body, dvec3 x) {
+  double angle = 0.0;
+  for (const uvec3 t : body.collision_mesh->triangles) {
+    const dvec3 a = body.surface_position[t.x] - x, b = body.surface_position[t.y] - x,
+                c = body.surface_position[t.z] - x;
+    const double la = length(a), lb = length(b), lc = length(c);
+    angle += std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+  }
+  return angle / (2 * std::numbers::pi);
+}
+
+// [m] To the nearest vertex.
+double depth_in(const Body& body, dvec3 x) {
+  double nearest = std::numeric_limits<double>::max();
+  for (const dvec3& p : body.surface_position) nearest = std::min(nearest, length(p - x));
+  return nearest;
+}
+
+// Records a probe whose first pose is inside a body: no contact is found there.
+void tally_beginning(SoftState& soft, std::size_t probe, dvec3 x) {
+  for (std::size_t i = 0; i < soft.bodies.size(); ++i) {
+    const Body& body = *soft.bodies[i];
+    if (i == probe || body.kind == BodyKind::kSurface || body.absent || body.taken_out ||
+        !body.collision_mesh->closed || winding(body, x) < 0.5)
+      continue;
+    const double depth = depth_in(body, x);
+    if (depth <= soft.tally.began_inside) continue;
+    soft.tally.began_inside = depth;
+    soft.tally.inside_a = static_cast<std::uint32_t>(probe);
+    soft.tally.inside_b = static_cast<std::uint32_t>(i);
+  }
+}
+
 // Sets the tool back to the device: if the touch clock requests it, or if the handle got away in the last step.
 bool set_back(SoftState& soft, ToolTouchState& tool, const ToolInput& input, ToolBody& body) {
   const bool away = got_away(body);
@@ -112,6 +148,7 @@ bool set_back(SoftState& soft, ToolTouchState& tool, const ToolInput& input, Too
   body.release_device();
   body.set_device(input.device.pose, Vector6::Zero());
   body.set_back();
+  if (body.absent) tally_beginning(soft, body_of(soft, tool.entity), input.device.pose.position);
   body.absent = false;
   ++tool.pending.set_backs;
   return true;

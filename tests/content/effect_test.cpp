@@ -24,9 +24,10 @@ class EffectFile : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   Result<Level> read(const std::string& keys) {
-    write("level.gltf", R"({"asset": {"version": "2.0"}, "extensionsUsed": ["PLIANT_effect"], "scene": 0,
-"scenes": [{"nodes": [0]}], "nodes": [{"name": "it", "extensions": {"PLIANT_effect": )" +
-                            keys + "}}]}");
+    write("level.gltf",
+          R"({"asset": {"version": "2.0"}, "extensionsUsed": ["PLIANT_effect", "PLIANT_probe"], "scene": 0,
+"scenes": [{"nodes": [0, 1]}], "nodes": [{"name": "it", "extensions": {"PLIANT_effect": )" +
+              keys + R"(}}, {"name": "finger", "extensions": {"PLIANT_probe": {}}}]})");
     return load_level(folder_ / "level.gltf");
   }
   // The error of reading or spawning it; "": none.
@@ -64,6 +65,10 @@ TEST_F(EffectFile, WhatIsWrongIsOneSentence) {
   expect(R"({"kind": "gravity", "region": "box"})", "without a `box`");
   expect(R"({"kind": "forbidden", "region": "everywhere"})", "no probe could be anywhere");
   expect(R"({"kind": "detents", "detents": "around", "count": 2.5})", "whole number");
+  expect(R"({"probes": "finger"})", "a list of at most 64 names");
+  expect(R"({"probes": ["finger", ""]})", "a list of at most 64 names");
+  expect(R"({"probes": ["fingr"]})", "names 'fingr', which is no node with a PLIANT_probe; did you mean finger?");
+  expect(R"({"probes": ["it"]})", "which is no node with a PLIANT_probe");
   EXPECT_FALSE(said(R"({"stiffness": 1e999})").empty());
   EXPECT_EQ(said(R"({"kind": "guidance", "path": "line.csv"})"), "");
   EXPECT_EQ(said("{}"), "");
@@ -73,7 +78,8 @@ TEST_F(EffectFile, EverySavedKeyIsReadAgain) {
   const Result<Level> level = read(
       R"({"kind": "detents", "region": "box", "radius": 0.25, "box": {"min": [-1, -2, -3], "max": [1, 2, 3.5]},
 "edge": 0.125, "damping": 0.5, "force": [1, 2, -3], "target": "plane", "length": 0.5, "size": [0.25, 0.5],
-"stiffness": 12.5, "range": 0.0625, "path": "line.csv", "detents": "around", "spacing": 0.5, "count": 7, "peak": 0.25})");
+"stiffness": 12.5, "range": 0.0625, "path": "line.csv", "detents": "around", "spacing": 0.5, "count": 7, "peak": 0.25,
+"probes": ["finger"]})");
   ASSERT_TRUE(level.ok()) << level.error().message();
   ASSERT_TRUE(save_level(*level, folder_ / "saved.gltf").ok());
   const Result<Level> again = load_level(folder_ / "saved.gltf");
@@ -85,6 +91,19 @@ TEST_F(EffectFile, EverySavedKeyIsReadAgain) {
     EXPECT_EQ(key.get(&level->nodes[0]), key.get(&again->nodes[0])) << key.name;
     EXPECT_NE(key.get(&fresh), key.get(&again->nodes[0])) << key.name << ": this test says something else";
   }
+}
+
+// In single precision 0.1 would come back as 0.10000000149.
+TEST_F(EffectFile, ABoxComesBackAsItWasWritten) {
+  Result<Level> level =
+      read(R"({"kind": "forbidden", "region": "box", "box": {"min": [-0.1, -0.2, -0.3], "max": [0.1, 0.2, 0.7]}})");
+  ASSERT_TRUE(level.ok()) << level.error().message();
+  EXPECT_EQ(level->nodes[0].effect->box, (DBox{{-0.1, -0.2, -0.3}, {0.1, 0.2, 0.7}}));
+  level->nodes[0].effect->stiffness = 77.0;  // the extension is written anew
+  ASSERT_TRUE(save_level(*level, folder_ / "saved.gltf").ok());
+  const Result<Level> again = load_level(folder_ / "saved.gltf");
+  ASSERT_TRUE(again.ok()) << again.error().message();
+  EXPECT_EQ(again->nodes[0].effect->box, level->nodes[0].effect->box);
 }
 
 TEST_F(EffectFile, OneNumberOfAForcePointsDown) {

@@ -127,6 +127,7 @@ TEST(Extension, WhatIsWrongIsNamedWithWhatWouldBeRight) {
   expect({{"relaxation", 3}}, {"relaxation", "not an object"});
   expect({{"friction_static", 0.1}, {"friction_sliding", 0.2}},
          {"friction_sliding (0.2) is above friction_static (0.1)"});
+  expect({{"texture", {{"seed", 1.5}}}}, {"/texture/seed", "must be a whole number; got 1.5"});
   expect({{"contact_damping", "much"}}, {"material"});
   EXPECT_NE(with({{"PLIANT_deformabel", Json::object()}}).refusal().find("did you mean PLIANT_deformable?"),
             std::string::npos);

@@ -68,6 +68,7 @@ Json other_value(const Key& key, const Json& other) {
                                      Json::array({0.5, 0.25, 0.125}),
                                      Json::array({Json::array({0.5, 0.25, 0.125})}),
                                      {{"min", {0, 0, 0}}, {"max", {0.5, 1, 2}}},
+                                     Json::array({"some text"}),
                                      !key.choices ? Json() : Json(key.choices().front()),
                                      !key.choices ? Json() : Json(key.choices().back())};
   for (const Json& each : candidates)

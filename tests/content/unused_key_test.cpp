@@ -47,6 +47,23 @@ TEST(UnusedKeys, AScaleIsOfADeviceThatIsNoPath) {
   EXPECT_THAT(unused(with(DriverKind::kExternal)), IsEmpty());
 }
 
+TEST(UnusedKeys, FrictionBesideWhatItSetsIsSaid) {
+  const auto with = [](std::set<std::string> stated, double stribeck = 0.0) {
+    return level_with([&](LevelNode& n) {
+      n.deformable.emplace();
+      n.deformable->friction_sliding = n.deformable->friction_static;
+      n.deformable->friction_stribeck = stribeck;
+      n.stated = std::move(stated);
+    });
+  };
+  EXPECT_THAT(unused(with({"deformable.friction"})), IsEmpty());
+  EXPECT_THAT(unused(with({"deformable.friction_static", "deformable.friction_sliding"})), IsEmpty());
+  EXPECT_THAT(unused(with({"deformable.friction", "deformable.friction_static"})),
+              ElementsAre("PLIANT_deformable/friction"));
+  EXPECT_THAT(unused(with({"deformable.friction", "deformable.friction_stribeck"}, 0.1)),
+              ElementsAre("PLIANT_deformable/friction_stribeck"));
+}
+
 TEST(UnusedKeys, ALawReadsItsOwnConstantsOnly) {
   const auto with = [](SpringLaw law) {
     return level_with([&](LevelNode& n) {

@@ -43,5 +43,44 @@ close
   EXPECT_EQ(sheet.local.translation.y, 0.1f);
 }
 
+TEST_F(NumbersWindowTest, ASurfacesEffectsAreSetAndSaved) {
+  if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
+  ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
+  write_text(folder / "script.txt", R"(
+await Inspector/Search
+click Scene/sheet/row
+click Tab/Inspector
+set Inspector/deformable/texture.amplitude 0.05 mm
+set Inspector/deformable/texture.wavelength 2 mm
+set Inspector/deformable/texture.seed 1.5
+say must be a whole number
+set Inspector/deformable/texture.seed 7
+set Inspector/deformable/transient.amplitude 20
+set Inspector/deformable/transient.frequency 150
+set Inspector/deformable/transient.decay 60
+set Inspector/deformable/friction_stribeck 20 mm/s
+set Inspector/deformable/friction_viscous 0.25
+key Ctrl+S
+hear Saved
+close
+)");
+  const Said said = pliant(
+      {"edit", "small.glb", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
+      "ASAN_OPTIONS=detect_leaks=0 timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const Result<Level> level = load_level(folder / "small.glb");
+  ASSERT_TRUE(level.ok()) << level.error().message();
+  const Deformable& skin = *level->nodes[0].deformable;
+  EXPECT_DOUBLE_EQ(skin.texture_amplitude, 5e-5);
+  EXPECT_DOUBLE_EQ(skin.texture_wavelength, 2e-3);
+  EXPECT_EQ(skin.texture_seed, 7.0);
+  EXPECT_EQ(skin.transient_amplitude, 20.0);
+  EXPECT_EQ(skin.transient_frequency, 150.0);
+  EXPECT_EQ(skin.transient_decay, 60.0);
+  EXPECT_DOUBLE_EQ(skin.friction_stribeck, 0.02);
+  EXPECT_EQ(skin.friction_viscous, 0.25);
+}
+
 }  // namespace
 }  // namespace pliant::testing

@@ -233,6 +233,36 @@ TEST(EffectLaw, NothingPassesAForbiddenBoxBelowItsStiffnessTimesItsThickness) {
   EXPECT_LT(tip.go({0, -0.0195, 0}).force.y, 0.0) << "now from below";
 }
 
+// Pressed in from above and out at a side: no step of the force, and what was given comes back.
+TEST(EffectLaw, AForbiddenBoxIsLeftSidewaysByAContinuousForce) {
+  Case wall{"wall", {}, {}};
+  wall.effect.kind = EffectKind::kForbidden;
+  wall.effect.region = EffectRegion::kBox;
+  wall.effect.box = {{-0.05, -0.02, -0.05}, {0.05, 0.0, 0.05}};
+  wall.effect.stiffness = 1000.0;
+  for (const dvec3 out : {dvec3(0.06, -0.008, 0), dvec3(0.06, -0.008, 0.06), dvec3(0, -0.015, -0.06)}) {
+    Traveller tip(wall);
+    const std::vector<dvec3> corners{{0.01, 0.002, 0.0}, {0.01, -0.008, 0.0}, out};
+    EffectValue last = tip.go(corners[0]);
+    double work = 0.0, most = 0.0, step = 0.0;
+    dvec3 before = corners[0];
+    for (std::size_t leg = 1; leg < corners.size(); ++leg)
+      for (int i = 1; i <= 4000; ++i) {
+        const dvec3 x = glm::mix(corners[leg - 1], corners[leg], i / 4000.0);
+        const EffectValue value = tip.go(x);
+        work += 0.5 * dot(value.force + last.force, x - before);
+        step = std::max(step, length(value.force - last.force));
+        most = std::max(most, length(value.force));
+        last = value;
+        before = x;
+      }
+    EXPECT_GT(most, 8.0);
+    EXPECT_LT(step, 0.02 * most) << "15 um a step";
+    EXPECT_EQ(last.force, dvec3(0));
+    EXPECT_NEAR(work, 0.0, 1e-5);
+  }
+}
+
 TEST(EffectLaw, AForbiddenBallNeverPushesOnThroughItsMiddle) {
   Case ball{"ball", {}, {}};
   ball.effect.kind = EffectKind::kForbidden;

@@ -309,6 +309,12 @@ TEST_F(FitTissueCommandTest, WhatIsOfAnotherKindOfFitIsRefusedAndNotIgnored) {
   expect_refused({"fit", "hand", "--object", "organ", "--damping"}, 2, "--damping");
   expect_refused({"fit", "--sweep", "there", "--target", "press.csv", "--law", "cubic"}, 2, "--law");
   expect_refused({"fit", "--sweep", "there", "--target", "press.csv", "-o", "x.glb"}, 2, "--sweep");
+  expect_refused({"fit", "--sweep", "there", "--target", "press.csv", "--radius", "0.003"}, 2, "--radius");
+  expect_refused({"fit", "--sweep", "there", "--target", "press.csv", "--poisson", "0.3"}, 2, "--poisson");
+  expect_refused({"fit", "hand", "--object", "organ", "--probe", "finger"}, 2, "--probe");
+  expect_refused({"fit", "press.csv", "--object", "organ"}, 2, "--level");
+  expect_refused({"fit", "press.csv", "--law", "cubic", "--radius", "0.003"}, 2, "hertz");
+  expect_refused({"fit", "press.csv", "--poisson", "0.3"}, 2, "--radius");
 }
 
 TEST_F(FitTissueCommandTest, AnObjectWithoutAModulusIsAskedForOne) {

@@ -45,6 +45,26 @@ TEST_F(Sweep, NotesThatRunsShareAreSaidOnceWithHowManySaidThem) {
   EXPECT_EQ(report("m")["notes"][0]["runs"], 3);
 }
 
+// Two notes of one code about one key, of different nodes or with different words.
+TEST_F(Sweep, EveryDistinctNoteIsSeen) {
+  write_plan(R"("axes": {"tip.haptic_device.scale": [1, 2], "*.deformable.spring": ["linear", "cubic"],
+"*.deformable.stiffening": [100, 200]})");
+  ASSERT_EQ(sweep().status, 0);
+  ASSERT_EQ(pliant({"sweep", "merge", "out", "--out", "m"}).status, 0);
+  std::set<std::string> said, seen;
+  const auto words = [](std::string sentence) {
+    std::erase_if(sentence, [](char c) { return c >= '0' && c <= '9'; });
+    return sentence;
+  };
+  for (const Json& line : lines())
+    for (const Json& note : line["notes"]) said.insert(words(note["what"].get<std::string>()));
+  for (const Json& note : report("m")["notes"]) seen.insert(words(note["sentence"].get<std::string>()));
+  EXPECT_GE(said.size(), 2u);
+  for (const std::string& each : said)
+    EXPECT_TRUE(std::any_of(seen.begin(), seen.end(), [&](const std::string& it) { return it.starts_with(each); }))
+        << each;
+}
+
 TEST_F(Sweep, AxesAlongWhichNothingChangesAreNamed) {
   // `cubic` belongs to another spring law than the plate's.
   write_plan(R"("axes": {"*.deformable.stiffness": [100, 200], "*.deformable.cubic": [0, 1000]})");

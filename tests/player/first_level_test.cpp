@@ -138,6 +138,7 @@ TEST_F(FirstLevel, WhatCannotBeAuthoredIsRefusedAndNothingIsWritten) {
   expect_refused({"author", "organ.obj", "--soft", "livr", "-o", "a.glb"}, 2, "did you mean liver");
   expect_refused({"author", "organ.obj", "--soft", "liver", "--surface", "liver", "-o", "a.glb"}, 2, "twice");
   expect_refused({"author", "organ.obj", "--surface", "liver", "--tool", "rod", "-o", "a.glb"}, 2, "--soft");
+  expect_refused({"author", "organ.obj", "--surface", "liver", "--pin", "top", "-o", "a.glb"}, 2, "--pin top");
   expect_refused({"author", "organ.obj", "-o", "a.stl"}, 2, ".glb");
   expect_refused({"author", "absent.obj", "-o", "a.glb"}, 1, "absent.obj");
   expect_refused({"author", "organ.obj", "--preset", "stone", "-o", "a.glb"}, 2, "liver");

@@ -39,6 +39,27 @@ TEST_F(Run, WritesReportForcesAndPlotAsPromised) {
   EXPECT_EQ(read_text(folder / "out" / "forces.png").substr(1, 3), "PNG");
 }
 
+// A capsule has a torque as a tool has.
+TEST_F(Run, ACapsulesTorqueHasColumns) {
+  ASSERT_EQ(press("point").status, 0);
+  EXPECT_EQ(read_text(folder / "point" / "forces.csv").find(",tx,ty,tz"), std::string::npos);
+  const Said said = press("capsule", {"--set", "tip.probe.length=0.03", "--set", "tip.probe.radius=0.002"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  const ForcesTable forces = read_forces(folder / "capsule" / "forces.csv");
+  ASSERT_EQ(forces.columns.back(), "tz");
+}
+
+TEST_F(Run, EveryNoteHasACode) {
+  ASSERT_EQ(press("out", {"--set", "tip.haptic_device.max_force=500"}).status, 0);
+  bool capped = false;
+  const Json all = report("out")["notes"];
+  for (const Json& note : all) {
+    EXPECT_TRUE(note.contains("code")) << note.dump();
+    capped = capped || note["code"] == "device.capped";
+  }
+  EXPECT_TRUE(capped) << all.dump();
+}
+
 TEST_F(Run, TheForceIsTheLawOfTheDepthAndTheReportSaysWhatTheRowsSay) {
   ASSERT_EQ(press("out").status, 0);
   const ForcesTable forces = read_forces(folder / "out" / "forces.csv");

@@ -73,6 +73,24 @@ TEST(ProbeTool, OnAFixedBodyItsCouplingIsFelt) {
   }
 }
 
+// No contact is found in the depth of a body.
+TEST(ProbeTool, AFirstPoseInsideABodyIsRecorded) {
+  for (const double y : {-0.05, 0.05}) {
+    ToolStage stage(kSoftStep);
+    add_fixed(stage, dvec3(0.2, 0.2, 0.2), dvec3(0, -0.1, 0));
+    const Entity probe = add_probe(stage, {0.003, y, 0.002}, 0.004);
+    stage.prepare();
+    stage.lead(probe, dvec3(0.003, y, 0.002), 0.1);
+    const SoftTally& tally = stage.world.soft->tally;
+    if (y > 0.0) {
+      EXPECT_EQ(tally.began_inside, 0.0);
+      continue;
+    }
+    EXPECT_GT(tally.began_inside, 0.05);
+    EXPECT_EQ(stage.world.soft->bodies[tally.inside_a]->entity, probe);
+  }
+}
+
 SoftBody tissue() {
   SoftBody body;
   body.young = 1e4;

@@ -305,5 +305,18 @@ TEST(TouchCapsule, AProbeThatBeginsInsideIsNamed) {
   }
 }
 
+// Deeper than contacts are searched; at the centre every place of the surface is as near.
+TEST(TouchCapsule, AProbeThatBeginsDeepInsideIsNamed) {
+  for (const double radius : {0.0, 0.004})
+    for (const dvec3 begin : {dvec3(0), dvec3(0.01, 0.005, 0), dvec3(0, 0.2, 0)}) {
+      Stage stage;
+      stage.add(scenes::sphere(16, 0.05), frictionless());
+      stage.add_probe(begin, radius);
+      stage.prepare();
+      stage.tick();
+      EXPECT_EQ((stage.world.dropped & kDroppedInside) != 0, begin.y < 0.1) << radius << ' ' << begin.x;
+    }
+}
+
 }  // namespace
 }  // namespace pliant

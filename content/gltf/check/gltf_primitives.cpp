@@ -9,6 +9,7 @@
 #include "content/gltf/check/gltf_check.h"
 #include "content/gltf/check/gltf_meaning.h"
 #include "content/gltf/form/gltf_accessor.h"
+#include "content/level/varying_keys.h"
 
 namespace pliant {
 
@@ -262,8 +263,11 @@ void check_animations(const Json& json, Meaning& check) {
                     "give it translation, rotation and scale");
       const Json& sampler = samplers[channel["sampler"].get<std::size_t>()];
       const AccessorLayout output = layout_of(json["accessors"][sampler["output"].get<std::size_t>()]);
-      const std::map<std::string, std::size_t> widths = {
-          {"translation", 3}, {"rotation", 4}, {"scale", 3}, {"weights", 1}};
+      std::map<std::string, std::size_t> widths = {{"translation", 3}, {"rotation", 4}, {"scale", 3}, {"weights", 1}};
+      if (const Json* extension = extension_of(target, "KHR_animation_pointer")) {
+        if (path != "pointer") check.error(here + "/target/path", "must be 'pointer' beside KHR_animation_pointer");
+        if (find_varying_key(key_pointer((*extension)["pointer"].get<std::string>()).key)) widths["pointer"] = 1;
+      }
       const auto width = widths.find(path);
       if (width == widths.end()) continue;
       const bool any_small = path == "rotation" || path == "weights";

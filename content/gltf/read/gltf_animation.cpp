@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "content/gltf/form/gltf_accessor.h"
+#include "content/keys/extension_table.h"
+#include "content/level/varying_keys.h"
 
 namespace pliant {
 namespace {
@@ -42,16 +44,42 @@ class AnimationReader {
     return Done{};
   }
 
+  void say_other() {
+    if (other_pointers_ == 0) return;
+    std::vector<std::string> keys;
+    for (const VaryingKey& each : varying_keys()) keys.emplace_back(each.key);
+    const std::string more =
+        other_pointers_ == 1 ? "" : fmt::format(" and {} more pointers of animations", other_pointers_ - 1);
+    level_.notes.push_back(
+        fmt::format("{}{}: not played; of what pointers of animations name, {} of PLIANT_deformable "
+                    "are",
+                    other_, more, listed(keys)));
+  }
+
  private:
   Status channel(const tinygltf::Animation& animation, std::size_t number, const std::string& pointer,
                  LevelAnimation& out) {
     const tinygltf::AnimationChannel& from = animation.channels[number];
-    const std::optional<NodeProperty> property = property_of(from.target_path);
+    std::optional<NodeProperty> property = property_of(from.target_path);
+    std::int64_t node = from.target_node;
+    std::string key;
+    if (const Json* aims = extension_of(target_of(out, number), "KHR_animation_pointer")) {
+      const std::string aim = (*aims)["pointer"].get<std::string>();
+      const KeyPointer found = key_pointer(aim);
+      if (!find_varying_key(found.key)) {
+        note_other(pointer, aim);
+        return Done{};
+      }
+      if (Status s = check_node(pointer, found.node); !s) return s;
+      property = NodeProperty::kKey;
+      node = found.node;
+      key = found.key;
+    }
     if (!property) {
       level_.notes.emplace_back("animations move nodes; morph weights and what else they animate stay as they are");
       return Done{};
     }
-    if (from.target_node < 0) return Done{};  // glTF 2.0: ignore the channel
+    if (node < 0) return Done{};  // glTF 2.0: ignore the channel
     const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(from.sampler)];
     const std::size_t input = static_cast<std::size_t>(sampler.input),
                       output = static_cast<std::size_t>(sampler.output);
@@ -63,7 +91,7 @@ class AnimationReader {
     if (keys_ > most(limits::kKeys))
       return error_at(pointer, beyond("brings the level to", limits::kKeys, static_cast<double>(keys_),
                                       "sample its animations more coarsely"));
-    LevelChannel channel{node_of_[static_cast<std::size_t>(from.target_node)], *property, {}};
+    LevelChannel channel{node_of_[static_cast<std::size_t>(node)], *property, {}, key};
     channel.track.interpolation = interpolation_of(sampler);
     if (const std::string fault = fill(channel, read_floats(document_, input), read_floats(document_, output));
         !fault.empty())
@@ -73,16 +101,40 @@ class AnimationReader {
     return Done{};
   }
 
+  // The channel's target in the document, which has all extensions.
+  const Json& target_of(const LevelAnimation& animation, std::size_t channel) const {
+    return document_.json["animations"][static_cast<std::size_t>(animation.source)]["channels"][channel]["target"];
+  }
+
+  Status check_node(const std::string& pointer, std::int64_t node) const {
+    const Json& nodes = array_of(document_.json, "nodes");
+    if (node >= static_cast<std::int64_t>(nodes.size()))
+      return Error{pointer + "/target", fmt::format("points to node {} of {}", node, nodes.size()),
+                   "name one of these"};
+    if (level_.nodes[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(node)])].deformable) return Done{};
+    return Error{pointer + "/target", fmt::format("points to PLIANT_deformable of node {}, which has none", node),
+                 "add the extension to the node, or remove the channel"};
+  }
+
+  // One sentence for all of the file.
+  void note_other(const std::string& pointer, const std::string& aim) {
+    if (other_pointers_++ == 0) other_ = fmt::format("{} ({})", aim.substr(0, 100), pointer);
+  }
+
   // Returns "" or an error. Array sizes and the order of times have been checked.
   static std::string fill(LevelChannel& channel, const std::vector<float>& times, const std::vector<float>& values) {
     Track& track = channel.track;
-    const bool turns = channel.property == NodeProperty::kRotation;
+    const bool turns = channel.property == NodeProperty::kRotation, key = channel.property == NodeProperty::kKey;
     const bool spline = track.interpolation == Interpolation::kCubicSpline;
-    const std::size_t width = turns ? 4 : 3;
+    const std::size_t width = key ? 1 : turns ? 4 : 3;
+    const Key* const varied = key ? find_key(*find_extension("deformable"), channel.key) : nullptr;
     track.times.assign(times.begin(), times.end());
     if (track.times.back() > kFarthest) return fmt::format("lasts longer than {:g} s; shorten it", kFarthest);
     for (std::size_t i = 0; i + width <= values.size(); i += width)
-      track.values.emplace_back(values[i], values[i + 1], values[i + 2], turns ? values[i + 3] : 0.0f);
+      if (key)
+        track.values.emplace_back(values[i], 0.0f, 0.0f, 0.0f);
+      else
+        track.values.emplace_back(values[i], values[i + 1], values[i + 2], turns ? values[i + 3] : 0.0f);
     for (std::size_t i = 0; i < track.values.size(); ++i) {
       // A tangent is a rate. Its effect until the next key is at most its product with the interval, which is checked
       // here.
@@ -92,7 +144,10 @@ class AnimationReader {
         seconds = track.times[i / 3 + 1] - track.times[i / 3];
       if (tangent && i % 3 == 0 && i > 0) seconds = track.times[i / 3] - track.times[i / 3 - 1];
       const double size = length(track.values[i]) * seconds;
-      if (!(size <= kFarthest))
+      if (key && !tangent && !varied->range.holds(track.values[i].x))
+        return fmt::format("varies `{}` to {:g}, and it must be in the range {}", channel.key, track.values[i].x,
+                           range_text(*varied));
+      if (!(size <= (key ? 10.0 * varied->range.max : kFarthest)))
         return fmt::format("holds a value larger than {:g} in key {}; correct it", kFarthest, i);
       if (turns && !tangent && !(size > 1e-3)) return fmt::format("holds a rotation without length in key {}", i);
     }
@@ -103,6 +158,8 @@ class AnimationReader {
   Level& level_;
   std::vector<std::int32_t> node_of_;  // glTF number -> Level node
   std::uint64_t keys_ = 0;             // so far, of all channels
+  std::size_t other_pointers_ = 0;     // channels that are not played
+  std::string other_;                  // the first of them
 };
 
 }  // namespace
@@ -111,6 +168,7 @@ Status read_animations(const SourceDocument& document, Level& level) {
   AnimationReader reader(document, level);
   for (std::size_t a = 0; a < document.model.animations.size(); ++a)
     if (Status s = reader.animation(document.model.animations[a], a); !s) return s;
+  reader.say_other();
   return Done{};
 }
 

@@ -4,6 +4,7 @@
 #include "content/files/image.h"
 #include "content/gltf/write/gltf_model_writer.h"
 #include "content/gltf/write/gltf_save.h"
+#include "content/level/varying_keys.h"
 
 namespace pliant {
 
@@ -112,28 +113,31 @@ class Builder {
     for (const LevelAnimation& animation : level_.animations) add_animation(animation);
   }
   void add_animation(const LevelAnimation& animation) {
-    constexpr const char* kPaths[] = {"translation", "rotation", "scale"};
+    constexpr const char* kPaths[] = {"translation", "rotation", "scale", "pointer"};
     constexpr const char* kInterpolations[] = {"LINEAR", "STEP", "CUBICSPLINE"};
     tinygltf::Animation out;
     out.name = animation.name;
     for (const LevelChannel& from : animation.channels) {
+      if (!has_target(level_, from)) continue;
       const Track& track = from.track;
-      const bool turns = from.property == NodeProperty::kRotation;
+      const bool turns = from.property == NodeProperty::kRotation, number = from.property == NodeProperty::kKey;
       const std::vector<float> times(track.times.begin(), track.times.end());
       std::vector<float> values;
       for (const glm::dvec4& key : track.values)
-        for (int i = 0; i < (turns ? 4 : 3); ++i) values.push_back(static_cast<float>(key[i]));
+        for (int i = 0; i < (number ? 1 : turns ? 4 : 3); ++i) values.push_back(static_cast<float>(key[i]));
       tinygltf::AnimationSampler sampler;
       sampler.input = writer_.add_accessor(times.data(), times.size(), 4, kFloat, TINYGLTF_TYPE_SCALAR, 0);
       writer_.set_bounds(sampler.input, {static_cast<double>(times.front())}, {static_cast<double>(times.back())});
       sampler.output =
-          turns ? writer_.add_accessor(values.data(), track.values.size(), 16, kFloat, TINYGLTF_TYPE_VEC4, 0)
-                : writer_.add_accessor(values.data(), track.values.size(), 12, kFloat, TINYGLTF_TYPE_VEC3, 0);
+          number  ? writer_.add_accessor(values.data(), track.values.size(), 4, kFloat, TINYGLTF_TYPE_SCALAR, 0)
+          : turns ? writer_.add_accessor(values.data(), track.values.size(), 16, kFloat, TINYGLTF_TYPE_VEC4, 0)
+                  : writer_.add_accessor(values.data(), track.values.size(), 12, kFloat, TINYGLTF_TYPE_VEC3, 0);
       sampler.interpolation = kInterpolations[int(track.interpolation)];
       tinygltf::AnimationChannel channel;
       channel.sampler = static_cast<int>(out.samplers.size());
       channel.target_node = from.node;
       channel.target_path = kPaths[int(from.property)];
+      if (number) channel.target_path += "/" + from.key;  // until point_channels()
       out.samplers.push_back(std::move(sampler));
       out.channels.push_back(std::move(channel));
     }
@@ -185,8 +189,23 @@ Json camera_json(const Camera& camera) {
             {"zfar", static_cast<double>(camera.zfar)}}}};
 }
 
+void point_channels(Json& json, Json& animation) {
+  const std::string mark = "pointer/";
+  for (Json& channel : animation["channels"]) {
+    Json& target = channel["target"];
+    const std::string path = target["path"].get<std::string>();
+    if (!path.starts_with(mark)) continue;
+    const std::string pointer = pointer_of_key(target["node"].get<std::int64_t>(), path.substr(mark.size()));
+    target = {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};
+    declare_extension(json, "KHR_animation_pointer", false);
+  }
+}
+
 Result<SourceDocument> build_document(const Level& level) {
-  return Builder(level).build();
+  Result<SourceDocument> built = Builder(level).build();
+  if (!built || !built->json.contains("animations")) return built;
+  for (Json& animation : built->json["animations"]) point_channels(built->json, animation);
+  return built;
 }
 
 Result<BuiltParts> build_parts(const Level& level, const LevelParts& parts) {

@@ -40,6 +40,7 @@ MeshAsRead fingerprint(const LevelMesh& mesh) {
 ChannelAsRead fingerprint(const LevelChannel& channel, std::int32_t node) {
   Hash hash;
   hash.add(static_cast<int>(channel.property));
+  hash.add_bytes(channel.key.data(), channel.key.size());
   hash.add(static_cast<int>(channel.track.interpolation));
   add(hash, channel.track.times);
   add(hash, channel.track.values);

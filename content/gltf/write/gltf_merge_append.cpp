@@ -80,6 +80,7 @@ Status append_parts(Merge& merge, const std::vector<bool>& meshes_anew, std::vec
       Json& node = channel["target"]["node"];
       node = merge.number[node.get<std::size_t>()];
     }
+    point_channels(json, animation);
   });
   for (const Json& name : array_of(add, "extensionsUsed")) declare_extension(json, name.get<std::string>(), false);
   for (std::size_t k = 0; k < parts.meshes.size(); ++k)

@@ -6,6 +6,7 @@
 
 #include "content/gltf/write/gltf_merge.h"
 #include "content/gltf/write/gltf_save.h"
+#include "content/level/varying_keys.h"
 
 namespace pliant {
 
@@ -172,6 +173,9 @@ bool follow(Json& target, Merge& merge) {
   if (extension_of(target, "KHR_animation_pointer")) {
     Json& pointer = target["extensions"]["KHR_animation_pointer"]["pointer"];
     pointer = pointer_now(pointer.get<std::string>(), merge);
+    const KeyPointer key = key_pointer(pointer.get<std::string>());
+    for (std::size_t n = 0; n < merge.level.nodes.size() && key.node >= 0; ++n)
+      if (merge.number[n] == key.node) return merge.level.nodes[n].deformable.has_value();
     return pointer != "";
   }
   if (!target.contains("node")) return true;

@@ -40,6 +40,8 @@ void drop_unused_data(SourceDocument& document);
 
 // Adds to extensionsUsed, and to extensionsRequired if `required`.
 void declare_extension(Json& json, const std::string& name, bool required);
+// Gives built channels of keys their KHR_animation_pointer, by the number of their node; `json` declares it.
+void point_channels(Json& json, Json& animation);
 Json transform_json(const LocalTransform& local);  // non-default translation, rotation and scale
 
 // Moves a document's pictures (unless `keep_image_uris`) and buffers into one buffer, /buffers/0, and returns it.

@@ -106,6 +106,7 @@ Json filled(const Key& key, double number) {
     case KeyType::kText:
     case KeyType::kChoice:
     case KeyType::kNode:
+    case KeyType::kNames:
       return {};
   }
   UNREACHABLE();

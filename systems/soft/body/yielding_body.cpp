@@ -45,6 +45,11 @@ void YieldingBody::set(const DeformableParameters& now) {
   damping_ = now.contact_damping_material ? motion(deformable_, 1.0).damping * now.stiffness : now.contact_damping;
 }
 
+void YieldingBody::vary(const Varying& varying, double time) {
+  pliant::vary(varying, time, deformable_);
+  set(deformable_);
+}
+
 bool YieldingBody::place(ContactPoint& contact, bool is_a, Dent& dent) const {
   SurfacePoint& mine = is_a ? contact.a : contact.b;
   const dvec3 x = pose_.to_local((is_a ? contact.b : contact.a).position);

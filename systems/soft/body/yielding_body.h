@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "components/transform.h"
+#include "components/varying.h"
 #include "components/world.h"
 #include "systems/soft/body/immovable_body.h"
 #include "systems/soft/contact/contact_point.h"
@@ -30,6 +31,7 @@ class YieldingBody final : public ImmovableBody {
   YieldingBody(const Mesh& mesh, const Deformable& deformable, const Pose& pose, std::size_t slot);
 
   void set(const DeformableParameters& now);
+  void vary(const Varying& varying, double time);
 
   // Moves its contacts to the tissue's points as found by P1's collision: foot, interpolated normal and height over the
   // rest surface. Drops contacts beside an open surface's rim. `self`: its index among the bodies. Prepares the law for

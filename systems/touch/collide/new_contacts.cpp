@@ -165,13 +165,24 @@ void find_entry(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, 
   }
 }
 
+// Whether x is behind the triangle that is nearest to it.
+bool is_behind(const Mesh& mesh, const FlatPoint& nearest, dvec3 x) {
+  if (!nearest.valid()) return false;
+  const uvec3 t = mesh.triangles[nearest.triangle];
+  const dvec3 a(mesh.position(t.x)), b(mesh.position(t.y)), c(mesh.position(t.z));
+  return dot(x - a, cross(b - a, c - a)) < 0;
+}
+
 // The first pose may be inside a body; only a closed one has an inside.
 void find_inside(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, double along) {
   if (!s.mesh.closed) return;
   const dvec3 x = way.to.at(along);
-  const FlatPoint near =
-      closest_flat(s.mesh, x, std::max(tip.tip.radius, 0.1 * static_cast<double>(s.mesh.box.diagonal())));
-  if (!near.valid()) return;
+  const auto whole = static_cast<double>(s.mesh.box.diagonal());
+  const FlatPoint near = closest_flat(s.mesh, x, std::max(tip.tip.radius, 0.1 * whole));
+  if (!near.valid()) {  // deeper no contact begins
+    if (is_behind(s.mesh, closest_flat(s.mesh, x, whole), x)) s.world.dropped |= kDroppedInside;
+    return;
+  }
   const Foot foot = s.downhill(near.triangle, near.barycentric, x);
   if (foot.height >= tip.tip.radius) return;
   begin_at(s, tip, {way.to, way.to}, foot, along);

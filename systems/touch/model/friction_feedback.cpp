@@ -79,6 +79,15 @@ double knock(ContactEffects& now, const Deformable& deformable, double inward, d
   return now.knock_force;
 }
 
+// [J] that a contact has gained as its surface's stiffness changed in this tick, by no hand. Of the linear law
+// 1/2 dk d0 d1, d0 and d1 the depths before and now: with the trapezoids of the force's work it is exact.
+double gained(const Contact& contact, const LoadedContact& loaded, const Pressing& pressing) {
+  const double before = pressing.energy_before, now = pressing.stored.energy;
+  if (before == now || !(before > 0.0) || !(contact.share > 0.0)) return 0.0;
+  const double was = contact.load / contact.share / std::sqrt(2.0 * before);
+  return 0.5 * loaded.load * loaded.load / loaded.share * (1.0 - before / now) * was;
+}
+
 // One object's contacts of a tick.
 struct Pressed {
   Room<Pressing, kMaxContactsPerObject> room;
@@ -115,7 +124,7 @@ bool settle(const ContactSearch& search, const Deformable& deformable, Pressed& 
 }
 
 // Rate term and friction on top of the elastic force; world frame.
-void feel(World& world, const Deformable& deformable, const Mesh& mesh, const ObjectState& object, const Pose& pose,
+void feel(World& world, const Deformable& deformable, const Mesh& mesh, ObjectState& object, const Pose& pose,
           const LoadedContact& loaded, Pressing& pressing, Tick tick) {
   Registry& registry = world.registry;
   Contact& contact = *pressing.contact;
@@ -135,6 +144,15 @@ void feel(World& world, const Deformable& deformable, const Mesh& mesh, const Ob
     normal += contact.effects.knock_force;
   }
   contact.effects.pressed = true;
+  if (object.stiffness_before > 0.0) {
+    const double gain = gained(contact, loaded, pressing);
+    for (std::size_t h = 0; h < object.accounts.size() && gain != 0.0; ++h) {
+      ProbeState& hand = world.touch->probes[h];
+      if (hand.entity != contact.probe) continue;
+      hand.stiffened += gain;
+      object.accounts[h].given += gain;
+    }
+  }
   dvec3 force = loaded.force + (along > 0 ? beside / along : 0.0) * place.gradient;
   contact.load = loaded.load;
   contact.share = loaded.share;
@@ -193,6 +211,7 @@ void release(Contact& contact) {
 void friction_feedback(World& world, Tick tick) {
   Registry& registry = world.registry;
   for (auto [entity, probe] : registry.view<Probe>()) probe.force = probe.torque = dvec3(0);
+  for (ProbeState& hand : world.touch->probes) hand.stiffened = 0.0;
   for (const std::uint32_t slot : world.touch->awake) {
     ObjectState& object = world.touch->objects[slot];
     const Deformable& deformable = registry.get<Deformable>(object.entity);
@@ -212,7 +231,7 @@ void friction_feedback(World& world, Tick tick) {
         if (!source.tracked || source.tip.drawn || source.settled != settled) continue;
         Contact& contact = registry.get<Contact>(source.contact);
         advance_free_surface(contact, source.place, mesh, object.motion);
-        pressing[count] = {&source, &contact, {}, {}, 0.0, {}, {}, source.place.gradient, {}};
+        pressing[count] = {&source, &contact, {}, 0.0, {}, 0.0, {}, {}, source.place.gradient, {}};
         if (contact.height < 0) pressing[count].velocity = velocity_on(registry, pose, contact, source, tick);
         if (contact.height < 0 && uneven) {
           pressing[count].raised = raise(world, object, deformable, mesh, pressing[count], tick);
@@ -231,7 +250,10 @@ void friction_feedback(World& world, Tick tick) {
       }
     }
     object.stored = 0.0;
-    if (count == 0) continue;
+    if (count == 0) {
+      if (object.stiffness_before > 0.0) object.stiffness_before = deformable.stiffness;
+      continue;
+    }
     const std::span<SharedDent> shared = dents.of(pressing.first(count));
     object.stored = share_load({loaded.data(), count}, object.kernel, shared);
     if (!std::isfinite(object.stored)) {  // from a registered law or shape
@@ -245,6 +267,7 @@ void friction_feedback(World& world, Tick tick) {
         release(*pressing[i].contact);
       }
     }
+    if (object.stiffness_before > 0.0) object.stiffness_before = deformable.stiffness;
     for (const SharedDent& dent : shared) turn_at_ridge(registry, pose, dent, pressing[dent.a], pressing[dent.b]);
   }
 }

@@ -23,6 +23,7 @@ struct Pressing {
   SourceState* source;
   Contact* contact;
   StoredEnergy stored;
+  double energy_before = 0.0;  // [J] what it would store with last tick's stiffness, of a surface that varies
   Painted stiffness;
   double slope = 0.0;  // [N/m] of the stored energy's force
   ContactLaw law;

@@ -34,6 +34,17 @@ Painted relaxed_depth(const FootBlend& place, const Mesh& mesh, const Motion& mo
   return sum;
 }
 
+// Of a surface that varies: with last tick's stiffness; k3 of the cubic law and the arm stay.
+double energy_before(const ObjectState& object, const Deformable& deformable, const ContactLaw& law, double depth,
+                     double energy) {
+  if (object.stiffness_before == 0.0 || object.stiffness_before == deformable.stiffness) return energy;
+  const double share = object.stiffness_before / deformable.stiffness;
+  ContactLaw before = law;
+  before.stiffness *= share;
+  before.law.cubic /= share;
+  return before.stored(depth).energy;
+}
+
 }  // namespace
 
 void advance_free_surface(Contact& contact, const FootBlend& place, const Mesh& mesh, const Motion& motion) {
@@ -67,6 +78,7 @@ bool store(const ContactSearch& search, const Deformable& deformable, Pressing& 
   pressing.law = law;
   pressing.stored = law.stored(depth);
   pressing.slope = law.slope(depth);
+  pressing.energy_before = energy_before(object, deformable, law, depth, pressing.stored.energy);
   const double least = kLeastDepth * deformable.reach;
   if (!(pressing.stored.energy > 0.5 * law.stiffness * least * least)) return false;
   out.energy = pressing.stored.energy;

@@ -161,7 +161,8 @@ struct TissueAccount {
 // Touch state of one Deformable.
 struct ObjectState {
   Entity entity;
-  Motion motion;  // of unpainted vertices
+  Motion motion;                  // of unpainted vertices
+  double stiffness_before = 0.0;  // [N/m] last tick's, of a surface that varies (components/varying.h); 0: constant
   PaintedMotion painted;
   std::vector<float> felt_stiffness;  // the painted factors as a contact feels them (smooth_paint.h)
   std::vector<float> felt_relaxation;
@@ -208,6 +209,8 @@ struct ProbeState {
   dvec3 turned{0};     // [rad] sum of the small rotations
   std::vector<Tip> tips;
   std::uint32_t first_tip = 0;  // index of its first tip in ObjectState::searched
+  double stiffened = 0.0;       // [J] of the world: energy that its contacts gained in this tick as stiffness changed
+  double stiffened_sum = 0.0;   // [J] of the hand: the sum of what it gained so far and may get back
 };
 
 struct TouchState {

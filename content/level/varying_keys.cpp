@@ -1,0 +1,48 @@
+#include "content/level/varying_keys.h"
+
+#include <algorithm>
+
+namespace pliant {
+namespace {
+
+constexpr const char* kNodes = "/nodes/";
+constexpr const char* kExtension = "/extensions/PLIANT_deformable/";
+
+}  // namespace
+
+const std::vector<VaryingKey>& varying_keys() {
+  using D = DeformableParameters;
+  static const std::vector<VaryingKey> keys{{"stiffness", {&D::stiffness}},
+                                            {"contact_damping", {&D::contact_damping}},
+                                            {"damping_ratio", {&D::damping_ratio}},
+                                            {"friction", {&D::friction_static, &D::friction_sliding}},
+                                            {"friction_static", {&D::friction_static}},
+                                            {"friction_sliding", {&D::friction_sliding}},
+                                            {"friction_viscous", {&D::friction_viscous}}};
+  return keys;
+}
+
+const VaryingKey* find_varying_key(const std::string& key) {
+  for (const VaryingKey& each : varying_keys())
+    if (key == each.key) return &each;
+  return nullptr;
+}
+
+KeyPointer key_pointer(const std::string& pointer) {
+  const std::string nodes = kNodes, extension = kExtension;
+  if (!pointer.starts_with(nodes)) return {};
+  const std::size_t end = std::min(pointer.find_first_not_of("0123456789", nodes.size()), pointer.size());
+  const std::string digits = pointer.substr(nodes.size(), end - nodes.size());
+  if (digits.empty() || digits.size() > 9 || pointer.compare(end, extension.size(), extension) != 0) return {};
+  std::string key = pointer.substr(end + extension.size());
+  std::replace(key.begin(), key.end(), '/', '.');
+  return {std::stol(digits), key};
+}
+
+std::string pointer_of_key(std::int64_t node, const std::string& key) {
+  std::string path = key;
+  std::replace(path.begin(), path.end(), '.', '/');
+  return kNodes + std::to_string(node) + kExtension + path;
+}
+
+}  // namespace pliant
