@@ -11,9 +11,24 @@
 
 namespace pliant {
 
-enum class KeyType { kNumber, kFlag, kText, kChoice, kColor, kPair, kVector, kPoints, kBox, kNode, kNumberOrMaterial };
+enum class KeyType {
+  kNumber,
+  kFlag,
+  kText,
+  kChoice,
+  kColor,
+  kPair,
+  kVector,
+  kPoints,
+  kBox,
+  kNode,
+  kNumberOrMaterial,
+  kItems
+};
 
 inline constexpr std::size_t kMostPoints = 16;  // of a key of type kPoints
+
+inline constexpr std::size_t kMostItems = kMostLayers;  // of a key of type kItems
 
 // One key. The owner, passed as void*, is a LevelNode (node extensions) or Level (scene extensions).
 struct Key {
@@ -24,7 +39,8 @@ struct Key {
   Range usual;                                      // `validate` queries values outside of it, except 0
   std::vector<std::string> (*choices)() = nullptr;  // of a choice: its words, including registered ones
   std::string doc;
-  bool alias = false;  // sets other keys; never saved
+  std::vector<Key> items;  // of a list of objects: their keys; the owner of these is a Layer
+  bool alias = false;      // sets other keys; never saved
   std::function<Json(const void*)> get;
   std::function<void(void*, const Json&)> set;  // requires a checked value
 };
