@@ -347,7 +347,7 @@ TEST(Yield, AGrooveIsPressedWithTheYieldForce) {
   EXPECT_EQ(stage.world.dropped, 0u);
 }
 
-TEST(Yield, IsToldOncePerPress) {
+TEST(Yield, IsAnEventOncePerPress) {
   LayeredStage stage(plastic());
   for (int press = 0; press < 2; ++press) {
     const std::vector<TouchEvent> events = all_events(stage, stage.probe, {0, -0.005 - 0.002 * press, 0}, 0.5);

@@ -75,8 +75,17 @@ DentAt dent_at(const ShareKernel& kernel, const SetDent& dent, dvec3 p, dvec3 n)
   return {phi * facing, facing * kernel.slope(r2) * d, phi * dent.normal};
 }
 
-// The drawn dents under the vertices of a dent grow by `depth`.
-void draw_set(const ContactSearch& search, const SourceState& source, const SetDent& dent, double depth) {
+// Dents that overlap make a groove, not a deeper dent: s = (sum v_j^p)^(1/p), p = 16, v_j of one dent.
+double to_the_16th(double v) {
+  v *= v, v *= v, v *= v;
+  return v * v;
+}
+double root_16th(double v) {
+  return std::sqrt(std::sqrt(std::sqrt(std::sqrt(v))));
+}
+
+// What is drawn is the deepest one, which needs no sum per vertex: at most a few percent of the depth less.
+void draw_set(const ContactSearch& search, const SourceState& source, const SetDent& dent) {
   const Mesh& mesh = search.mesh;
   ObjectState& object = search.object;
   HeightField& field = search.world.fields[search.world.registry.get<Deformable>(object.entity).field];
@@ -88,13 +97,14 @@ void draw_set(const ContactSearch& search, const SourceState& source, const SetD
     for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
       const dvec3 n(mesh.normal(v));
       const DentAt at = dent_at(object.kernel, dent, dvec3(mesh.position(v)), n);
+      if (!(dent.depth * at.value > -static_cast<double>(field.set[v].w))) continue;
       const dvec3 slope = at.by_place - dot(at.by_place, n) * n;  // the normal turns by -grad h, h = -depth phi
-      field.set[v] += vec4(vec3(depth * slope), static_cast<float>(-depth * at.value));
+      field.set[v] = vec4(vec3(dent.depth * slope), static_cast<float>(-dent.depth * at.value));
     }
   }
 }
 
-// Deepens the dent that stays at the foot by `depth` there. False: no more dents can be told apart.
+// Makes the set at the foot `depth` deep. False: there is no room for another dent.
 bool deepen(const ContactSearch& search, const Deformable& deformable, const SourceState& source, double depth) {
   ObjectState& object = search.object;
   const dvec3 p = source.place.p, n = source.place.normal;
@@ -111,9 +121,11 @@ bool deepen(const ContactSearch& search, const Deformable& deformable, const Sou
     object.sets.push_back({p, n, 0.0});
     nearest = &object.sets.back();
   }
-  const double more = depth / dent_at(object.kernel, *nearest, p, n).value;
-  nearest->depth += more;
-  draw_set(search, source, *nearest, more);
+  double others = 0.0;
+  for (const SetDent& dent : object.sets)
+    if (&dent != nearest) others += to_the_16th(dent.depth * dent_at(object.kernel, dent, p, n).value);
+  nearest->depth = root_16th(std::max(0.0, to_the_16th(depth) - others)) / dent_at(object.kernel, *nearest, p, n).value;
+  draw_set(search, source, *nearest);
   return true;
 }
 
@@ -132,7 +144,7 @@ bool yields(const ContactSearch& search, const Deformable& deformable, Pressing&
     const double left = loaded.share * pressing.law.stored(depth - middle).force;
     (left > limit + deformable.yield_hardening * middle ? low : high) = middle;
   }
-  if (!deepen(search, deformable, *pressing.source, high)) {
+  if (!deepen(search, deformable, *pressing.source, high - before.height)) {
     search.world.dropped |= kDroppedSets;
     return false;
   }
@@ -160,16 +172,22 @@ void find_hole(const ObjectState& object, const SourceState& source, Contact& co
 }
 
 Raised set_under(const ObjectState& object, const FootBlend& place, const AxisPlace& axis) {
-  Raised out;
-  dvec3 by_place(0), by_normal(0);
+  double sum = 0.0;
+  dvec3 by_place(0), by_normal(0);  // of the sum, over p
   for (const SetDent& dent : object.sets) {
     const DentAt at = dent_at(object.kernel, dent, place.p, place.normal);
-    out.height -= dent.depth * at.value;
-    by_place -= dent.depth * at.by_place;
-    by_normal -= dent.depth * at.by_normal;
+    if (!(at.value > 0.0) || !(dent.depth > 0.0)) continue;
+    const double power = to_the_16th(dent.depth * at.value);
+    sum += power;
+    by_place += power / at.value * at.by_place;
+    by_normal += power / at.value * at.by_normal;
   }
-  out.gradient = glm::transpose(with_axis(place.moves, axis)) * by_place +
-                 glm::transpose(with_axis(place.turns, axis)) * by_normal;
+  Raised out;
+  if (!(sum > 0.0)) return out;
+  const double depth = root_16th(sum), scale = depth / sum;
+  out.height = -depth;
+  out.gradient = -scale * (glm::transpose(with_axis(place.moves, axis)) * by_place +
+                           glm::transpose(with_axis(place.turns, axis)) * by_normal);
   return out;
 }
 
