@@ -28,6 +28,15 @@ struct ContactEffects {
   double finest = 0.0;         // [m]   finest wavelength of texture and relief that is felt at this speed
 };
 
+// What the tip has done to the surface here. Written by friction_feedback; all zero where nothing breaks or yields.
+struct ContactDamage {
+  std::uint32_t broken = 0;  // layers that it has gone through
+  bool relaxes = false;      // the outer layer broke: its dent recovers from the next tick on
+  bool yields = false;       // it has pressed with the yield force, and not with half of it since
+  double grip = 0.0;         // [m] bristle of the tip in its hole, along the normal
+  bool slides = false;       // in its hole
+};
+
 struct Contact {
   Entity probe;                   // has a Probe; kNoEntity: unused, or tissue presses here (systems/touch/feed/press.h)
   std::uint8_t tip = 0;           // index into ProbeState::tips
@@ -64,6 +73,7 @@ struct Contact {
   double bristle_damping = 0.0;    // [N s/m] the same; while it slides, the rise of friction with speed
 
   ContactEffects effects;
+  ContactDamage damage;
 
   // Field. Written by force_field.
   double amplitude = 0.0;  // [m]  alpha >= 0: the field's target at distance r is -alpha f(r)

@@ -21,7 +21,7 @@ bool has_closed_form(const Deformable& d, const Mesh& mesh) {
 }
 
 bool gpu_knows(const Deformable& d) {
-  return !registered_spring(d.spring) && !registered_shape(d.shape);
+  return !registered_spring(d.spring) && !registered_shape(d.shape) && !(d.yield_force > 0);
 }
 
 double default_reach(const Mesh& mesh) {

@@ -37,12 +37,22 @@ struct DeformableRange {
   static constexpr Range kTransientFrequency{1.0, 5000};   // [Hz]
   static constexpr Range kTransientDecay{1.0, 10000.0};    // [1/s]
   static constexpr Range kRelief{0.0, 10.0};               // [1]
+  static constexpr Range kLayerThickness{1e-6, 1e3};       // [m]
+  static constexpr Range kBreakingForce{0.0, 1e3};         // [N]
+  static constexpr Range kBreakingEnergy{0.0, 1e3};        // [J]
+  static constexpr Range kRemains{0.0, 1.0};               // [1]
+  static constexpr Range kGrip{0.0, 1e5};                  // [N/m]
+  static constexpr Range kHoleRadius{1e-6, 1.0};           // [m]
+  static constexpr Range kYieldForce{0.0, 1e3};            // [N]
+  static constexpr Range kHardening{0.0, 1e7};             // [N/m]
 };
 
 // Whether a shape is that of an indenter on a half-space, so that `contact_radius` has an effect.
 bool depends_on_contact(Shape shape);
 // Whether a law has the Maxwell arm of the standard linear solid: `relaxation.*`, and a memory per vertex.
 bool has_arm(SpringLaw law);
+
+inline constexpr std::size_t kMostLayers = 8;
 
 // A knock above this share of the touch rate would alias: there is none. [1]
 inline constexpr double kMostKnock = 0.4;
@@ -64,8 +74,8 @@ DentSize dent_size(const DeformableParameters& deformable);
 // (systems/touch/model/field.h); else it takes every step (components/field_feed.h).
 bool has_closed_form(const Deformable& deformable, const Mesh& mesh);
 
-// Whether the GPU implements its law and its shape. Registered laws and shapes are functions of the program
-// (pliant/surface_law.h): their fields are always stepped on the CPU.
+// Whether the GPU implements its law and its shape, and no dent of it stays. Registered laws and shapes are functions
+// of the program (pliant/surface_law.h): their fields are always stepped on the CPU, as those that yield are.
 bool gpu_knows(const Deformable& deformable);
 
 }  // namespace pliant

@@ -24,6 +24,9 @@ struct HeightField {
   std::vector<vec4> arm;      // [m] of the residual: force of the arm over k
   std::vector<vec4> relaxed;  // [1,1,1,m] viscous extension under the targets: creep of the arm's damper
 
+  // Of a surface that yields, else empty: the dents that stay, part of the stream. Written by friction_feedback.
+  std::vector<vec4> set;  // [1,1,1,m]
+
   std::vector<std::uint8_t> zone_state;  // per zone: bits of ZoneBit
   std::vector<std::uint32_t> awake;      // zones whose stream may change this tick (capacity: all zones)
   std::uint32_t awake_vertices = 0;

@@ -41,6 +41,12 @@ std::vector<Note> explain_dropped(std::uint32_t dropped) {
       {kDroppedDetail, "dropped.detail",
        "a texture passed a probe faster than the touch rate resolves (0.4 of it), and was smoothed there",
        "raise `touch_rate`, move slower, or give a longer `texture.wavelength`"},
+      {kDroppedHoles, "dropped.holes",
+       "a surface was broken in more places than it remembers (64): behind the probe the last ones are whole again",
+       "raise `hole_radius`, so that near holes count as one"},
+      {kDroppedSets, "dropped.sets",
+       "a surface yielded in more places than it remembers (256), and stayed elastic in the others",
+       "raise `reach`, so that near dents count as one, or `yield.force`"},
       {kDroppedSetBack, "dropped.set_back",
        "a tool separated from its device (more than 2 m, or faster than 50 m/s) and was reset to the device's pose",
        "reduce `soft_step`, or move slower"}};

@@ -42,6 +42,8 @@ enum DroppedBit : std::uint32_t {  // 8 was used by an earlier bit and stays unu
   kDroppedJump = 256,  // a device jumped farther than a hand can move, and its force went to zero: check its tracking
   kDroppedInside = 2048,  // a probe began inside an object, and gets no force until it has left: move it
   kDroppedDetail = 1024,  // a texture passed faster than the touch rate resolves, and was smoothed: raise `touch_rate`
+  kDroppedHoles = 4096,   // a surface was broken in more places than it remembers: the last ones close again
+  kDroppedSets = 8192,    // a surface yielded in more places than it remembers: there it stays elastic
   kDroppedSetBack = 512,  // a tool got away from its device and was set back to it: reduce `soft_step`
 };
 

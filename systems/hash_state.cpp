@@ -21,6 +21,16 @@ void hash_state(const World& world, Hash& hash) {
     add(hash, field.rate);
     add(hash, field.arm);
     add(hash, field.relaxed);
+    add(hash, field.set);
+    for (const Hole& hole : object.holes) {
+      add(hash, hole.p);
+      hash.add(hole.radius);
+      hash.add(hole.broken);
+    }
+    for (const SetDent& dent : object.sets) {
+      add(hash, dent.p);
+      hash.add(dent.depth);
+    }
     for (const FieldSource& term : object.terms) {
       add(hash, dvec3(term.center));
       add(hash, dvec3(term.normal));
@@ -53,6 +63,10 @@ void hash_state(const World& world, Hash& hash) {
       hash.add(contact.amplitude);
       add(hash, contact.bristle);
       add(hash, contact.force);
+      if (contact.damage.broken > 0) {
+        hash.add(contact.damage.broken);
+        hash.add(contact.damage.grip);
+      }
     }
   }
   hash_soft(world, hash);

@@ -6,6 +6,7 @@
 #include "content/generate/fields_level.h"
 #include "content/generate/instrument_levels.h"
 #include "content/generate/lattice_sphere.h"
+#include "content/generate/layers_level.h"
 #include "content/generate/minimal.h"
 #include "content/generate/sky.h"
 #include "content/generate/stage.h"
@@ -299,6 +300,7 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   if (Status s = write_tool_levels(levels); !s) return s;
   if (Status s = write_instrument_levels(levels); !s) return s;
   if (Status s = write_fields_level(levels); !s) return s;
+  if (Status s = write_layers_level(levels); !s) return s;
   if (Status s = write_effects(levels); !s) return s;
   return write_minimal(levels);
 }

@@ -64,6 +64,15 @@ Json schema_of(const Key& key, const Json& standard) {
       out["items"] = {{"type", "string"}, {"minLength", 1}};
       out["maxItems"] = kMostNames;
       break;
+    case KeyType::kItems: {
+      Json properties = Json::object();
+      const Layer usual;
+      for (const Key& of : key.items) properties[of.name] = schema_of(of, of.get(&usual));
+      out["type"] = "array";
+      out["items"] = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+      out["maxItems"] = kMostItems;
+      break;
+    }
     case KeyType::kBox: {
       const Json corner = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
       out["type"] = "object";
@@ -74,6 +83,19 @@ Json schema_of(const Key& key, const Json& standard) {
     }
   }
   return out;
+}
+
+std::string table_row(const std::string& name, const Key& key, const Json& standard) {
+  std::string range;
+  if (key.choices)
+    for (const std::string& each : key.choices()) range += (range.empty() ? "`" : " · `") + each + "`";
+  const bool plain = key.type == KeyType::kText || key.type == KeyType::kNode || key.type == KeyType::kFlag ||
+                     key.type == KeyType::kItems;
+  if (range.empty() && !plain) range = range_text(key);
+  const std::string shown = key.alias || standard.is_null() || standard == Json("") ? ""
+                            : standard.is_string()                                  ? standard.get<std::string>()
+                                                                                    : standard.dump();
+  return fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", name, key.unit, range, usual_text(key), shown, key.doc);
 }
 
 // An object with this extension at its defaults.
@@ -122,19 +144,12 @@ std::string extension_tables() {
         "### {} extension `PLIANT_{}`\n\n{}\n\n| key | unit | range | usual | default | meaning "
         "|\n|---|---|---|---|---|---|\n",
         extension.on_scene ? "Scene" : "Node", extension.name, extension.doc);
-    for (const Key& key : extension.keys) {
-      std::string range;
-      if (key.choices)
-        for (const std::string& each : key.choices()) range += (range.empty() ? "`" : " · `") + each + "`";
-      if (range.empty() && key.type != KeyType::kText && key.type != KeyType::kNode && key.type != KeyType::kFlag)
-        range = range_text(key);
-      const Json standard = key.get(defaults.owner);
-      const std::string shown = key.alias || standard.is_null() || standard == Json("") ? ""
-                                : standard.is_string()                                  ? standard.get<std::string>()
-                                                                                        : standard.dump();
-      out += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.name, key.unit, range, usual_text(key), shown,
-                         key.doc);
-    }
+    for (const Key& key : extension.keys) out += table_row(key.name, key, key.get(defaults.owner));
+    for (const Key& key : extension.keys)
+      for (const Key& of : key.items) {
+        const Layer usual;
+        out += table_row(key.name + "[]." + of.name, of, of.get(&usual));
+      }
     out += "\n";
   }
   return out;

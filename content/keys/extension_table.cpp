@@ -125,6 +125,61 @@ Key double_box(std::string name, DBox Effect::*member, std::string doc) {
       });
 }
 
+// Keys of an item of `layers`; their owner is a Layer.
+std::vector<Key> layer_keys() {
+  using R = DeformableRange;
+  const auto l = [](auto member) {
+    return [member](void* owner) -> auto& {
+      return static_cast<Layer*>(owner)->*member;
+    };
+  };
+  std::vector<Key> keys;
+  keys.push_back(text("name", KeyType::kText, l(&Layer::name), "what its breaking is reported as"));
+  keys.push_back(number("thickness", "m", {R::kLayerThickness, {1e-4, 0.1}}, l(&Layer::thickness),
+                        "of the layer: where it ends, the next one begins"));
+  keys.push_back(number("stiffness", "N/m", {R::kStiffness, {1.0, 1e5}}, l(&Layer::stiffness),
+                        "small-depth slope of its force against the depth below its top, by the law `spring`"));
+  keys.push_back(number("force", "N", {R::kBreakingForce, {0.05, 20.0}}, l(&Layer::force),
+                        "its force at which it breaks; 0: not by force"));
+  keys.push_back(number("energy", "J", {R::kBreakingEnergy, {1e-5, 1.0}}, l(&Layer::energy),
+                        "energy stored in it at which it breaks; 0: not by energy"));
+  keys.push_back(number("remains", "1", R::kRemains, l(&Layer::remains),
+                        "share of its force, and of the outer layer's dent, that stays where it is broken"));
+  keys.push_back(number("grip", "N/m", {R::kGrip, {1.0, 1e3}}, l(&Layer::grip),
+                        "friction along a probe in its hole, per length inside"));
+  return keys;
+}
+
+Key layers_key() {
+  Key out;
+  out.name = "layers";
+  out.type = KeyType::kItems;
+  out.doc = fmt::format(
+      "layers that a probe breaks through, from the surface down, at most {}; below the last one is the law of "
+      "`stiffness`",
+      kMostLayers);
+  out.items = layer_keys();
+  out.get = [items = out.items](const void* owner) {
+    Json list = Json::array();
+    const Layer usual;
+    for (const Layer& layer : static_cast<const LevelNode*>(owner)->deformable->layers) {
+      Json item = Json::object();
+      for (const Key& key : items)
+        if (Json value = key.get(&layer); value != key.get(&usual) || key.name == "thickness") item[key.name] = value;
+      list.push_back(std::move(item));
+    }
+    return list;
+  };
+  out.set = [items = out.items](void* owner, const Json& value) {
+    std::vector<Layer> layers(value.size());
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      for (const Key& key : items)
+        if (value[i].contains(key.name)) key.set(&layers[i], value[i][key.name]);
+    static_cast<LevelNode*>(owner)->deformable->layers = Layers(std::move(layers));
+  };
+  return out;
+}
+
 std::vector<Key> deformable_keys() {
   using D = Deformable;
   using R = DeformableRange;
@@ -211,6 +266,13 @@ std::vector<Key> deformable_keys() {
   keys.push_back(number("relief", "1", {R::kRelief, {0.01, 2.0}}, d(&D::relief),
                         "share of the materials' drawn relief (normal and height maps) that is felt: 1 as drawn, 0 "
                         "none"));
+  keys.push_back(layers_key());
+  keys.push_back(number("hole_radius", "m", {R::kHoleRadius, {1e-4, 0.05}}, d(&D::hole_radius),
+                        "of the hole that a probe leaves in `layers`, at least the probe's"));
+  keys.push_back(number("yield.force", "N", {R::kYieldForce, {0.05, 20.0}}, d(&D::yield_force),
+                        "normal force above which the dent stays; 0: never"));
+  keys.push_back(number("yield.hardening", "N/m", {R::kHardening, {1.0, 1e5}}, d(&D::yield_hardening),
+                        "rise of that force with the depth that stays"));
   keys.push_back(number(
       "crease_angle", "rad", {0.0, 3.1416}, d(&D::crease_angle),
       fmt::format("edges whose faces turn by more are creases; 0: where the file's own normals are split, else {}",
@@ -243,9 +305,30 @@ void scale_with_young(LevelNode& node) {
   node.scaled_with_young = share;
 }
 
+// What layers and yielding cannot be combined with.
+std::optional<Note> settle_damage(const Deformable& it) {
+  for (std::size_t i = 0; i < it.layers.size(); ++i)
+    if (!(it.layers[i].force > 0.0) && !(it.layers[i].energy > 0.0))
+      return Note{fmt::format("layer {} has neither `force` nor `energy` and would never break", i + 1),
+                  "give one, or leave it out: below the layers is the law of `stiffness`", "key.missing", "layers"};
+  const bool yields = it.yield_force > 0.0;
+  if (it.layers.empty() && !yields) return std::nullopt;
+  const std::string key = yields ? "yield.force" : "layers";
+  if (!it.layers.empty() && yields)
+    return Note{"gives both layers and yield.force", "keep one", "key.both", "yield.force"};
+  if (has_arm(it.spring))
+    return Note{fmt::format("{} cannot be combined with the law {}, whose memory is not split by depth", key,
+                            word_of(it.spring)),
+                "take another `spring`", "key.value", key};
+  if (yields && it.response == Response::kLag)
+    return Note{"yield.force needs a surface that follows the probe", "set `response` to follow", "key.value", key};
+  return std::nullopt;
+}
+
 std::optional<Note> settle_deformable(void* owner) {
   LevelNode& node = *static_cast<LevelNode*>(owner);
   Deformable& it = *node.deformable;
+  if (std::optional<Note> clash = settle_damage(it)) return clash;
   if (it.friction_sliding > it.friction_static)
     return Note{
         fmt::format("friction_sliding ({}) is above friction_static ({})", it.friction_sliding, it.friction_static),

@@ -23,11 +23,14 @@ enum class KeyType {
   kBox,
   kNode,
   kNames,
-  kNumberOrMaterial
+  kNumberOrMaterial,
+  kItems
 };
 
 inline constexpr std::size_t kMostPoints = 16;  // of a key of type kPoints
 inline constexpr std::size_t kMostNames = 64;   // of a key of type kNames
+
+inline constexpr std::size_t kMostItems = kMostLayers;  // of a key of type kItems
 
 // One key. The owner, passed as void*, is a LevelNode (node extensions) or Level (scene extensions).
 struct Key {
@@ -38,8 +41,9 @@ struct Key {
   Range usual;                                      // `validate` queries values outside of it, except 0
   std::vector<std::string> (*choices)() = nullptr;  // of a choice: its words, including registered ones
   std::string doc;
-  bool alias = false;  // sets other keys; never saved
-  bool whole = false;  // a number without a fraction
+  std::vector<Key> items;  // of a list of objects: their keys; the owner of these is a Layer
+  bool alias = false;      // sets other keys; never saved
+  bool whole = false;      // a number without a fraction
   std::function<Json(const void*)> get;
   std::function<void(void*, const Json&)> set;  // requires a checked value
 };

@@ -46,6 +46,38 @@ std::string cut(const std::string& word) {
   return word.substr(0, 100);
 }
 
+// A note on a key of an item, as one on the list.
+Note in_item(const Key& list, std::size_t i, const Key& of, Note note) {
+  note.what = fmt::format("item {}: `{}` {}", i + 1, of.name, note.what);
+  note.of = list.name;
+  return note;
+}
+
+// The fault of a list of objects.
+std::optional<Note> check_items(const Key& key, const Json& value) {
+  const auto fault = [&](std::string what, std::string cure = {}) {
+    return Note{std::move(what), std::move(cure), "key.value", key.name};
+  };
+  if (!value.is_array() || value.size() > kMostItems)
+    return fault(fmt::format("must be a list of at most {} objects", kMostItems));
+  std::vector<std::string> names;
+  for (const Key& of : key.items) names.push_back(of.name);
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (!value[i].is_object()) return fault(fmt::format("item {} must be an object", i + 1));
+    for (const auto& [name, each] : value[i].items()) {
+      const auto of = std::find_if(key.items.begin(), key.items.end(),
+                                   [&known = name](const Key& item) { return item.name == known; });
+      if (of == key.items.end()) {
+        Note wrong = unknown("key", name, fmt::format("item {} of {}", i + 1, key.name), "keys", names);
+        wrong.of = key.name;
+        return wrong;
+      }
+      if (std::optional<Note> wrong = check_value(*of, each)) return in_item(key, i, *of, *wrong);
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string usual_text(const Key& key) {
@@ -54,6 +86,15 @@ std::string usual_text(const Key& key) {
 }
 
 std::optional<Note> doubt(const Key& key, const Json& value) {
+  if (key.type == KeyType::kItems) {
+    for (std::size_t i = 0; i < value.size(); ++i)
+      for (const Key& of : key.items)
+        if (!value[i].contains(of.name))
+          continue;
+        else if (std::optional<Note> found = doubt(of, value[i][of.name]))
+          return in_item(key, i, of, *found);
+    return std::nullopt;
+  }
   if (value.is_array()) {
     for (const Json& each : value)
       if (std::optional<Note> found = doubt(key, each)) return found;
@@ -133,6 +174,8 @@ std::optional<Note> check_value(const Key& key, const Json& value) {
       for (std::size_t i = 0; good && i < 3; ++i) good = value["min"][i].get<double>() <= value["max"][i].get<double>();
       return good ? fine : must_be("a box {\"min\": [x, y, z], \"max\": [x, y, z]}");
     }
+    case KeyType::kItems:
+      return check_items(key, value);
   }
   UNREACHABLE();
 }

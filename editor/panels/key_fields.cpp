@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/panels/property_row.h"
 #include "viewer/ui/widgets.h"
 
 namespace pliant {
@@ -163,6 +164,43 @@ bool points_field(const Key& key, Json& value) {
   return changed;
 }
 
+// A list of objects: the fields of each, a button that adds one and one that removes the last.
+bool items_field(Editor& editor, const Key& key, Json& value) {
+  Json next = value.is_array() ? value : Json::array();
+  bool changed = false;
+  const Layer usual;
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    ImGui::PushID(static_cast<int>(i));
+    for (const Key& of : key.items) {
+      Key part = of;
+      part.name = fmt::format("{} {} {}", key.name, i + 1, of.name);
+      const Json otherwise = of.get(&usual);
+      Json item = next[i].contains(of.name) ? next[i][of.name] : otherwise;
+      if (property_row(fmt::format("{} {}", i + 1, of.name).c_str(), of.doc.c_str(), item != otherwise)) {
+        next[i].erase(of.name);
+        changed = true;
+      } else if (key_field(editor, part, item)) {
+        next[i][of.name] = item;
+        changed = true;
+      }
+    }
+    ImGui::PopID();
+  }
+  if (next.size() < kMostItems && ui::button(fmt::format("Add##{}", key.name).c_str())) {
+    next.push_back({{"thickness", usual.thickness}, {"force", 1.0}});
+    changed = true;
+  }
+  if (!next.empty()) {
+    ImGui::SameLine();
+    if (ui::button(fmt::format("Remove##{}", key.name).c_str())) {
+      next.erase(next.size() - 1);
+      changed = true;
+    }
+  }
+  if (changed) value = std::move(next);
+  return changed;
+}
+
 }  // namespace
 
 bool key_field(Editor& editor, const Key& key, Json& value) {
@@ -216,6 +254,9 @@ bool key_field(Editor& editor, const Key& key, Json& value) {
       break;
     case KeyType::kNames:
       changed = names_field(editor, key, value);
+      break;
+    case KeyType::kItems:
+      changed = items_field(editor, key, value);
       break;
     case KeyType::kBox:
       changed = box_field(key, value);

@@ -89,6 +89,7 @@ void Journal::note(const World& world, Tick tick) {
     stats.sum += awake;
     stats.max = std::max(stats.max, awake);
   }
+  for (const TouchEvent& event : world.touch->events) events_.record(event);
   hash_forces(world, hash_);
   ++ticks_;
 }

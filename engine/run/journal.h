@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "components/touch_event.h"
 #include "components/world.h"
 #include "engine/run/body_journal.h"
 #include "engine/run/limits.h"
@@ -49,6 +50,7 @@ class Journal {
 
   void note(const World& world, Tick tick);
   void drain(std::vector<TickRow>& rows) { recorder_.drain(rows); }
+  void drain(std::vector<TouchEvent>& events) { events_.drain(events); }
 
   const std::vector<Entity>& probes() const { return probes_; }  // hands(): tools after the probes
   // Valid when the touch clock has stopped.
@@ -57,6 +59,7 @@ class Journal {
   std::vector<Entity> touched(Entity hand) const;
   std::uint64_t ticks() const { return ticks_; }
   std::uint64_t lost() const { return recorder_.lost(); }
+  std::uint64_t events_lost() const { return events_.lost(); }
   Hash hash() const { return hash_; }  // of every force so far
 
  private:
@@ -75,6 +78,7 @@ class Journal {
   std::vector<HandSafety> safety_;  // per hand
   std::vector<AwakeStats> awake_;
   Recorder<TickRow> recorder_;
+  Recorder<TouchEvent> events_{kMostEventsWaiting};
   Hash hash_;
   std::uint64_t ticks_ = 0;
 };

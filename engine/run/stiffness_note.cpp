@@ -20,9 +20,11 @@ std::pair<double, std::string> stiffest_for(const World& world, Entity effector,
     stiffest = {settings_of(world, *tool).translation[0], "the coupling of `" + name + "`"};
   if (!world.registry.has<Probe>(effector)) return stiffest;
   for (auto [entity, surface] : world.registry.view<const Deformable>()) {
-    if (!(surface.stiffness > stiffest.first)) continue;
+    double stiffness = surface.stiffness;
+    for (const Layer& layer : surface.layers) stiffness += layer.stiffness;
+    if (!(stiffness > stiffest.first)) continue;
     const Name* const its = world.registry.find<Name>(entity);
-    stiffest = {surface.stiffness, "`" + (its ? its->value : std::string()) + "`"};
+    stiffest = {stiffness, "`" + (its ? its->value : std::string()) + "`"};
   }
   return stiffest;
 }

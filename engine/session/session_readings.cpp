@@ -44,4 +44,14 @@ Result<std::uint64_t> Session::take_readings(const std::string& name, std::vecto
   return lost - std::exchange(p.lost_reported[i], lost);
 }
 
+std::uint64_t Session::take_events(std::vector<FeltEvent>& out) {
+  SessionRun& p = *run_;
+  out.clear();
+  std::vector<TouchEvent> events;
+  p.events->drain(events);
+  for (const TouchEvent& event : events) out.push_back(named(p.world, event));
+  const std::uint64_t lost = p.events->lost();
+  return lost - std::exchange(p.events_lost, lost);
+}
+
 }  // namespace pliant

@@ -7,6 +7,7 @@
 #include "systems/device/softening.h"
 #include "systems/safety/safety.h"
 #include "systems/touch/feed/contacts_of.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {
@@ -62,6 +63,8 @@ void SessionRun::after(Tick tick) {
                       [&](const Contact& contact) { add_contact(world, object_entities, contact, row); });
     if (keeps > 0) kept[i]->record(row);
   }
+  if (!restoring)
+    for (const TouchEvent& event : world.touch->events) events->record(event);
   after_pause = false;
   rows.publish();
   shown = true;

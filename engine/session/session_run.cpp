@@ -201,6 +201,8 @@ void SessionRun::size_views() {
   shapes.resize(objects.size());
   looked = 0;
   size_kept();
+  std::vector<TouchEvent> of_the_last_world;
+  events->drain(of_the_last_world);
   taken_out.assign(objects.size(), 0);
 }
 

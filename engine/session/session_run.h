@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "components/touch_event.h"
 #include "components/world.h"
 #include "content/level/level.h"
 #include "engine/run/driver_link.h"
@@ -140,6 +141,8 @@ struct SessionRun {
   // Readings of every tick, per effector (session_readings.cpp).
   std::size_t keeps = 0;  // [ticks]
   std::vector<std::unique_ptr<Recorder<EffectorRow>>> kept;
+  std::unique_ptr<Recorder<TouchEvent>> events = std::make_unique<Recorder<TouchEvent>>(kMostEventsWaiting);
+  std::uint64_t events_lost = 0;             // number of lost events reported to the owner
   std::vector<std::uint64_t> lost_reported;  // per effector: number of lost rows reported to the owner
 
   // Actions of the program other than moving its probes (session_events.cpp). Owner's.

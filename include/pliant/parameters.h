@@ -3,8 +3,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <initializer_list>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pliant/math.h"
@@ -29,6 +33,38 @@ enum class Distance : std::uint8_t { kChord, kSurface };  // methods.md 1.3
 enum class Carries : std::uint8_t {
   kNothing,
   kInside,  // those inside the object, or below its node
+};
+
+// A layer of a deformable surface that a probe breaks through (methods.md 1.14). The first one begins at the surface,
+// every other one where the one above it ends. Below the last one is the surface's own law. An item of the key
+// `layers`.
+struct Layer {
+  std::string name;
+  double thickness = 0.002;  // [m]
+  double stiffness = 300.0;  // [N/m] small-depth slope of its force against the depth below its top
+  double force = 0.0;        // [N] its force at which it breaks; 0: not by force
+  double energy = 0.0;       // [J] stored in it at which it breaks; 0: not by energy
+  double remains = 0.0;      // [1] share of its force that stays where it is broken
+  double grip = 0.0;         // [N/m] friction of a probe in its hole, per length inside
+  bool operator==(const Layer&) const = default;
+};
+
+// The layers of a surface, from the surface down. Copies share them, so that a tick copies parameters without
+// allocating.
+class Layers {
+ public:
+  Layers() = default;
+  Layers(std::vector<Layer> layers)
+      : layers_(layers.empty() ? nullptr : std::make_shared<const std::vector<Layer>>(std::move(layers))) {}
+  Layers(std::initializer_list<Layer> layers) : Layers(std::vector<Layer>(layers)) {}
+  bool empty() const { return !layers_; }
+  std::size_t size() const { return layers_ ? layers_->size() : 0; }
+  const Layer& operator[](std::size_t i) const { return (*layers_)[i]; }
+  const Layer* begin() const { return layers_ ? layers_->data() : nullptr; }
+  const Layer* end() const { return begin() + size(); }
+
+ private:
+  std::shared_ptr<const std::vector<Layer>> layers_;
 };
 
 // A deformable surface: P1's local model, specified by properties that can be felt. Keys of PLIANT_deformable.
@@ -66,6 +102,10 @@ struct DeformableParameters {
   double thickness = 0.0;              // [m] 0: half-space
   double error = 0.0;                  // [1] error budget from which unset model parameters are chosen; 0: none
   Carries carries = Carries::kNothing;
+  Layers layers;
+  double hole_radius = 0.002;    // [m] of the hole that a probe leaves in a layer, at least the probe's
+  double yield_force = 0.0;      // [N] above which the dent stays; 0: never
+  double yield_hardening = 0.0;  // [N/m] rise of that force with the depth that stays
 };
 
 // The solver of a soft body's linear systems (P2: black boxes).

@@ -3,6 +3,7 @@
 
 #include "pliant/device_state.h"
 #include "pliant/driver.h"
+#include "pliant/felt_event.h"
 #include "pliant/math.h"
 #include "pliant/parameters.h"
 #include "pliant/process.h"

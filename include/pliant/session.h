@@ -28,6 +28,7 @@
 
 #include "pliant/device_state.h"
 #include "pliant/driver.h"
+#include "pliant/felt_event.h"
 #include "pliant/progress.h"
 #include "pliant/query.h"
 #include "pliant/scene.h"
@@ -267,6 +268,9 @@ class Session {
   Status keep_readings(std::size_t ticks);
   // Takes the buffered readings, oldest first; returns how many were lost since the last call.
   Result<std::uint64_t> take_readings(const std::string& effector, std::vector<Reading>& out);
+
+  // Takes the events since the last call, oldest first; returns how many were lost: at most 4,096 wait.
+  std::uint64_t take_events(std::vector<FeltEvent>& out);
 
  private:
   friend struct SessionRun;

@@ -116,6 +116,9 @@ Outcome LevelRun::open_results() {
   if (!keeper) return failed(out_->at_place(keeper.error()));
   keeper_.emplace(std::move(keeper).value());
   keeper_->end_when_full(interrupt_);
+  if (has_events(world_))
+    if (const Status kept = keeper_->keep_events(out_->stage("events.csv")); !kept)
+      return failed(out_->at_place(kept.error()));
   if (bodies_) {
     auto kept = BodyKeeper::create(world_, *bodies_, out_->stage("bodies.csv"));
     if (!kept) return failed(out_->at_place(kept.error()));
@@ -269,8 +272,9 @@ void LevelRun::add_findings(RunFigures& figures) {
                      "run.pictures_missed",
                      {}});
   const std::uint64_t rows = journal_->ticks() * journal_->probes().size();
-  for (const auto& [lost, file] :
-       {std::pair(rows - std::min(rows, keeper_->rows()), "forces.csv"), {bodies_ ? bodies_->lost() : 0, "bodies.csv"}})
+  for (const auto& [lost, file] : {std::pair(rows - std::min(rows, keeper_->rows()), "forces.csv"),
+                                   {bodies_ ? bodies_->lost() : 0, "bodies.csv"},
+                                   {journal_->events_lost(), "events.csv"}})
     if (lost > 0)
       notes.push_back({fmt::format("{} rows of {} were lost because the disk was too slow", lost, file),
                        "use a faster disk, a lower --rate or fewer pictures", "run.rows_lost", file});

@@ -29,6 +29,7 @@ std::string name_of(const World& world, Entity entity) {
 Result<Keeper> Keeper::create(const World& world, const std::vector<Entity>& probes,
                               const std::vector<std::string>& sources, const std::filesystem::path& csv) {
   Keeper keeper;
+  keeper.world_ = &world;
   auto file = GrowingFile::create(csv);
   if (!file) return file.error();
   keeper.csv_.emplace(std::move(file).value());
@@ -55,10 +56,21 @@ Result<Keeper> Keeper::create(const World& world, const std::vector<Entity>& pro
   return keeper;
 }
 
+Status Keeper::keep_events(const std::filesystem::path& csv) {
+  auto file = GrowingFile::create(csv);
+  if (!file) return file.error();
+  events_csv_.emplace(std::move(file).value());
+  events_csv_->add("tick,time_s,event,probe,object,index,layer,x,y,z,value_n\n");
+  return Done{};
+}
+
 void Keeper::keep(Journal& journal) {
   rows_.clear();
   journal.drain(rows_);
   for (const TickRow& row : rows_) keep(row);
+  pending_.clear();
+  journal.drain(pending_);
+  for (const TouchEvent& event : pending_) keep(event);
   if (bodies_) bodies_->keep();
   if (recorder_) recorder_->drain();
   if (const std::optional<Error>& full = failure(); full && interrupt_) interrupt_->end(*full);
@@ -67,7 +79,22 @@ void Keeper::keep(Journal& journal) {
 const std::optional<Error>& Keeper::failure() const {
   if (bodies_ && bodies_->failure()) return bodies_->failure();
   if (recorder_ && recorder_->failure()) return recorder_->failure();
+  if (events_csv_ && events_csv_->failure()) return events_csv_->failure();
   return csv_->failure();
+}
+
+void Keeper::keep(const TouchEvent& event) {
+  FeltEvent felt = named(*world_, event);
+  if (events_csv_) {
+    line_.clear();
+    fmt::format_to(std::back_inserter(line_), "{},{:.9g},{},{},{},{},{}", felt.tick, felt.time, word_of(felt.kind),
+                   csv_text(felt.probe), csv_text(felt.object), felt.index, csv_text(felt.layer));
+    put(line_, felt.position);
+    put(line_, felt.value);
+    line_ += '\n';
+    events_csv_->add(line_);
+  }
+  if (happened_++ < kMostReported) events_.push_back(std::move(felt));
 }
 
 void Keeper::keep(const TickRow& row) {
@@ -123,6 +150,7 @@ PoseRecorder& Keeper::record_to(RecordingWriter writer) {
 
 Status Keeper::finish() {
   std::vector<Status> closed{csv_->close()};
+  if (events_csv_) closed.push_back(events_csv_->close());
   if (bodies_) closed.push_back(bodies_->finish());
   if (recorded_nothing()) recorder_.reset();
   if (recorder_) closed.push_back(recorder_->finish());

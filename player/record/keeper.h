@@ -1,5 +1,5 @@
-// The keeper of the journal: drains the ring into forces.csv, the plot's traces, the figures of the report and, on
-// request, a recording; with a soft clock also into bodies.csv.
+// The keeper of the journal: drains the rings into forces.csv, events.csv, the plot's traces, the figures of the report
+// and, on request, a recording; with a soft clock also into bodies.csv.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +39,8 @@ class Keeper {
                                const std::vector<std::string>& sources, const std::filesystem::path& csv);
   // Starts recording. The touch clock adds rows to the returned recorder, which is drained with the journal's.
   PoseRecorder& record_to(RecordingWriter writer);
+  // `csv`: output file of the events.
+  Status keep_events(const std::filesystem::path& csv);
   void keep_bodies(BodyKeeper bodies) { bodies_.emplace(std::move(bodies)); }
 
   // A file that can no longer be written (disk full) ends the run.
@@ -52,11 +54,15 @@ class Keeper {
   bool recorded_nothing() const { return recorder_ && recorder_->ticks() == 0; }  // so far
 
   const std::vector<ProbeSummary>& summaries() const { return summaries_; }
-  const std::vector<Trace>& traces() const { return traces_; }  // of plotted rows: the first kMaxPlotRows
+  bool keeps_events() const { return events_csv_.has_value(); }
+  const std::vector<FeltEvent>& events() const { return events_; }  // the first kMostReported
+  std::uint64_t happened() const { return happened_; }              // number of all events
+  const std::vector<Trace>& traces() const { return traces_; }      // of plotted rows: the first kMaxPlotRows
 
  private:
   Keeper() = default;
   void keep(const TickRow& row);
+  void keep(const TouchEvent& event);
   const std::optional<Error>& failure() const;
   struct Last {
     bool any = false;   // a valid place has been seen
@@ -69,6 +75,12 @@ class Keeper {
   std::string line_;
   bool torque_ = false;  // forces.csv has torque columns
   std::vector<TickRow> rows_;
+  static constexpr std::size_t kMostReported = 1000;
+  const World* world_ = nullptr;
+  std::optional<GrowingFile> events_csv_;
+  std::vector<TouchEvent> pending_;
+  std::vector<FeltEvent> events_;
+  std::uint64_t happened_ = 0;
   std::uint64_t kept_ = 0;  // rows
   std::vector<ProbeSummary> summaries_;
   std::vector<Trace> traces_;

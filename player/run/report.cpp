@@ -48,6 +48,19 @@ OrderedJson objects(const RunFigures& figures) {
   return list;
 }
 
+OrderedJson events(const Keeper& keeper) {
+  OrderedJson list = OrderedJson::array();
+  for (const FeltEvent& event : keeper.events()) {
+    OrderedJson json{{"event", word_of(event.kind)}, {"tick", event.tick},     {"time_s", event.time},
+                     {"probe", event.probe},         {"object", event.object}, {"index", event.index}};
+    if (!event.layer.empty()) json["layer"] = event.layer;
+    json["position_m"] = {event.position.x, event.position.y, event.position.z};
+    if (event.kind != FeltKind::kCrossed) json["value_N"] = event.value;
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 OrderedJson names(const World& world, const std::vector<Entity>& entities) {
   OrderedJson list = OrderedJson::array();
   for (const Entity entity : entities) {
@@ -188,6 +201,10 @@ std::string report_json(const RunFigures& figures) {
   json["probes"] = probes(figures);
   if (!figures.devices.devices.empty()) json["devices"] = devices(figures);
   if (figures.soft) json["soft"] = soft(*figures.soft, figures.world.soft->tally);
+  if (figures.keeper.keeps_events()) {
+    json["events"] = events(figures.keeper);
+    json["events_total"] = figures.keeper.happened();
+  }
   json["notes"] = OrderedJson::array();
   for (const Note& note : figures.notes) json["notes"].push_back(json_of(note));
   json["hash"] = figures.hash;
@@ -231,6 +248,11 @@ void print_summary(const RunFigures& figures, const OutputFolder& out) {
           probe.source, static_cast<double>(probe.contact_ticks) / figures.rate, probe.max_depth * 1e3,
           probe.tool ? "device-handle offset" : "deep", probe.max_force,
           probe.tool ? fmt::format(" and {:.3f} N m", probe.max_torque) : std::string(), probe.net_work * 1e3);
+  constexpr std::size_t kMostPrinted = 12;
+  for (std::size_t i = 0; i < std::min(figures.keeper.events().size(), kMostPrinted); ++i)
+    print("  {}\n", figures.keeper.events()[i].sentence());
+  if (figures.keeper.happened() > kMostPrinted)
+    print("  and {} more events: events.csv\n", figures.keeper.happened() - kMostPrinted);
   if (figures.soft) {
     const SoftFigures& soft = figures.soft->figures();
     const Histogram& step = figures.soft->schedule().total();

@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "components/probe_shape.h"
 #include "systems/effects/felt_effects.h"
@@ -104,6 +106,31 @@ void act(World& world, EffectPair& pair, Tick tick, FeltEffects& felt) {
   }
 }
 
+// The detent nearest to a place in the effect's frame, 0 at the node; around the axis from 0 up.
+std::int32_t nearest_detent(const Effect& effect, dvec3 x) {
+  const auto whole = [](double value) { return static_cast<std::int32_t>(std::clamp(std::round(value), -1e9, 1e9)); };
+  if (effect.detents == DetentAxis::kAlong) return whole(x.y / effect.spacing);
+  const std::int32_t count = std::max(whole(effect.count), 1);
+  return (whole(effect.count * std::atan2(x.x, x.z) / (2.0 * std::numbers::pi)) + count) % count;
+}
+
+// An event for every detent that the probe, the middle of its tips, goes over to.
+void tell_detents(World& world, EffectPair& pair, Tick tick) {
+  const Effect& effect = world.registry.get<Effect>(pair.effect);
+  if (effect.kind != EffectKind::kDetents) return;
+  const Probe& probe = world.registry.get<Probe>(pair.probe);
+  dvec3 middle(0);
+  for (const EffectTip& tip : pair.tips) middle += tip.place / static_cast<double>(pair.tips.size());
+  const dvec3 at = probe.position + probe.rotation * middle;
+  const dvec3 x = world.registry.get<Pose>(pair.effect).to_local(at);
+  const bool rested = pair.resting && !probe.fresh;
+  pair.resting = region_weight(effect, x).value > 0.0;
+  const std::int32_t before = std::exchange(pair.detent, nearest_detent(effect, x));
+  std::vector<TouchEvent>& events = world.touch->events;
+  if (rested && pair.resting && before != pair.detent && events.size() < kMostEventsInATick)
+    events.push_back({FeltKind::kCrossed, pair.detent, tick.index, tick.time, pair.probe, pair.effect, at, 0.0});
+}
+
 // Without its negative eigenvalues: between two ticks a force that falls with the way is kept as it is.
 dmat3 positive_part(const dmat3& m) {
   if (m == dmat3(0.0)) return m;
@@ -173,6 +200,7 @@ void effects(World& world, Tick tick) {
     if (!registry.get<Probe>(pair.probe).placed) continue;
     FeltEffects& felt = registry.get<FeltEffects>(pair.probe);
     act(world, pair, tick, felt);
+    tell_detents(world, pair, tick);
   }
   for (auto [entity, felt, probe] : registry.view<FeltEffects, Probe>()) {
     felt.stiffness = positive_part(felt.stiffness);

@@ -41,6 +41,8 @@ struct EffectTip {
 struct EffectPair {
   Entity effect, probe;
   std::vector<EffectTip> tips;
+  bool resting = false;     // of detents: `detent` is valid
+  std::int32_t detent = 0;  // the nearest one, 0 at the node
 };
 
 // On an effect that guides. Rate: never changes.

@@ -52,7 +52,7 @@ TEST(KeyTable, EveryRangeOfADeformableIsThatOfTheTouchClock) {
     }
     ++checked;
   }
-  EXPECT_EQ(checked, 22u);
+  EXPECT_EQ(checked, 25u);
 }
 
 // A valid value of the key that differs from `other`; no number for a vector, which would be accepted.
@@ -67,6 +67,7 @@ Json other_value(const Key& key, const Json& other) {
                                      Json::array({0.5, 0.25}),
                                      Json::array({0.5, 0.25, 0.125}),
                                      Json::array({Json::array({0.5, 0.25, 0.125})}),
+                                     Json::array({{{"thickness", 0.5}, {"force", 0.25}}}),
                                      {{"min", {0, 0, 0}}, {"max", {0.5, 1, 2}}},
                                      Json::array({"some text"}),
                                      !key.choices ? Json() : Json(key.choices().front()),

@@ -294,5 +294,52 @@ TEST(Effects, ALevelWithoutThemHasNoStateOfThem) {
   for (auto [entity, pair] : stage.world.registry.view<EffectPair>()) FAIL() << entity.index;
 }
 
+TEST(Detents, EveryCrossingIsAnEventWithItsTimeAndPlace) {
+  Room room;
+  room.add_effect(EffectKind::kDetents, [](Effect& e) {
+    e.radius = 0.05;
+    e.spacing = 0.01;
+  });
+  const Entity probe = room.add_probe({0, 0.06, 0});
+  room.ready();
+  std::vector<TouchEvent> events;
+  const auto each = [&](const ProbeReading&) {
+    const std::vector<TouchEvent>& now = room.world.touch->events;
+    events.insert(events.end(), now.begin(), now.end());
+  };
+  room.move(probe, {0, -0.0201, 0}, 0.8, each);  // from outside: it enters at the fifth, and rests at the second below
+  ASSERT_EQ(events.size(), 7u);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    EXPECT_EQ(events[i].kind, FeltKind::kCrossed);
+    EXPECT_EQ(events[i].index, 4 - static_cast<int>(i));
+    EXPECT_NEAR(events[i].position.y, 0.01 * (4.5 - static_cast<double>(i)), 1.1e-4);
+    EXPECT_EQ(events[i].probe, probe);
+  }
+  EXPECT_EQ(named(room.world, events[4]).sentence().find(" went to detent 0 of effect at "),
+            std::size_t{0} + named(room.world, events[4]).probe.size());
+  events.clear();
+  room.wait(0.1);
+  EXPECT_TRUE(events.empty());
+}
+
+TEST(Detents, ATurnIsCountedAround) {
+  Room room;
+  room.add_effect(EffectKind::kDetents, [](Effect& e) {
+    everywhere(e);
+    e.detents = DetentAxis::kAround;
+    e.count = 8;
+  });
+  const Entity probe = room.add_probe({0, 0, 0.05});
+  room.ready();
+  std::vector<int> crossed;
+  for (int n = 0; n <= 1000; ++n) {
+    const double angle = 2 * 3.14159265358979 * n / 1000;
+    room.place(probe, {0.05 * std::sin(angle), 0, 0.05 * std::cos(angle)});
+    room.tick();
+    for (const TouchEvent& event : room.world.touch->events) crossed.push_back(event.index);
+  }
+  EXPECT_EQ(crossed, (std::vector<int>{1, 2, 3, 4, 5, 6, 7, 0}));
+}
+
 }  // namespace
 }  // namespace pliant

@@ -74,5 +74,77 @@ TEST(SessionReadings, RealTimeShowsAllTicksToAHostThatLooksTwentyTimesASecond) {
   EXPECT_EQ(all.back().force, dvec3(0)) << "the last force is zero";
 }
 
+Scene layered_scene() {
+  Scene scene("layered");
+  DeformableParameters d{.stiffness = 100.0};
+  d.layers = {{.name = "skin", .thickness = 0.01, .stiffness = 400.0, .force = 1.0, .remains = 0.1, .grip = 5.0}};
+  scene.add_surface("tissue", sheet(), d);
+  scene.add_probe("finger");
+  return scene;
+}
+
+TEST(SessionEvents, ALayerThatBreaksIsTakenOnce) {
+  Session session = opened(layered_scene());
+  std::vector<FeltEvent> events;
+  press(session, 0.004);
+  EXPECT_EQ(session.take_events(events), 0u);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, FeltKind::kBroke);
+  EXPECT_EQ(events[0].probe, "finger");
+  EXPECT_EQ(events[0].object, "tissue");
+  EXPECT_EQ(events[0].layer, "skin");
+  EXPECT_NEAR(events[0].value, 1.0, 0.005);
+  EXPECT_NEAR(events[0].time, 0.3, 0.002);  // 2.5 mm under 0.5 mm, 10 um a tick
+  EXPECT_EQ(events[0].sentence(), "finger broke layer skin of tissue at 0.300 s, 1.00 N");
+  EXPECT_EQ(session.take_events(events), 0u);
+  EXPECT_TRUE(events.empty());
+  ASSERT_TRUE(session.restart());
+  press(session, 0.004);
+  session.take_events(events);
+  EXPECT_EQ(events.size(), 1u) << "it is whole again";
+}
+
+// With holes, and dents that stay.
+TEST(SessionEvents, ASavedStateComesBackWithItsDamageToTheBit) {
+  for (const bool yields : {false, true}) {
+    Scene scene = layered_scene();
+    if (yields) {
+      scene = Scene("plastic");
+      scene.add_surface("tissue", sheet(), {.stiffness = 400.0, .yield_force = 0.8, .yield_hardening = 50.0});
+      scene.add_probe("finger");
+    }
+    Session session = opened(scene);
+    press(session, 0.004);
+    const auto state = session.save_state();
+    ASSERT_TRUE(state) << state.error().message();
+    const auto go_on = [](Session& it) {
+      std::vector<dvec3> forces;
+      for (double y = -0.004; y < 0.001; y += 2e-5) {
+        EXPECT_TRUE(it.move("finger", {0, y, 0}));
+        EXPECT_TRUE(it.step());
+        forces.push_back(it.reading("finger")->force);
+      }
+      for (double y = 0.001; y > -0.006; y -= 2e-5) {
+        EXPECT_TRUE(it.move("finger", {0, y, 0}));
+        EXPECT_TRUE(it.step());
+        forces.push_back(it.reading("finger")->force);
+      }
+      return forces;
+    };
+    const std::vector<dvec3> first = go_on(session);
+    std::vector<FeltEvent> events;
+    session.take_events(events);
+    Session other = opened(scene);
+    ASSERT_TRUE(other.restore_state(*state));
+    other.take_events(events);
+    EXPECT_TRUE(events.empty()) << "what is run again is no event";
+    EXPECT_EQ(go_on(other), first);
+    std::vector<vec3> a, b;
+    ASSERT_TRUE(session.vertices("tissue", a));
+    ASSERT_TRUE(other.vertices("tissue", b));
+    EXPECT_EQ(a, b);
+  }
+}
+
 }  // namespace
 }  // namespace pliant

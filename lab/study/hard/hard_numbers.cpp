@@ -102,6 +102,12 @@ Json filled(const Key& key, double number) {
       return Json::array({point});
     case KeyType::kBox:
       return Json{{"min", point}, {"max", point}};
+    case KeyType::kItems: {
+      Json item = Json::object();
+      for (const Key& of : key.items)
+        if (Json each = filled(of, number); !each.is_null()) item[of.name] = std::move(each);
+      return Json::array({item});
+    }
     case KeyType::kFlag:
     case KeyType::kText:
     case KeyType::kChoice:

@@ -61,6 +61,7 @@ void begin_contact(const ContactSearch& s, const ProbeTip& tip, const TipContact
   contact.bristle = dvec3(0);
   contact.sliding = false;
   contact.effects = {};
+  contact.damage = {};
   put_contact(*source, contact, at);
   HeightState surface = recovering(s, at.place.main());
   // Beside others of its tip the surface does not recover: the tip is on it, and has left that dent itself.

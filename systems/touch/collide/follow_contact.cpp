@@ -51,6 +51,7 @@ AtSeam carry_over(const ContactSearch& s, const SideFoot& side, SourceState& sou
     after.sliding = before.sliding;
     after.load = before.load;
     after.effects = before.effects;
+    after.damage = before.damage;
     hand_over_dents(touch, static_cast<std::uint32_t>(&s.object - touch.objects.data()), source, side.object, *to);
   }
   drop_contact(source, contact);

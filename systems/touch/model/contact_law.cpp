@@ -15,17 +15,51 @@ double painted(const std::vector<float>& factor, const Mesh& mesh, std::uint32_t
   return barycentric.x * factor[t.x] + barycentric.y * factor[t.y] + barycentric.z * factor[t.z];
 }
 
+template <class Own>
+double ContactLaw::over_layers(double depth, Own own) const {
+  if (layers.empty()) return (this->*own)(depth);
+  double sum = 0.0, top = 0.0;
+  for (std::size_t i = 0; i < layers.size() && depth > top; top += layers[i++].thickness)
+    sum += (i < broken ? layers[i].remains : 1.0) * (layers[i].stiffness / unit) * (this->*own)(depth - top);
+  return depth > top ? sum + (this->*own)(depth - top) : sum;
+}
+
 double ContactLaw::force(double depth) const {
+  return over_layers(depth, &ContactLaw::own_force);
+}
+
+double ContactLaw::slope(double depth) const {
+  return arm + over_layers(depth, &ContactLaw::own_slope);
+}
+
+double ContactLaw::potential(double depth) const {
+  return over_layers(depth, &ContactLaw::own_potential);
+}
+
+double ContactLaw::layer_force(std::size_t layer, double depth) const {
+  for (std::size_t i = 0; i < layer; ++i) depth -= layers[i].thickness;
+  return depth > 0 ? layers[layer].stiffness / unit * own_force(depth) : 0.0;
+}
+
+double ContactLaw::layer_energy(std::size_t layer, double depth) const {
+  double top = 0.0;
+  for (std::size_t i = 0; i < layer; ++i) top += layers[i].thickness;
+  if (!(depth > top)) return 0.0;
+  const double y = std::max(0.0, free_depth - top), share = layers[layer].stiffness / unit;
+  return share * (own_potential(depth - top) - own_potential(y) - own_force(y) * (depth - top - y));
+}
+
+double ContactLaw::own_force(double depth) const {
   const double z = -law.force(-depth);
   return hertz > 0 ? hertz * z * std::sqrt(std::max(0.0, z)) : stiffness * z;
 }
 
-double ContactLaw::slope(double depth) const {
+double ContactLaw::own_slope(double depth) const {
   const double z = -law.force(-depth), rises = law.slope(-depth);
-  return arm + (hertz > 0 ? 1.5 * hertz * std::sqrt(std::max(0.0, z)) * rises : stiffness * rises);
+  return hertz > 0 ? 1.5 * hertz * std::sqrt(std::max(0.0, z)) * rises : stiffness * rises;
 }
 
-double ContactLaw::potential(double depth) const {
+double ContactLaw::own_potential(double depth) const {
   if (hertz == 0.0) return stiffness * law.potential(-depth);
   if (!law.curved()) return 0.4 * hertz * depth * depth * std::sqrt(std::max(0.0, depth));
   // Gauss-Legendre in sqrt(depth), which removes the square root at zero: d = s^2, dd = 2 s ds.
@@ -36,7 +70,7 @@ double ContactLaw::potential(double depth) const {
   for (int i = 0; i < 4; ++i)
     for (const double side : {-1.0, 1.0}) {
       const double s = half * (1 + side * kAt[i]);
-      sum += kWeight[i] * 2 * s * force(s * s);
+      sum += kWeight[i] * 2 * s * own_force(s * s);
     }
   return half * sum;
 }
@@ -88,6 +122,8 @@ ContactLaw contact_law(const Deformable& deformable, const Motion& motion, doubl
   if (deformable.young > 0 && radius > 0)
     out.hertz = 4.0 / 3.0 * plane_modulus(deformable) * std::sqrt(radius) * factor;
   out.arm = motion.arm_stiffness * out.stiffness;
+  out.layers = {deformable.layers.begin(), deformable.layers.size()};
+  out.unit = deformable.stiffness;
   return out;
 }
 

@@ -4,9 +4,14 @@
 // y: depth of the free surface. It is 0 at rest. For a recovering surface it is the depth without the contact; it also
 // covers unpushed depth (Contact::unpushed). q: the tissue's viscous extension at the foot (standard linear solid).
 //
+// Of a surface with layers, law(d) is the sum of the layers' own, each below its top and, where it is broken, its share
+// that remains (methods.md 1.14).
+//
 // With Young's modulus and a sphere, law(d) is Hertz's, 4/3 E* sqrt(r) z(d)^1.5, z the law's stiffening of the depth. A
 // point presses as a flat punch of the smallest radius, whose stiffness is `stiffness`.
 #pragma once
+
+#include <span>
 
 #include "components/deformable.h"
 #include "systems/touch/model/local_model.h"
@@ -36,13 +41,25 @@ struct ContactLaw {
   double arm = 0.0;          // [N/m] k1 at the foot, painted factors included
   double relaxed_depth = 0;  // [m]   q >= 0
   double free_depth = 0.0;   // [m]   y >= 0
+  std::span<const Layer> layers;
+  std::uint32_t broken = 0;  // layers, from the surface down
+  double unit = 1.0;         // [N/m] stiffness that `law`'s factors are of, for those of the layers
 
   double force(double depth) const;      // [N] law(d)
   double slope(double depth) const;      // [N/m] of force(), arm included
   double potential(double depth) const;  // [J] its integral from 0
   StoredEnergy stored(double depth) const;
+  // Of a layer alone, without free_depth's: [N], [J].
+  double layer_force(std::size_t layer, double depth) const;
+  double layer_energy(std::size_t layer, double depth) const;
 
  private:
+  double own_force(double depth) const;
+  double own_slope(double depth) const;
+  double own_potential(double depth) const;
+  // The sum of `own` over the layers and what is below them.
+  template <class Own>
+  double over_layers(double depth, Own own) const;
   struct Limited {
     double force, potential;  // [N] at most kMostForce, [J] its integral from 0
   };

@@ -1,5 +1,6 @@
 // P1 eq. (1) on every awake zone, exact for a force that is constant over the step, and the drawn stream (nx, ny, nz,
-// h). A zone that no contact reaches and whose residual has come to rest goes to sleep, with a stream of exact zeros.
+// h). A zone that no contact reaches and whose residual has come to rest goes to sleep, with a stream of exact zeros,
+// or of the dents that stay.
 #include "systems/touch/model/dynamics.h"
 
 #include <algorithm>

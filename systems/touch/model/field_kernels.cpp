@@ -357,6 +357,9 @@ void compose_stream(HeightField& field, std::uint32_t zone, const ZoneTargets* t
   } else {
     std::fill(stream, stream + kZoneSize, vec4(0));
   }
+  if (field.set.empty()) return;
+  const vec4* set = field.set.data() + zone * kZoneSize;
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) stream[i] += set[i];
 }
 
 }  // namespace pliant

@@ -76,7 +76,7 @@ bool step_relaxed(const Motion& motion, const Mesh& mesh, HeightField& field, st
 ZoneRest step_lagging(const Motion& motion, const PaintedMotion& painted, HeightField& field, std::uint32_t zone,
                       const ZoneTargets& targets);
 
-// stream = residual + targets.
+// stream = residual + targets + set.
 void compose_stream(HeightField& field, std::uint32_t zone, const ZoneTargets* targets, bool with_residual);
 
 }  // namespace pliant

@@ -10,6 +10,7 @@
 #include "systems/touch/collide/surface_distance.h"
 #include "systems/touch/model/amplitude.h"
 #include "systems/touch/model/contact_law.h"
+#include "systems/touch/model/damage.h"
 #include "systems/touch/model/dent.h"
 #include "systems/touch/model/field.h"
 #include "systems/touch/model/field_kernels.h"
@@ -41,13 +42,13 @@ float volume_coefficient(const VolumeSums& s, double alpha, double chi) {
 
 // A probe can press the surface down but not pull it up. If it lifts faster than the surface would rise freely, the
 // surface is left behind. The force continues by the law of the depth until the probe is out.
-bool leaves_behind(const Contact& contact, const Mesh& mesh, const Motion& motion) {
-  const double h = contact.previous_height,
-               v = std::max(0.0, contact.previous_height - contact.older_height) / motion.dt;
-  if (contact.height <= h) return false;
+bool leaves_behind(const Contact& contact, double share, const Mesh& mesh, const Motion& motion) {
+  const double h = share * contact.previous_height,
+               v = share * std::max(0.0, contact.previous_height - contact.older_height) / motion.dt;
+  if (contact.height <= contact.previous_height) return false;
   const double stiffness = painted(mesh.stiffness_factor, mesh, contact.triangle, contact.barycentric),
                damping = painted(mesh.damping_factor, mesh, contact.triangle, contact.barycentric);
-  return contact.height > step_free(motion, stiffness, damping, {h, v}).height;
+  return share * contact.height > step_free(motion, stiffness, damping, {h, v}).height;
 }
 
 struct Active {
@@ -71,6 +72,7 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
       if (deformable.response == Response::kFollow) {
         residual += weight * residual_after(object, mesh, field, corner[b], tick);
         residual += weight * echoed_at(object, mesh, corner[b]);
+        if (!field.set.empty()) residual += weight * static_cast<double>(field.set[corner[b]].w);
       }
       for (std::size_t j = 0; j < n; ++j) {
         FieldSource unit = active[j].source->now;
@@ -84,7 +86,7 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
     // A bulge raised by earlier presses adds to the depth to be pressed down, up to a limit: otherwise rims on a slowly
     // recovering surface would amplify each other.
     const double reach = 1 / std::sqrt(double(active[i].source->now.inv_reach2));
-    d[i] = std::min(residual, kMostBulge * reach) - contact.height;
+    d[i] = std::min(residual, kMostBulge * reach) - dent_share(contact, deformable) * contact.height;
     alpha[i] = active[i].source->before.amplitude;
   }
   if (n == 1) {
@@ -105,7 +107,7 @@ double contact_radius(const Deformable& deformable, double reach) {
 }
 
 void aim(FieldSource& source, const Contact& contact, const Deformable& deformable, const Mesh& mesh, double radius) {
-  const double depth = std::max(0.0, -contact.height);
+  const double depth = dent_share(contact, deformable) * std::max(0.0, -contact.height);
   const double circle = radius > 0 ? std::sqrt(2 * radius * depth) : 0.0;
   const double reach = std::max(deformable.reach, kLeastReach * mesh.mean_edge) + circle;
   const double inner = contact_radius(deformable, reach) + circle;
@@ -136,8 +138,11 @@ void force_field(World& world, Tick tick) {
       if (source.contact == kNoEntity) continue;  // an echo
       Contact& contact = world.registry.get<Contact>(source.contact);
       const bool touching = contact.state != ContactState::kFree && contact.height < 0;
-      const bool left_behind = touching && source.now.amplitude > 0 && leaves_behind(contact, mesh, object.motion);
-      if (source.active && (!touching || left_behind)) fold(source, object, world, tick);
+      if (touching && !object.holes.empty() && contact.probe != kNoEntity) find_hole(object, source, contact);
+      const bool left_behind = touching && source.now.amplitude > 0 &&
+                               leaves_behind(contact, dent_share(contact, deformable), mesh, object.motion);
+      if (source.active && (!touching || left_behind || contact.damage.relaxes)) fold(source, object, world, tick);
+      contact.damage.relaxes = false;
       if (!touching) {
         if (!source.offset.empty()) clear_offsets(source.zones, source.offset);
         source.zones.clear();
@@ -172,7 +177,8 @@ void force_field(World& world, Tick tick) {
         VolumeSums sums;
         for (const std::uint32_t zone : source.zones) add_volume_sums(mesh, zone, source.now, source.offset, sums);
         add_echo_sums(world, {slot, static_cast<std::uint32_t>(&source - object.sources.data())}, source, sums);
-        source.now.parameter = volume_coefficient(sums, std::max(0.0, -contact.height), deformable.volume);
+        source.now.parameter = volume_coefficient(
+            sums, dent_share(contact, deformable) * std::max(0.0, -contact.height), deformable.volume);
       }
     }
     solve({active.data(), count}, deformable, mesh, field, object, tick);

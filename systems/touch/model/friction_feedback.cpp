@@ -9,6 +9,7 @@
 #include <span>
 
 #include "systems/touch/collide/collision.h"
+#include "systems/touch/model/damage.h"
 #include "systems/touch/model/friction.h"
 #include "systems/touch/model/relief.h"
 #include "systems/touch/model/shared_dents.h"
@@ -204,6 +205,25 @@ void release(Contact& contact) {
   contact.stiffness = contact.damping = contact.bristle_stiffness = contact.bristle_damping = 0.0;
   contact.sliding = false;
   contact.effects = {.finest = contact.effects.finest};
+  contact.damage.yields = false;
+}
+
+// Friction of every tip in its hole, also of those that no layer presses on.
+void grip_tips(World& world, const ObjectState& object, const Deformable& deformable, const Pose& pose, Tick tick) {
+  Registry& registry = world.registry;
+  for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
+    const SourceState& source = object.sources[i];
+    if (!source.tracked || source.tip.drawn) continue;
+    Contact& contact = registry.get<Contact>(source.contact);
+    const dvec3 force = pose.rotation * grip(deformable, source.place, contact, tick.elapsed());
+    if (force == dvec3(0)) continue;
+    Probe& probe = registry.get<Probe>(contact.probe);
+    contact.state = ContactState::kTouching;
+    if (contact.gradient == dvec3(0)) contact.gradient = pose.rotation * source.place.gradient;
+    contact.force += force;
+    probe.force += force;
+    probe.torque += cross(tip_place(probe, source.tip).at(source.axis.along) - probe.position, force);
+  }
 }
 
 }  // namespace
@@ -212,6 +232,7 @@ void friction_feedback(World& world, Tick tick) {
   Registry& registry = world.registry;
   for (auto [entity, probe] : registry.view<Probe>()) probe.force = probe.torque = dvec3(0);
   for (ProbeState& hand : world.touch->probes) hand.stiffened = 0.0;
+  world.touch->events.clear();
   for (const std::uint32_t slot : world.touch->awake) {
     ObjectState& object = world.touch->objects[slot];
     const Deformable& deformable = registry.get<Deformable>(object.entity);
@@ -237,6 +258,12 @@ void friction_feedback(World& world, Tick tick) {
           pressing[count].raised = raise(world, object, deformable, mesh, pressing[count], tick);
           pressing[count].gradient -= pressing[count].raised.gradient;
         }
+        if (contact.height < 0 && !object.sets.empty()) {
+          const Raised set = set_under(object, source.place, source.axis);
+          pressing[count].raised.height += set.height;
+          pressing[count].raised.gradient += set.gradient;
+          pressing[count].gradient -= set.gradient;
+        }
         const bool stores = contact.height < 0 && (settled ? store(search, deformable, pressing[count], loaded[count])
                                                            : settle(search, deformable, pressed, loaded));
         if (stores) {
@@ -250,12 +277,20 @@ void friction_feedback(World& world, Tick tick) {
       }
     }
     object.stored = 0.0;
+    const bool gives_way = !deformable.layers.empty() || deformable.yield_force > 0;
     if (count == 0) {
       if (object.stiffness_before > 0.0) object.stiffness_before = deformable.stiffness;
+      if (gives_way) grip_tips(world, object, deformable, pose, tick);
       continue;
     }
-    const std::span<SharedDent> shared = dents.of(pressing.first(count));
-    object.stored = share_load({loaded.data(), count}, object.kernel, shared);
+    std::span<SharedDent> shared;
+    for (std::size_t pass = 0, left = 1; left > 0 && pass <= kMostLayers; ++pass) {  // a layer in a pass
+      shared = dents.of(pressing.first(count));
+      object.stored = share_load({loaded.data(), count}, object.kernel, shared);
+      left = 0;
+      for (std::size_t i = 0; gives_way && i < count; ++i)
+        if (give_way(search, deformable, pressing[i], loaded[i])) ++left;
+    }
     if (!std::isfinite(object.stored)) {  // from a registered law or shape
       world.dropped |= kDroppedNonFinite;
       object.stored = 0.0;
@@ -269,6 +304,7 @@ void friction_feedback(World& world, Tick tick) {
     }
     if (object.stiffness_before > 0.0) object.stiffness_before = deformable.stiffness;
     for (const SharedDent& dent : shared) turn_at_ridge(registry, pose, dent, pressing[dent.a], pressing[dent.b]);
+    if (gives_way) grip_tips(world, object, deformable, pose, tick);
   }
 }
 

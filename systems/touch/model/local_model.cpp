@@ -237,6 +237,9 @@ Status check(const Deformable& d, const std::string& name) {
       {"transient.frequency", d.transient_frequency, R::kTransientFrequency},
       {"transient.decay", d.transient_decay, R::kTransientDecay},
       {"relief", d.relief, R::kRelief},
+      {"hole_radius", d.hole_radius, R::kHoleRadius},
+      {"yield.force", d.yield_force, R::kYieldForce},
+      {"yield.hardening", d.yield_hardening, R::kHardening},
   };
   for (const Bound& bound : bounds) {
     if (bound.range.holds(bound.value)) continue;

@@ -54,7 +54,7 @@ bool SharedDents::shared(std::span<const Pressing> pressing, const Pair& pair, c
   const double depth = ridge.depth + raised.height;
   const dvec3 deeper = ridge.slope + raised.gradient;
   const StoredEnergy at_a = a.law.stored(depth), at_b = b.law.stored(depth);
-  if (!(at_a.energy > 0 && at_b.energy > 0)) return false;
+  if (!(at_a.energy > 0 && at_b.energy > 0 && a.stored.energy > 0 && b.stored.energy > 0)) return false;
   dent.a = pair.a;
   dent.b = pair.b;
   dent.part = std::sqrt(at_a.energy / a.stored.energy * (at_b.energy / b.stored.energy));

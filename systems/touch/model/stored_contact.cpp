@@ -67,6 +67,7 @@ bool store(const ContactSearch& search, const Deformable& deformable, Pressing& 
   pressing.stiffness = smooth_painted(place, mesh, flush ? object.flush_stiffness : object.felt_stiffness);
   ContactLaw law = contact_law(deformable, object.motion, pressing.stiffness.value, pressing.source->tip.radius);
   law.free_depth = std::max(-contact.free_height, contact.unpushed);
+  law.broken = contact.damage.broken;
   Painted relaxed{0.0, dvec3(0)}, relaxation;
   if (!field.arm.empty() && law.arm > 0) {
     relaxation = smooth_painted(place, mesh, object.felt_relaxation);

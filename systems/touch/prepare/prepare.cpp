@@ -26,12 +26,13 @@ std::string name_of(const World& world, Entity entity) {
 void size_field(HeightField& field, const Mesh& mesh, const Deformable& deformable) {
   const std::size_t size = std::size_t{mesh.zone_count()} * kZoneSize;
   const bool arm = has_arm(deformable.spring);
-  if (field.stream.size() != size || field.arm.empty() == arm) {
+  if (field.stream.size() != size || field.arm.empty() == arm || !field.set.empty() || deformable.yield_force > 0) {
     field.stream.assign(size, vec4(0));
     field.residual.assign(size, vec4(0));
     field.rate.assign(size, vec4(0));
     field.arm.assign(arm ? size : 0, vec4(0));
     field.relaxed.assign(arm ? size : 0, vec4(0));
+    field.set.assign(deformable.yield_force > 0 ? size : 0, vec4(0));
     field.zone_state.assign(mesh.zone_count(), 0);
     field.awake.clear();
   }
@@ -231,6 +232,11 @@ ObjectState make_object(World& world, Entity entity, const Pose& pose, double dt
   object.zone_sources.assign(mesh.zone_count(), 0);
   object.visited.assign(mesh.zone_count(), 0);
   object.dirty.reserve(mesh.zone_count());
+  if (!deformable.layers.empty()) object.holes.reserve(kMostHoles);
+  if (deformable.yield_force > 0) {
+    object.sets.reserve(kMostSets);
+    object.set_zones.reserve(mesh.zone_count());
+  }
   if (world.field_place == FieldPlace::kGpu && !object.on_gpu && gpu_knows(deformable))
     object.feed_writer =
         FeedWriter(mesh.zone_count(), kMaxContactsPerObject, deformable.distance == Distance::kSurface);
@@ -347,6 +353,7 @@ Status prepare_touch(World& world) {
 
   touch->awake.reserve(touch->objects.size());
   touch->loaded.resize(kMaxContactsPerObject);
+  touch->events.reserve(kMostEventsInATick);
   std::vector<Box> boxes;
   for (const ObjectState& object : touch->objects) boxes.push_back(object.world_box);
   touch->object_boxes.build(boxes);

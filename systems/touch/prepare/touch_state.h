@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "components/touch_event.h"
 #include "components/world.h"
 #include "systems/safety/safety.h"
 #include "systems/touch/collide/box_tree.h"
@@ -151,6 +152,21 @@ struct SeamsFound {
   std::vector<std::uint32_t> bonds;
 };
 
+// A place where a probe broke layers. Object frame.
+struct Hole {
+  dvec3 p{0};                // [m] on the rest surface
+  double radius = 0.0;       // [m]
+  std::uint32_t broken = 0;  // layers, from the surface down
+};
+inline constexpr std::size_t kMostHoles = 64;
+
+// A dent that stays: the depth at distance r is depth * phi(r), phi the object's ShareKernel. Object frame.
+struct SetDent {
+  dvec3 p{0}, normal{0, 1, 0};  // [m] on the rest surface, [1]
+  double depth = 0.0;           // [m]
+};
+inline constexpr std::size_t kMostSets = 256;
+
 // Energy between one hand and one object (systems/device/tissue_account.h). [J] of the world
 struct TissueAccount {
   double given = 0.0;   // by the hand so far, beside what it got back
@@ -181,6 +197,9 @@ struct ObjectState {
   ShareKernel kernel;                       // sharing of the load between contacts
   Box world_box;                            // of the rest surface, for the broad phase
   std::uint32_t probe_sources = 0;          // number of `sources` for probes; presses follow
+  std::vector<Hole> holes;                  // capacity kMostHoles if it has layers
+  std::vector<SetDent> sets;                // capacity kMostSets if it yields
+  std::vector<std::uint32_t> set_zones;     // working memory; capacity: all zones if it yields
   double stored = 0.0;                      // [J] U: elastic energy of all its contacts (contact_energy.h)
   std::vector<TissueAccount> accounts;      // per probe
   bool listed = false;                      // it is in TouchState::awake
@@ -226,6 +245,7 @@ struct TouchState {
   std::vector<MovingNode> moving;                  // every node under a prescribed motion that carries something
   std::unique_ptr<TripleBuffer<Presses>> presses;  // soft clock -> touch clock; null if nothing can press
   std::vector<LoadedContact> loaded;               // of the current object; size kMaxContactsPerObject
+  std::vector<TouchEvent> events;                  // of this tick; capacity kMostEventsInATick
   double pressed_at = 0.0;                         // [s] arrival of the newest presses
 };
 
