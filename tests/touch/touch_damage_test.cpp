@@ -334,7 +334,7 @@ TEST(Yield, AGrooveIsPressedWithTheYieldForce) {
   stage.move(stage.probe, {-0.03, -0.001, 0}, 0.5);
   stage.move(stage.probe, {0.03, -0.001, 0}, 2.0,
              [&](const ProbeReading&) { ASSERT_NEAR(raw_force(stage, stage.probe).y, 1.0, 1e-6); });
-  EXPECT_LE(stage.world.touch->objects[0].sets.size(), 25u);
+  EXPECT_LE(stage.world.touch->objects[0].sets.size(), 35u);
   // Its bottom is where the law has it, 1.5 mm deep, and hardly waves.
   stage.move(stage.probe, {0.03, 0.02, 0}, 0.2);
   stage.wait(2.0);

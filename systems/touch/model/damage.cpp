@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kSamePlace = 0.1;  // [1] of the reach: nearer presses deepen the same dent
+constexpr double kSamePlace = 0.07;  // [1] of the reach: nearer presses deepen the same dent
 constexpr double kAgain = 0.5;      // [1] of the yield force: below it the next yielding is another event
 
 void tell(const ContactSearch& search, const Pressing& pressing, FeltKind kind, std::int32_t index, double force) {
