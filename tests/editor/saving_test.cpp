@@ -94,6 +94,9 @@ std::vector<Json> values_of(const Key& key) {
     case KeyType::kPoints:
       all = {Json::array(), Json{{0.0, 0.0, 0.0}, {0.1, 0.0, 0.0}}};
       break;
+    case KeyType::kTable:
+      all = {Json::array(), Json{{0.0, 0.0}, {0.001, 0.3}, {0.002, 0.8}}};
+      break;
     case KeyType::kBox:
       all = {Json{{"min", {0.0, 0.0, 0.0}}, {"max", {0.1, 0.1, 0.1}}},
              Json{{"min", {0.0, 0.0, 0.0}}, {"max", {0.0, 0.0, 0.0}}}};
