@@ -28,7 +28,8 @@ TEST(Touch, QuasiStaticForceIsTheLawOfTheDepthForEveryLaw) {
       const double sampled = has_arm(kind) ? 1e-3 * restoring_law(d).slope(-r.depth) : 0.0;
       ASSERT_NEAR(r.normal_force, law(d, r.depth), 1e-3 * law(d, r.depth) + sampled) << int(kind);
       // The slope of the tissue's memory is sampled at vertices 5 mm apart: an error of a hundredth of the force.
-      ASSERT_NEAR(r.tangential_force, 0, has_arm(kind) ? 1e-2 * law(d, r.depth) : 1e-9);
+      const double curved = row_of(kind).step == SpringStep::kPassiveArm ? sampled : 0.0;
+      ASSERT_NEAR(r.tangential_force, 0, has_arm(kind) ? 1e-2 * law(d, r.depth) + curved : 1e-9) << int(kind);
     });
   }
 }

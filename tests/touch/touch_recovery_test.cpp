@@ -79,8 +79,8 @@ TEST(Touch, SurfaceGoesToSleepWithExactZerosAndAStillSceneCostsNothing) {
     stage.move(probe, {0.02, -0.006, 0}, 0.2);
     EXPECT_GT(stage.field(sheet).awake_vertices, 0u);
     stage.move(probe, {0.02, 0.01, 0}, 0.2);
-    stage.wait(has_arm(kind) ? 12 : 1);
-    EXPECT_TRUE(stage.field(sheet).awake.empty());
+    stage.wait(has_arm(kind) ? 14 : 1);  // a steep law leaves more to creep
+    EXPECT_TRUE(stage.field(sheet).awake.empty()) << int(kind);
     for (const vec4& s : stage.field(sheet).stream) ASSERT_EQ(s, vec4(0));
     stage.tick();
     EXPECT_EQ(stage.field(sheet).awake_vertices, 0u);
