@@ -2,17 +2,20 @@
 // (pliant/parameters.h). A line after the last enumerator needs none: its word in a level file is enough.
 #pragma once
 
-// LAW(word, arithmetic, step, reads, cost): functions in shaders/shared/law.glsl.
+// LAW(word, arithmetic, step, reads): functions in shaders/shared/law.glsl.
 //   word        name in level files
 //   arithmetic  its functions are <arithmetic>_force, _slope, _potential, _keep and _between
 //   step        SpringStep of the free surface
 //   reads       keys of PLIANT_deformable that only some laws read
-//   cost        [ns] per vertex and step, measured once (bench/results)
-#define PLIANT_SPRING_LAWS(LAW)                               \
-  LAW(linear, linear, kExact, "", 2.3)                        \
-  LAW(cubic, cubic, kPassive, "cubic", 12.5)                  \
-  LAW(exponential, exponential, kPassive, "stiffening", 39.0) \
-  LAW(sls, linear, kArm, "relaxation.stiffness relaxation.time", 2.7)
+#define PLIANT_SPRING_LAWS(LAW)                                                                     \
+  LAW(linear, linear, kExact, "")                                                                   \
+  LAW(cubic, cubic, kPassive, "cubic")                                                              \
+  LAW(exponential, exponential, kPassive, "stiffening")                                             \
+  LAW(sls, linear, kArm, "relaxation.stiffness relaxation.time")                                    \
+  LAW(table, table, kPassive, "table")                                                              \
+  LAW(qlv_cubic, cubic, kPassiveArm, "cubic relaxation.stiffness relaxation.time")                  \
+  LAW(qlv_exponential, exponential, kPassiveArm, "stiffening relaxation.stiffness relaxation.time") \
+  LAW(qlv_table, table, kPassiveArm, "table relaxation.stiffness relaxation.time")
 
 // SHAPE(word, form, parameter, cost, kernel...): functions in shaders/shared/shape.glsl and field.glsl.
 //   form       radial: shape_<word>(u, parameter) gives value and slope; whole: field_<word> gives the target itself

@@ -12,7 +12,21 @@ bool depends_on_contact(Shape shape) {
 }
 
 bool has_arm(SpringLaw law) {
-  return row_of(law).step == SpringStep::kArm;
+  const SpringStep step = row_of(law).step;
+  return step == SpringStep::kArm || step == SpringStep::kPassiveArm;
+}
+
+const char* fault_of(const ForceTable& table) {
+  if (table.count < 2) return "has fewer than two rows";
+  if (table.count > ForceTable::kMost) return "has more than 16 rows";
+  if (table.rows[0] != std::array{0.0, 0.0}) return "does not begin with [0, 0]";
+  for (std::size_t i = 1; i < table.count; ++i) {
+    const auto& [depth, force] = table.rows[i];
+    if (!(depth > table.rows[i - 1][0])) return "has depths that do not grow from row to row";
+    if (!(force >= table.rows[i - 1][1])) return "has a force that falls from one row to the next";
+    if (!DeformableRange::kTable.holds(depth) || !DeformableRange::kTable.holds(force)) return "has a number above 1e9";
+  }
+  return table.rows[1][1] > 0.0 ? nullptr : "has no force in its second row, and so no stiffness at 0";
 }
 
 bool has_closed_form(const Deformable& d, const Mesh& mesh) {

@@ -20,6 +20,7 @@ struct DeformableRange {
   static constexpr Range kStiffness{1e-6, 1e7};            // [N/m]
   static constexpr Range kCubic{0.0, 1e15};                // [N/m3]
   static constexpr Range kStiffening{-1e5, 1e5};           // [1/m] < 0: softens
+  static constexpr Range kTable{0.0, 1e9};                 // [m], [N]
   static constexpr Range kRelaxationStiffness{0.0, 1e7};   // [N/m]
   static constexpr Range kRelaxationTime{1e-6, 1e6};       // [s]
   static constexpr Range kDampingRatio{0.0, 100.0};        // [1]
@@ -49,10 +50,12 @@ struct DeformableRange {
 
 // Whether a shape is that of an indenter on a half-space, so that `contact_radius` has an effect.
 bool depends_on_contact(Shape shape);
-// Whether a law has the Maxwell arm of the standard linear solid: `relaxation.*`, and a memory per vertex.
+// Whether a law relaxes by a Maxwell arm: `relaxation.*`, and a memory per vertex.
 bool has_arm(SpringLaw law);
 
 inline constexpr std::size_t kMostLayers = 8;
+// The first fault of a table of force against depth, or nullptr.
+const char* fault_of(const ForceTable& table);
 
 // A knock above this share of the touch rate would alias: there is none. [1]
 inline constexpr double kMostKnock = 0.4;

@@ -63,7 +63,11 @@ constexpr bool has(const Row (&rows)[size], Enum value, std::string_view word) {
 }
 static_assert(has(kSpringRows, SpringLaw::kLinear, "linear") && has(kSpringRows, SpringLaw::kCubic, "cubic") &&
               has(kSpringRows, SpringLaw::kExponential, "exponential") &&
-              has(kSpringRows, SpringLaw::kStandardLinearSolid, "sls"));
+              has(kSpringRows, SpringLaw::kStandardLinearSolid, "sls") &&
+              has(kSpringRows, SpringLaw::kTable, "table") &&
+              has(kSpringRows, SpringLaw::kQuasiLinearCubic, "qlv_cubic") &&
+              has(kSpringRows, SpringLaw::kQuasiLinearExponential, "qlv_exponential") &&
+              has(kSpringRows, SpringLaw::kQuasiLinearTable, "qlv_table"));
 static_assert(has(kShapeRows, Shape::kPunch, "punch") && has(kShapeRows, Shape::kHertz, "hertz") &&
               has(kShapeRows, Shape::kGaussian, "gaussian") && has(kShapeRows, Shape::kWendland, "wendland") &&
               has(kShapeRows, Shape::kVolume, "volume") && has(kShapeRows, Shape::kKelvinlet, "kelvinlet"));

@@ -14,15 +14,15 @@ namespace pliant {
 
 // How the free surface moves under a law (methods.md 1.2).
 enum class SpringStep : std::uint8_t {
-  kExact,   // linear: exact for a constant force
-  kArm,     // linear with a Maxwell arm: exact, with a memory per vertex
-  kPassive  // any other: discrete gradient, or backward Euler
+  kExact,      // linear: exact for a constant force
+  kArm,        // linear with a Maxwell arm: exact, with a memory per vertex
+  kPassive,    // any other: discrete gradient, or backward Euler
+  kPassiveArm  // the same beside a Maxwell arm that stretches by the law's force: quasi-linear viscoelasticity
 };
 struct SpringRow {
   const char* word;
   SpringStep step;
   const char* reads;  // keys, separated by spaces
-  double ns;          // [ns] per vertex and step
 };
 
 // The number that FieldSource::parameter carries for a shape.
@@ -46,7 +46,7 @@ struct SolverRow {
   double factorisation, column;
 };
 
-#define PLIANT_ROW(word, arithmetic, step, reads, ns) SpringRow{#word, SpringStep::step, reads, ns},
+#define PLIANT_ROW(word, arithmetic, step, reads) SpringRow{#word, SpringStep::step, reads},
 inline constexpr SpringRow kSpringRows[] = {PLIANT_SPRING_LAWS(PLIANT_ROW)};
 #undef PLIANT_ROW
 #define PLIANT_ROW(word, form, parameter, ns, ...) ShapeRow{#word, ShapeParameter::parameter, ns, {__VA_ARGS__}},
@@ -65,7 +65,7 @@ const char* registered_word(Shape shape);
 const char* registered_word(SolverKind kind);
 
 // Its row. A registered one has the row of its kind: it may read any constant, and is stepped passively.
-inline constexpr SpringRow kRegisteredSpring{"", SpringStep::kPassive, "cubic stiffening", 40.0};
+inline constexpr SpringRow kRegisteredSpring{"", SpringStep::kPassive, "cubic stiffening"};
 inline constexpr ShapeRow kRegisteredShape{"", ShapeParameter::kNone, 20.0};
 inline constexpr SolverRow kRegisteredSolver{"", SolverCost::kDirect, 1.0, 1.0};
 constexpr const SpringRow& row_of(SpringLaw law) {

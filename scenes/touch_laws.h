@@ -16,20 +16,28 @@ inline Deformable frictionless(SpringLaw law = SpringLaw::kLinear) {
   d.spring = law;
   d.friction_static = d.friction_sliding = 0;
   d.reach = 0.03;
+  if (!reads_key(law, "table")) return d;
+  d.table = {5, {{{0, 0}, {1.2e-3, 0.3}, {2.1e-3, 0.8}, {4.2e-3, 1.0}, {8.1e-3, 5.0}}}};  // toe, rise, plateau, rise
+  d.stiffness = d.relaxation_stiffness = stiffness_of(d.table);
   return d;
 }
 
-// [N] Normal force at a given depth [m] in equilibrium, written out from level-format.md. A law that is not there: its
-// own, whose arithmetic tests/touch/law_table_test.cpp checks.
+// [N] Normal force at a given depth [m] in equilibrium, written out from level-format.md. A table, or a law
+// that is not there: its own, whose arithmetic tests/touch/law_table_test.cpp checks.
 inline double law(const Deformable& d, double depth) {
   switch (d.spring) {
     case SpringLaw::kLinear:
     case SpringLaw::kStandardLinearSolid:
       return d.stiffness * depth;
     case SpringLaw::kCubic:
+    case SpringLaw::kQuasiLinearCubic:
       return d.stiffness * depth + d.cubic * depth * depth * depth;
     case SpringLaw::kExponential:
+    case SpringLaw::kQuasiLinearExponential:
       return d.stiffness / d.stiffening * (std::exp(d.stiffening * depth) - 1);
+    case SpringLaw::kTable:
+    case SpringLaw::kQuasiLinearTable:
+      break;
   }
   return -d.stiffness * restoring_law(d).force(-depth);
 }

@@ -11,7 +11,7 @@ layout(local_size_x = 128) in;  // kZoneSize
 layout(std430, binding = 0) buffer Stream { vec4 stream[]; };
 layout(std430, binding = 1) readonly buffer Rest { vec4 rest[]; };  // as in field.comp
 layout(std430, binding = 2) readonly buffer RestNormal { vec2 rest_yz[]; };
-layout(std430, binding = 3) buffer State { vec4 state[]; };  // residual, rate; standard linear solid: also arm, relaxed
+layout(std430, binding = 3) buffer State { vec4 state[]; };  // residual, rate; with an arm: also arm, relaxed
 layout(std430, binding = 4) readonly buffer Coefficients { float coefficient[]; };
 struct Source {
   vec4 place, push, kind;
@@ -25,9 +25,9 @@ layout(std430, binding = 6) readonly buffer Steps { uvec4 steps[]; };
 layout(std430, binding = 7) readonly buffer Offsets { vec4 offsets[]; };
 
 uniform uint vertex_count, stride, lags, has_offsets;
-uniform uint way;  // SpringStep: 0 exact, 1 exact with an arm, 2 passive
+uniform uint way;  // SpringStep: 0 exact, 1 exact with an arm, 2 passive, 3 passive with an arm
 uniform uint first_run, first_zone;  // into steps
-uniform float inv_dt, arm_decay, arm_ramp;
+uniform float inv_dt, arm_decay, arm_ramp, arm_half;
 
 vec3 P, N;
 uint lane;
@@ -64,14 +64,14 @@ void main() {
   if (v >= vertex_count) return;
   P = rest[v].xyz;
   N = vec3(rest[v].w, rest_yz[v]);
-  bool solid = way == 1u, follows = lags == 0u;
+  bool solid = way == 1u || way == 3u, follows = lags == 0u;
   uint parts = solid ? 4u : 2u, c = stride * v;
   vec4 residual = state[parts * v], rate = state[parts * v + 1u], arm = vec4(0), relaxed = vec4(0);
   float r1 = 0.0;
   if (solid) {
     arm = state[parts * v + 2u];
     relaxed = state[parts * v + 3u];
-    r1 = coefficient[c + 9u];
+    r1 = coefficient[c + (way == 1u ? 9u : 2u)];
   }
   vec4 shown = stream[v];
 
@@ -86,9 +86,9 @@ void main() {
       for (uint block = blocks.y; next_bit(folded, bit); ++block) {
         uint at = from.y + 2u * rank(known.zw, bit);
         vec4 now = target_of(sources[at], block), before = target_of(sources[at + 1u], block);
+        if (solid) arm += r1 * (strained(residual + now) - strained(residual));
         residual += now;
         rate += (now - before) * inv_dt;
-        if (solid) arm += r1 * now;
       }
       vec4 target = vec4(0);
       uvec2 mask = acting.xy;
@@ -96,9 +96,9 @@ void main() {
         target += target_of(sources[from.x + rank(known.xy, bit)], block);
 
       if (solid && follows) {
-        vec4 before = shown - residual;
-        relaxed = target - (arm_decay * (before - relaxed) + arm_ramp * (target - before));
-        float held = r1 > 0.0 && target.w < 0.0 ? target.w * (1.0 + 1.0 / r1) : 0.0;
+        vec4 before = strained(shown - residual), now = strained(target);
+        relaxed = now - (arm_decay * (before - relaxed) + arm_ramp * (now - before));
+        float held = r1 > 0.0 && now.w < 0.0 ? now.w * (1.0 + 1.0 / r1) : 0.0;
         if (relaxed.w < held && relaxed.w < 0.0) {
           vec4 left = (1.0 - held / relaxed.w) * relaxed;
           arm -= r1 * left;
@@ -109,8 +109,10 @@ void main() {
       }
 
       vec4 pulled = follows ? vec4(0) : target;
-      if (way == 2u) {
-        law_step(residual, rate, pulled, coefficient[c], coefficient[c + 1u]);
+      if (way >= 2u) {
+        arm *= arm_half;
+        law_step(residual, rate, pulled, coefficient[c], coefficient[c + 1u], arm, r1);
+        arm *= arm_half;
       } else {  // linear: the state relative to the target moves freely
         vec4 x = residual - pulled, w = rate;
         if (solid) {

@@ -36,6 +36,16 @@ constexpr const char* word_of(Distance distance) {
   return nullptr;
 }
 
+constexpr const char* word_of(SphereForce sphere) {
+  switch (sphere) {
+    case SphereForce::kHertz:
+      return "hertz";
+    case SphereForce::kSneddon:
+      return "sneddon";
+  }
+  return nullptr;
+}
+
 constexpr const char* word_of(Fill fill) {
   switch (fill) {
     case Fill::kSolid:

@@ -73,6 +73,11 @@ Json schema_of(const Key& key, const Json& standard) {
       out["maxItems"] = kMostItems;
       break;
     }
+    case KeyType::kTable:
+      out["type"] = "array";
+      out["items"] = array(2);
+      out["maxItems"] = ForceTable::kMost;
+      break;
     case KeyType::kBox: {
       const Json corner = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
       out["type"] = "object";

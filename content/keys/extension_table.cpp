@@ -5,7 +5,8 @@
 
 #include <algorithm>
 
-#include "content/keys/bonded_layer.h"
+#include "components/bonded_layer.h"
+#include "components/monotone_cubic.h"
 #include "content/keys/enum_words.h"
 #include "content/level/spawn_soft.h"
 #include "content/mesh/mesh_crease.h"
@@ -192,9 +193,27 @@ std::vector<Key> deformable_keys() {
                         "k3 of the cubic law; with `young`, unstated: 10,000/m2 of its stiffness"));
   keys.push_back(number("stiffening", "1/m", {R::kStiffening, {-1e3, 1e4}}, d(&D::stiffening),
                         "alpha of the exponential law; below 0 it softens"));
+  Key table = key(
+      "table", "m, N", KeyType::kTable,
+      fmt::format("rows [depth, force] of the law table, from [0, 0], at most {}; their slope there replaces "
+                  "`stiffness`",
+                  ForceTable::kMost),
+      d(&D::table),
+      [](const ForceTable& rows) {
+        Json json = Json::array();
+        for (std::size_t i = 0; i < rows.count; ++i) json.push_back(rows.rows[i]);
+        return json;
+      },
+      [](const Json& json) {
+        ForceTable rows;
+        for (const Json& row : json) rows.rows[rows.count++] = {row[0].get<double>(), row[1].get<double>()};
+        return rows;
+      });
+  table.range = R::kTable;
+  keys.push_back(table);
   keys.push_back(number("relaxation.stiffness", "N/m", {R::kRelaxationStiffness, {1.0, 1e5}},
                         d(&D::relaxation_stiffness),
-                        "arm of the standard linear solid; with `young`, unstated: its stiffness"));
+                        "small-depth slope of a relaxing law's arm; with `young`, unstated: its stiffness"));
   keys.push_back(number("relaxation.time", "s", {R::kRelaxationTime, {1e-3, 1e3}}, d(&D::relaxation_time),
                         "relaxation time of that arm"));
   keys.push_back(number("damping_ratio", "1", {R::kDampingRatio, {0.01, 20.0}}, d(&D::damping_ratio),
@@ -282,12 +301,14 @@ std::vector<Key> deformable_keys() {
   keys.push_back(number("poisson", "1", {0.0, 0.5}, d(&D::poisson), "Poisson's ratio, with `young`"));
   keys.push_back(number("thickness", "m", {{0.0, 1e6}, {1e-4, 1.0}}, d(&D::thickness),
                         "thickness of the layer, which is bonded to something rigid, with `young`; 0: deep"));
+  keys.push_back(choice("sphere", d(&D::sphere),
+                        "force of a spherical probe, with `young`: Hertz's, or Sneddon's exact sphere on deep tissue"));
   keys.push_back(
       choice("carries", d(&D::carries),
              "drawn meshes that are dented with it: none, or those inside of it or below its node, less with depth"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, d(&D::error),
-                        "error budget: takes the cheapest unstated shape, distance, reach, contact radius and, with "
-                        "`young`, force law whose measured error is within it; 0: none"));
+                        "error budget: takes the cheapest unstated shape, distance, reach and contact radius whose "
+                        "measured error is within it; 0: none"));
   return keys;
 }
 
@@ -333,6 +354,22 @@ std::optional<Note> settle_deformable(void* owner) {
     return Note{
         fmt::format("friction_sliding ({}) is above friction_static ({})", it.friction_sliding, it.friction_static),
         "lower it, or set `friction` for both", "key.value", "friction_sliding"};
+  if (it.young > 0.0 && it.thickness > 0.0 && it.sphere == SphereForce::kSneddon)
+    return Note{"gives both thickness and the sphere sneddon, which is of deep tissue",
+                "keep one: on a layer a sphere is Hertz's", "key.both", "sphere"};
+  if (stiffness_of_table(node)) {
+    if (const char* const fault = fault_of(it.table))
+      return Note{std::string("table ") + (it.table.count > 0 ? fault : "is missing"),
+                  "give rows of depth and force that rise: [[0, 0], [0.001, 0.3], [0.002, 0.8]]", "key.value", "table"};
+    if (it.young > 0.0)
+      return Note{"gives both young and a table of force", "keep one: both say the force", "key.both", "table"};
+    it.stiffness = stiffness_of(it.table);
+    if (!DeformableRange::kStiffness.holds(it.stiffness))
+      return Note{fmt::format("table makes a stiffness of {:.3g} N/m at depth 0", it.stiffness),
+                  fmt::format("it must be in the range [{}, {}] N/m", DeformableRange::kStiffness.min,
+                              DeformableRange::kStiffness.max),
+                  "key.value", "table"};
+  }
   if (it.young > 0.0) it.stiffness = calibrated_stiffness(it.young, it.poisson, it.thickness);
   if (it.young > 0.0 && !DeformableRange::kStiffness.holds(it.stiffness))
     return Note{fmt::format("young ({:g} Pa) makes a stiffness of {:.3g} N/m", it.young, it.stiffness),
@@ -658,6 +695,10 @@ std::vector<Extension> make_table() {
 double calibrated_stiffness(double young, double poisson, double thickness) {
   const double layer = thickness > 0.0 ? bonded_layer_factor(kYoungRadius / thickness, poisson) : 1.0;
   return 2.0 * young / (1.0 - poisson * poisson) * kYoungRadius * layer;
+}
+
+bool stiffness_of_table(const LevelNode& node) {
+  return node.deformable && reads_key(node.deformable->spring, "table");
 }
 
 std::string listed(const std::vector<std::string>& words) {

@@ -20,6 +20,7 @@ enum class KeyType {
   kPair,
   kVector,
   kPoints,
+  kTable,
   kBox,
   kNode,
   kNames,
@@ -66,6 +67,9 @@ void note_stated(const Extension& extension, const Key& key, void* owner);
 const Key* find_key(const Extension& extension, const std::string& name);
 // The key of NODE.EXTENSION.KEY; the node's name may contain dots. nullptr: none.
 const Key* find_key_of_path(const std::string& path);
+
+// Whether its stiffness follows from the rows of `table`.
+bool stiffness_of_table(const LevelNode& node);
 
 // Makes the constants of a fresh component, which an unstated key has beside the `young` of this node.
 void scale_defaults(LevelNode& fresh, const LevelNode& node);

@@ -167,6 +167,14 @@ std::optional<Note> check_value(const Key& key, const Json& value) {
           std::all_of(value.begin(), value.end(), [](const Json& each) { return each.is_string() && each != ""; });
       return good ? fine : must_be(fmt::format("a list of at most {} names", kMostNames));
     }
+    case KeyType::kTable: {
+      const bool good =
+          value.is_array() && value.size() <= ForceTable::kMost && value.size() != 1 &&
+          std::all_of(value.begin(), value.end(), [&](const Json& each) { return numbers(each, 2, key.range); });
+      return good ? fine
+                  : must_be(
+                        fmt::format("a list of 2 to {} rows [depth, force] in {}", ForceTable::kMost, range_text(key)));
+    }
     case KeyType::kBox: {
       const Range any{-1e6, 1e6};
       bool good = value.is_object() && value.size() == 2 && value.contains("min") && value.contains("max") &&

@@ -26,6 +26,11 @@ class KeyReader {
     if (extension_.name == "deformable" && given("stiffness") && static_cast<LevelNode*>(owner_)->deformable->young > 0)
       report_(pointer,
               {"gives both young and stiffness", "keep one, young is calibrated to a stiffness", "key.both", {}});
+    if (extension_.name == "deformable" && given("stiffness") && stiffness_of_table(*static_cast<LevelNode*>(owner_)))
+      report_(pointer, {"gives both stiffness and a table of force",
+                        "keep one, the table's slope at depth 0 is its stiffness",
+                        "key.both",
+                        {}});
     if (const std::optional<Note> clash = extension_.settle(owner_))
       report_(given(clash->of.c_str()) ? pointer + "/" + clash->of : pointer, *clash);
   }
@@ -120,10 +125,12 @@ Json& place(Json& json, const std::string& dotted) {
 Json write(const Extension& extension, const void* owner, const void* defaults, const std::set<std::string>& stated,
            const Json& before) {
   Json out = Json::object();
-  // A calibrated stiffness is derived from `young` at loading, so it is not saved.
-  const bool young = extension.name == "deformable" && static_cast<const LevelNode*>(owner)->deformable->young > 0.0;
+  // A stiffness that `young` or a table says is derived at loading, so it is not saved.
+  const bool deformable = extension.name == "deformable";
+  const bool young = deformable && static_cast<const LevelNode*>(owner)->deformable->young > 0.0,
+             derived = young || (deformable && stiffness_of_table(*static_cast<const LevelNode*>(owner)));
   for (const Key& key : extension.keys) {
-    if (key.alias || (young && key.name == "stiffness")) continue;
+    if (key.alias || (derived && key.name == "stiffness")) continue;
     if (extension.name == "deformable" && key.name == "young" && !young) continue;  // 0: absent, even if written
     const Json value = key.get(owner);
     if (value.is_null() || (value == key.get(defaults) && !stated.contains(extension.name + "." + key.name))) continue;

@@ -108,6 +108,12 @@ Status set_one(Level& level, const std::string& assignment, std::vector<Touched>
     return error_at(where, *wrong);
   }
 
+  if (key->name == "stiffness" && extension->name == "deformable")
+    for (const std::size_t i : nodes_of(level, it.node))
+      if (stiffness_of_table(level.nodes[i]))
+        return Error{where, "follows from the rows of its table", "set `table` instead, or another `spring` first",
+                     "key.both"};
+
   if (extension->on_scene) {
     if (!extension->present(&level)) extension->add(&level);
     assign(*extension, *key, it.value, &level, where, touched);

@@ -72,6 +72,11 @@ const UnusedRow kRows[] = {
      "thickness",
      [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
      {"is read with `young` only", "give that too, or remove the key"}},
+    {"deformable", "table", [](const LevelNode& n) { return is_law_without("table", n); }, laws_with("table")},
+    {"deformable",
+     "sphere",
+     [](const LevelNode& n) { return !(n.deformable->young > 0.0); },
+     {"is read with `young` only", "give that too, or remove the key"}},
     {"deformable",
      "friction_stribeck",
      [](const LevelNode& n) { return !(n.deformable->friction_static > n.deformable->friction_sliding); },
@@ -196,17 +201,6 @@ void find_in_node(const Level& level, std::size_t n, std::vector<UnusedKey>& fou
                      fmt::format("makes no knock: {:g} Hz is above {:g} of the touch rate, {:g} Hz",
                                  d->transient_frequency, kMostKnock, level.simulation.touch_rate),
                      "lower `transient.frequency`, or raise `touch_rate`"});
-  // An error budget chooses the law of a sphere by it.
-  if (!node.deformable || !(node.deformable->young > 0.0) || !(node.deformable->thickness > 0.0) ||
-      node.deformable->error > 0.0)
-    return;
-  bool spheres = false, points = false;
-  for (const LevelNode& each : level.nodes)
-    if (each.in_scene && each.probe) (each.probe->radius > 0.0 ? spheres : points) = true;
-  if (spheres && !points)
-    found.push_back({static_cast<std::int32_t>(n), "PLIANT_deformable/thickness",
-                     "is of a flat punch, which a probe of radius 0 is, and all probes are spheres",
-                     "give one the radius 0, or remove the key"});
 }
 
 void find_in_scene(const Level& level, std::vector<UnusedKey>& found) {

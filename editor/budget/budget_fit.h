@@ -32,7 +32,7 @@ double budget_of(const LevelNode& node);  // [1] 0: none
 struct BudgetFit {
   FitSubject subject;
   std::optional<FitSubject> used;                                        // the same object with the chosen keys
-  Result<std::vector<ModelChoice>> choices = Error{"", "not measured"};  // surface and force law, or body and tool
+  Result<std::vector<ModelChoice>> choices = Error{"", "not measured"};  // surface, or body and tool
   std::vector<StatedKey> keys;                                           // chosen keys that the level does not state
   double seconds = 0.0;                                                  // duration of the measurement
 };

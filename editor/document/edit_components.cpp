@@ -141,7 +141,11 @@ Result<State> with_value(const State& state, NodeIds ids, const std::string& ext
   return each_with(state, ids, [&](LevelNode& node) -> Result<bool> {
     if (!of.present(&node)) return false;
     // Stiffness and Young's modulus exclude each other: the last one set wins.
-    if (extension == "deformable" && key == "stiffness") node.deformable->young = 0.0;
+    if (extension == "deformable" && key == "stiffness") {
+      if (stiffness_of_table(node))
+        return Error{node.name, "stiffness follows from the rows of its table", "change those, or `spring`"};
+      node.deformable->young = 0.0;
+    }
     (*found)->set(&node, value);
     if (const std::optional<Note> clash = of.settle(&node)) return error_at(node.name, *clash);
     return true;

@@ -196,7 +196,7 @@ class ErrorBudgetPanel : public Panel {
     view_.table(choice, std::max(ImGui::GetContentRegionAvail().y, ui::px(kLeastTable)), stale_);
   }
 
-  // Selects which choice the sentence, table and plot show: surface or force law, body or tool.
+  // Selects which choice the sentence, table and plot show: surface, body or tool.
   void draw_kinds(const std::vector<ModelChoice>& choices) {
     if (choices.size() < 2) return;
     for (const ModelChoice& each : choices) {

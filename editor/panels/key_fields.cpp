@@ -141,22 +141,29 @@ bool box_field(const Key& key, Json& value) {
   return changed;
 }
 
-bool points_field(const Key& key, Json& value) {
+// A list of rows of `width` numbers: at least `least` of them, or none. The editor adds a row beyond the last.
+bool rows_field(const Key& key, Json& value, std::size_t width, std::size_t least, std::size_t most) {
   Json next = value.is_array() ? value : Json::array();
   bool changed = false;
   for (std::size_t i = 0; i < next.size(); ++i) {
     Key part = key;
     part.name = fmt::format("{} {}", key.name, i + 1);
-    changed |= row_field(part, next[i], 3);
+    changed |= row_field(part, next[i], width);
   }
-  if (next.size() < kMostPoints && ui::button(fmt::format("Add##{}", key.name).c_str())) {
-    next.push_back({0.0, 0.0, 0.0});
+  if (next.size() < most && ui::button(fmt::format("Add##{}", key.name).c_str())) {
+    if (key.type == KeyType::kTable && next.empty())
+      next = {{0.0, 0.0}, {0.001, 0.3}};
+    else if (key.type == KeyType::kTable)
+      next.push_back({2 * next.back()[0].get<double>(), 2 * next.back()[1].get<double>()});
+    else
+      next.push_back(std::vector<double>(width, 0.0));
     changed = true;
   }
   if (!next.empty()) {
     ImGui::SameLine();
     if (ui::button(fmt::format("Remove##{}", key.name).c_str())) {
       next.erase(next.size() - 1);
+      if (next.size() < least) next = Json::array();
       changed = true;
     }
   }
@@ -250,7 +257,10 @@ bool key_field(Editor& editor, const Key& key, Json& value) {
       changed = row_field(key, value, 3);
       break;
     case KeyType::kPoints:
-      changed = points_field(key, value);
+      changed = rows_field(key, value, 3, 1, kMostPoints);
+      break;
+    case KeyType::kTable:
+      changed = rows_field(key, value, 2, 2, ForceTable::kMost);
       break;
     case KeyType::kNames:
       changed = names_field(editor, key, value);

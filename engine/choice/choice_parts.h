@@ -33,10 +33,6 @@ class ChoiceProgress {
 
 // Each sets the keys of the node that the author has not set.
 Result<ModelChoice> choose_surface(Level& level, std::size_t node, ChoiceProgress& progress);
-// Called after the surface's choice, which is passed in. Empty if nothing defines the reference force; a remark gives
-// the reason.
-Result<std::optional<ModelChoice>> choose_law(Level& level, std::size_t node, ModelChoice& surface,
-                                              ChoiceProgress& progress);
 // `step` [s]: lowered to the soft step chosen for this body.
 Result<ModelChoice> choose_body(Level& level, std::size_t node, double& step, ChoiceProgress& progress);
 // Called after all bodies, with the level's soft step. `whose`: the choice that has the budget. Empty if the

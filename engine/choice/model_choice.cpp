@@ -30,7 +30,7 @@ bool is_tool(const LevelNode& node) {
   return node.handle && (node.rigid_body || node.soft_body);
 }
 
-// Chooses a surface with its law, or a body, if it has a budget.
+// Chooses a surface, or a body, if it has a budget.
 Status choose_object(Level& level, std::size_t index, double& step, ChoiceProgress& progress,
                      std::vector<ModelChoice>& all) {
   if (!has_surface_budget(level.nodes[index])) {
@@ -41,17 +41,13 @@ Status choose_object(Level& level, std::size_t index, double& step, ChoiceProgre
   }
   auto surface = choose_surface(level, index, progress);
   if (!surface) return surface.error();
-  auto law = choose_law(level, index, *surface, progress);
-  if (!law) return law.error();
   all.push_back(std::move(*surface));
-  if (*law) all.push_back(std::move(**law));
   return Done{};
 }
 
 // The alternative if no candidate is within the budget.
 const char* cure(const std::string& kind) {
   if (kind == "surface") return "; for less, make it a soft body (PLIANT_soft_body)";
-  if (kind == "force law") return "; for less, fit a law to measured presses (pliant fit)";
   if (kind == "tool") return "; for less, name a shorter soft_step";
   return "; for less, name a smaller `cell` and soft_step";
 }
@@ -156,8 +152,6 @@ std::vector<ChoosableKey> choosable_keys(const Level& level, std::size_t index) 
   } else if (node.deformable && node.mesh >= 0) {
     if (!states(node, "deformable", "volume")) add("deformable", "shape");
     for (const char* key : {"distance", "reach", "contact_radius"}) add("deformable", key);
-    if (node.deformable->young > 0.0 && least_sphere(level) > 0.0)
-      for (const char* key : {"spring", "stiffening", "cubic"}) add("deformable", key);
   }
   return keys;
 }

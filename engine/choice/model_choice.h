@@ -3,7 +3,6 @@
 //
 //   surface     shape, distance, reach and contact radius, pressed by the touch tick; reference: an elastic half-space
 //               or a bonded layer under a flat punch (surface_truth.h)
-//   force law   spring with its constant, if `young` and a spherical probe define the reference force
 //   soft body   lattice, soft step and solver; references: a finer lattice, the midpoint rule in short steps, and a
 //               refined direct solution
 //   tool        constant force, linear model or contacts solved again; reference: the soft step at the touch rate
@@ -37,7 +36,7 @@ struct ChoosableKey {
 };
 
 struct ModelChoice {
-  std::string object, kind;           // "surface", "force law", "soft body" or "tool"
+  std::string object, kind;           // "surface", "soft body" or "tool"
   double budget = 0.0;                // [1]
   std::vector<ModelCandidate> tried;  // the cheapest first
   std::size_t chosen = 0;             // into `tried`

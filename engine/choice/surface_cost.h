@@ -15,9 +15,4 @@ inline double shape_ns(Shape shape) {
   return row_of(shape).ns;
 }
 
-// [ns] Cost of the free surface's motion.
-inline double law_ns(SpringLaw law) {
-  return row_of(law).ns;
-}
-
 }  // namespace pliant

@@ -13,6 +13,7 @@ constexpr Fixed kFixed[] = {
     {"deformable.response", "the field of the surface is kept in another way"},
     {"deformable.distance", "what finds it is laid out when the session opens"},
     {"deformable.crease_angle", "the mesh is built with it"},
+    {"deformable.table", "its rows are laid out when the session opens"},
     {"deformable.error", "the model is chosen by it when the session opens"},
     {"deformable.carries", "what goes with it is laid out when the session opens"},
     {"deformable.layers", "holes in them are kept from then on"},

@@ -97,7 +97,7 @@ Result<SurfaceSetting> surface_setting(const SessionRun& p, const std::string& w
   const Mesh& mesh = p.world.meshes[before.mesh];
   const bool arm = has_arm(before.spring);
   if (arm != has_arm(now.spring))
-    return Error{where, "the standard linear solid keeps a memory that is laid out when the session opens",
+    return Error{where, "a law that relaxes keeps a memory that is laid out when the session opens",
                  "change it in the scene and open that again"};
   if (now.reach == 0.0) now.reach = default_reach(mesh);
   const Motion motion_now = motion(now, p.world.touch->dt);
@@ -246,10 +246,10 @@ void note_settings(SessionRun& p, const std::string& name, const Extension& exte
                                                                     : value.dump();
   }
   if (!now.deformable) return;
-  const std::string follows = name + ".deformable.stiffness";  // derived from `young`, if set
-  if (now.deformable->young > 0.0)
+  const std::string follows = name + ".deformable.stiffness";  // derived from `young` or a table, if set
+  if (now.deformable->young > 0.0 || stiffness_of_table(now))
     p.settings.erase(follows);
-  else if (before.deformable->young > 0.0 && key.name == "young")
+  else if ((before.deformable->young > 0.0 && key.name == "young") || stiffness_of_table(before))
     p.settings[follows] = fmt::format("{}", now.deformable->stiffness);
 }
 
@@ -307,6 +307,8 @@ Status set_value(SessionRun& p, const std::string& name, const std::string& key_
   const LevelNode before = named->node;
   if (before.deformable && before.deformable->young > 0.0 && key->name == "stiffness")
     return Error{where, "follows from its Young's modulus", "set `young` instead"};
+  if (key->name == "stiffness" && stiffness_of_table(before))
+    return Error{where, "follows from the rows of its table", "set another `spring` first"};
   key->set(&named->node, value);
   if (const std::optional<Note> fault = extension->settle(&named->node)) return error_at(where, *fault);
   Result<SessionChange> change = change_of(p, name, where, *extension, *key, named->node);

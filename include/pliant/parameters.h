@@ -24,10 +24,33 @@ struct Simulation {
 
 // Values after the last of SpringLaw, Shape and SolverKind are those that have no enumerator, and registered ones
 // (surface_law.h, linear_solver.h).
-enum class SpringLaw : std::uint8_t { kLinear, kCubic, kExponential, kStandardLinearSolid };
+enum class SpringLaw : std::uint8_t {
+  kLinear,
+  kCubic,
+  kExponential,
+  kStandardLinearSolid,
+  kTable,
+  kQuasiLinearCubic,  // these three also relax (quasi-linear viscoelasticity)
+  kQuasiLinearExponential,
+  kQuasiLinearTable
+};
 enum class Shape : std::uint8_t { kPunch, kHertz, kGaussian, kWendland, kVolume, kKelvinlet };
 enum class Response : std::uint8_t { kFollow, kLag };     // methods.md 1.8
 enum class Distance : std::uint8_t { kChord, kSurface };  // methods.md 1.3
+
+// The force of a sphere on tissue of known modulus (DeformableParameters::young).
+enum class SphereForce : std::uint8_t {
+  kHertz,    // of its osculating paraboloid; on a layer of `thickness`, too
+  kSneddon,  // of the exact sphere on a half-space: 10 % less than Hertz's at a depth of one radius
+};
+
+// Force against depth, for the law `table`: a monotone cubic through the rows, linear beyond the last.
+struct ForceTable {
+  static constexpr std::size_t kMost = 16;
+  std::size_t count = 0;                            // of rows, at least 2
+  std::array<std::array<double, 2>, kMost> rows{};  // depth [m], ascending from 0; force [N], from 0, never falling
+  bool operator==(const ForceTable&) const = default;
+};
 
 // Which meshes that are only drawn move with a deformable object.
 enum class Carries : std::uint8_t {
@@ -73,7 +96,8 @@ struct DeformableParameters {
   double stiffness = 300.0;               // [N/m] slope of the normal force against depth at depth 0
   double cubic = 3e6;                     // [N/m3] k3 of the cubic law
   double stiffening = 100.0;              // [1/m] alpha of the exponential law; < 0: softening
-  double relaxation_stiffness = 300.0;    // [N/m] the arm of the standard linear solid
+  ForceTable table;                       // of the law `table`; its slope at 0 replaces `stiffness`
+  double relaxation_stiffness = 300.0;    // [N/m] small-depth slope of a relaxing law's arm
   double relaxation_time = 0.5;           // [s] tau of that arm
   double damping_ratio = 1.0;             // [1] zeta of the free surface
   double settling_time = 0.05;            // [s] 2 % settling time of the free surface
@@ -100,7 +124,8 @@ struct DeformableParameters {
   double young = 0.0;                  // [Pa] with thickness: calibrates the stiffness, replaces `stiffness`; 0: unset
   double poisson = 0.45;               // [1]
   double thickness = 0.0;              // [m] 0: half-space
-  double error = 0.0;                  // [1] error budget from which unset model parameters are chosen; 0: none
+  SphereForce sphere = SphereForce::kHertz;  // with `young`
+  double error = 0.0;                        // [1] error budget from which unset model parameters are chosen; 0: none
   Carries carries = Carries::kNothing;
   Layers layers;
   double hole_radius = 0.002;    // [m] of the hole that a probe leaves in a layer, at least the probe's

@@ -17,10 +17,13 @@
 
 namespace pliant {
 
+struct MonotoneCubic;
+
 // The authored constants of DeformableParameters for laws that are not linear.
 struct SpringConstants {
-  double cubic = 0.0;       // [1/m2] DeformableParameters::cubic / stiffness
-  double stiffening = 0.0;  // [1/m] DeformableParameters::stiffening
+  double cubic = 0.0;                    // [1/m2] DeformableParameters::cubic / stiffness
+  double stiffening = 0.0;               // [1/m] DeformableParameters::stiffening
+  const MonotoneCubic* table = nullptr;  // DeformableParameters::table, of the laws that ship
 };
 
 // The restoring force of a vertex against its height h [m] (below zero: pushed in), in units of the stiffness at small

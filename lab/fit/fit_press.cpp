@@ -179,9 +179,9 @@ Status write_keys(const LawFit& fit, const FitOptions& options, Level& level, st
   LevelNode& node = level.nodes[static_cast<std::size_t>(number)];
   const Deformable fitted = fit.model.deformable(fit.p);
   if (node.soft_body) {
-    if (fit.model.law != "hertz")
+    if (!of_modulus(fit.model.law))
       return Error{"--object " + node.name, "is a soft body, which has a modulus and no law",
-                   "fit with --law hertz and --radius, or name a deformable surface"};
+                   "fit with --law hertz or sneddon and --radius, or name a deformable surface"};
     node.soft_body->young = fitted.young;
     node.soft_body->poisson = std::min(fitted.poisson, 0.499);
     return Done{};
@@ -190,6 +190,7 @@ Status write_keys(const LawFit& fit, const FitOptions& options, Level& level, st
     if (const Status made = make_touchable_surface(level, number); !made) return made;
   Deformable& it = *level.nodes[static_cast<std::size_t>(number)].deformable;
   it.spring = fitted.spring;
+  if (reads_key(fitted.spring, "table")) it.table = fitted.table;
   it.stiffness = fitted.stiffness;
   it.cubic = reads_key(fitted.spring, "cubic") ? fitted.cubic : it.cubic;
   it.stiffening = reads_key(fitted.spring, "stiffening") ? fitted.stiffening : it.stiffening;
@@ -204,7 +205,8 @@ Status write_keys(const LawFit& fit, const FitOptions& options, Level& level, st
   it.young = fitted.young;
   if (fitted.young > 0) {
     it.poisson = fitted.poisson;
-    it.thickness = 0.0;
+    it.thickness = fitted.thickness;
+    it.sphere = fitted.sphere;
   }
   return Done{};
 }
@@ -223,8 +225,8 @@ int fit_press(const FitOptions& options) {
   for (const std::string& sentence : record->notes) note(sentence);
   RecordFitOptions record_options;
   record_options.law = options.law;
-  record_options.model = {options.radius, options.poisson < 0 ? 0.45 : options.poisson, options.damping,
-                          options.contact};
+  record_options.model = {options.radius, options.poisson < 0 ? 0.45 : options.poisson,
+                          std::max(options.thickness, 0.0), options.damping, options.contact};
   record_options.hold_out = options.hold_out;
   record_options.confidence = options.confidence;
   const Result<RecordFit> fit = fit_record(*record, record_options);
@@ -255,7 +257,7 @@ int fit_press(const FitOptions& options) {
   if (const Status placed = out->commit(); !placed) return fail(kFailed, placed.error());
   say(*record, *fit, options);
   for (const std::string& sentence : fit->notes) note(sentence);
-  if (best.model.law == "hertz")
+  if (of_modulus(best.model.law))
     note(fmt::format("`young` makes the force of a sphere by its radius: a probe of {:g} m feels what was measured",
                      options.radius));
   if (!options.out.empty()) print("{}: a level\n", options.out);

@@ -101,7 +101,7 @@ Result<RecordFit> fit_record(const PressRecord& record, const RecordFitOptions& 
   out.fitted = static_cast<std::size_t>(std::count(out.held.begin(), out.held.end(), false));
   std::string why;
   for (const std::string& law : press_laws()) {
-    if (options.law != "auto" && options.law != law) continue;
+    if (options.law == "auto" ? by_name_alone(law) : options.law != law) continue;
     const std::optional<PressModel> model = press_model(law, record, options.model, why);
     if (!model) continue;
     if (out.fitted <= model->parameters.size()) {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "components/monotone_cubic.h"
 #include "content/keys/enum_words.h"
 #include "content/keys/extensions.h"
 #include "systems/touch/model/contact_law.h"
@@ -15,6 +15,7 @@ namespace {
 
 using R = DeformableRange;
 constexpr double kFlattestPress = 5.0;  // [1] below 0: almost no slope is left at the deepest place
+constexpr std::size_t kTableRows = 8;   // below [0, 0]
 constexpr double kSteepest = 50.0;      // [1] exponent at the deepest place: beyond it a double soon overflows
 
 struct Sizes {
@@ -65,7 +66,7 @@ double sphere_modulus(const Sizes& size, const PressModelOptions& options) {
   return plane * (1 - options.poisson * options.poisson);
 }
 
-// The law of a surface; `hertz` is a linear one whose stiffness follows from a modulus.
+// The law of a surface; `hertz` and `sneddon` are linear ones whose stiffness follows from a modulus.
 SpringLaw spring_of(const std::string& law) {
   return value_of_word<SpringLaw>(law).value_or(SpringLaw::kLinear);
 }
@@ -74,13 +75,22 @@ SpringLaw spring_of(const std::string& law) {
 std::vector<std::vector<double>> law_starts(const std::string& law, const Sizes& size,
                                             const PressModelOptions& options) {
   const double k = std::clamp(size.slope, R::kStiffness.min, R::kStiffness.max), d = size.depth;
-  if (law == "hertz") return {{sphere_modulus(size, options)}};
+  if (of_modulus(law)) return {{sphere_modulus(size, options)}};
   const SpringLaw spring = spring_of(law);
-  if (reads_key(spring, "cubic")) return {{0.9 * k, 0.1 * k / (d * d)}, {0.3 * k, k / (d * d)}};
-  if (reads_key(spring, "stiffening")) return {{0.9 * k, 0.3 / d}, {0.2 * k, 3.0 / d}, {1.3 * k, -0.5 / d}};
-  if (!has_arm(spring)) return {{k}};
+  std::vector<std::vector<double>> springs{{k}};
+  if (reads_key(spring, "cubic")) springs = {{0.9 * k, 0.1 * k / (d * d)}, {0.3 * k, k / (d * d)}};
+  if (reads_key(spring, "stiffening")) springs = {{0.9 * k, 0.3 / d}, {0.2 * k, 3.0 / d}, {1.3 * k, -0.5 / d}};
+  if (reads_key(spring, "table")) springs = {std::vector<double>(kTableRows, k * d / kTableRows)};
+  if (!has_arm(spring)) return springs;
   std::vector<std::vector<double>> starts;
-  for (const double share : {0.01, 0.05, 0.25, 1.0}) starts.push_back({0.6 * k, 0.4 * k, share * size.span});
+  for (const std::vector<double>& each : springs)
+    for (const double share : {0.01, 0.05, 0.25, 1.0}) {
+      starts.push_back(each);
+      const double whole = reads_key(spring, "table") ? k : each[0];
+      const std::size_t scaled = reads_key(spring, "table") ? kTableRows : 1;
+      for (std::size_t i = 0; i < scaled; ++i) starts.back()[i] *= 0.6;
+      starts.back().insert(starts.back().end(), {0.4 * whole, share * size.span});
+    }
   return starts;
 }
 
@@ -93,12 +103,19 @@ ModelParameter parameter(const char* key, const char* unit, Range range, double 
 const std::vector<std::string>& press_laws() {
   static const std::vector<std::string> laws = [] {
     std::vector<std::string> all;
-    for (const SpringRow& row : kSpringRows)
-      if (row.step == SpringStep::kArm || !std::strchr(row.reads, ' ')) all.emplace_back(row.word);
-    all.emplace_back("hertz");
+    for (const SpringRow& row : kSpringRows) all.emplace_back(row.word);
+    all.insert(all.end(), {"hertz", "sneddon"});
     return all;
   }();
   return laws;
+}
+
+bool of_modulus(const std::string& law) {
+  return law == "hertz" || law == "sneddon";
+}
+
+bool by_name_alone(const std::string& law) {
+  return law == "sneddon" || reads_key(spring_of(law), "table");
 }
 
 std::optional<PressModel> press_model(const std::string& law, const PressRecord& record,
@@ -114,8 +131,12 @@ std::optional<PressModel> press_model(const std::string& law, const PressRecord&
     why = "damping needs a column of time";
     return std::nullopt;
   }
-  if (law == "hertz" && !(options.radius > 0)) {
-    why = "the law hertz needs the radius of a spherical indenter; say --radius";
+  if (of_modulus(law) && !(options.radius > 0)) {
+    why = fmt::format("the law {} needs the radius of a spherical indenter; say --radius", law);
+    return std::nullopt;
+  }
+  if (law == "sneddon" && options.thickness > 0) {
+    why = "the law sneddon is of deep tissue; leave out --thickness, or fit hertz";
     return std::nullopt;
   }
   PressModel model;
@@ -124,8 +145,14 @@ std::optional<PressModel> press_model(const std::string& law, const PressRecord&
   auto& list = model.parameters;
   const Sizes usual = sizes_of(record, contact.starts[0]);
   const double k = std::clamp(usual.slope, R::kStiffness.min, R::kStiffness.max);
-  if (law == "hertz")
+  model.deepest = usual.depth;
+  if (of_modulus(law))
     list.push_back(parameter("young", "Pa", {1e-3, 1e12}, sphere_modulus(usual, options)));
+  else if (reads_key(spring_of(law), "table"))
+    for (std::size_t i = 1; i <= kTableRows; ++i)
+      list.push_back(parameter(fmt::format("table.{}", i).c_str(), "N",
+                               {i == 1 ? 1e-6 * usual.force : 0.0, R::kTable.max / kTableRows},
+                               usual.force / kTableRows));
   else
     list.push_back(parameter("stiffness", "N/m", R::kStiffness, k));
   const SpringLaw spring = spring_of(law);
@@ -136,7 +163,8 @@ std::optional<PressModel> press_model(const std::string& law, const PressRecord&
                              {std::max(R::kStiffening.min, -kFlattestPress / size.depth),
                               std::min(R::kStiffening.max, kSteepest / size.depth)},
                              1.0 / usual.depth));
-  } else if (has_arm(spring)) {
+  }
+  if (has_arm(spring)) {
     list.push_back(parameter("relaxation.stiffness", "N/m", R::kRelaxationStiffness, k));
     list.push_back(parameter(
         "relaxation.time", "s",
@@ -161,6 +189,15 @@ Deformable PressModel::deformable(const Eigen::VectorXd& p) const {
   Deformable out;
   out.poisson = options.poisson;
   out.spring = spring_of(law);
+  if (of_modulus(law)) out.thickness = options.thickness;
+  if (law == "sneddon") out.sphere = SphereForce::kSneddon;
+  if (reads_key(out.spring, "table")) {
+    out.table.count = kTableRows + 1;
+    for (std::size_t i = 1; i <= kTableRows; ++i)
+      out.table.rows[i] = {deepest * static_cast<double>(i) / kTableRows,
+                           out.table.rows[i - 1][1] + p[static_cast<Eigen::Index>(i - 1)]};
+    out.stiffness = stiffness_of(out.table);
+  }
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const std::string& key = parameters[i].key;
     const double value = p[static_cast<Eigen::Index>(i)];
@@ -172,7 +209,7 @@ Deformable PressModel::deformable(const Eigen::VectorXd& p) const {
     if (key == "contact_damping") out.contact_damping = value;
     if (key == "young") {
       out.young = value;
-      out.stiffness = calibrated_stiffness(value, options.poisson, 0.0);
+      out.stiffness = calibrated_stiffness(value, options.poisson, out.thickness);
     }
   }
   return out;
@@ -181,17 +218,19 @@ Deformable PressModel::deformable(const Eigen::VectorXd& p) const {
 void PressModel::predict(const PressRecord& record, const Eigen::VectorXd& p, std::vector<double>& force) const {
   const Deformable surface = deformable(p);
   const double met = options.contact ? p[p.size() - 1] : 0.0;
-  ContactLaw contact = contact_law(surface, motion(surface, 1e-3), 1.0, options.radius);
+  const Motion moves = motion(surface, 1e-3);
+  ContactLaw contact = contact_law(surface, moves, 1.0, options.radius);
   force.resize(record.size());
   double before = 0.0, q = 0.0;
   for (std::size_t i = 0; i < record.size(); ++i) {
     const double depth = std::max(0.0, record.depth[i] - met);
     const double dt = i > 0 && !record.time.empty() ? record.time[i] - record.time[i - 1] : 0.0;
     if (contact.arm > 0 && dt > 0) {
-      // q' = (d - q) / tau, exact for a depth that is linear in time (field_kernels.cpp: step_relaxed).
+      // q' = (z - q) / tau, exact for a z that is linear in time (field_kernels.cpp: step_relaxed).
+      const double z = -contact.law->force(-depth), z0 = -contact.law->force(-before);
       const double over = dt / surface.relaxation_time, left = std::exp(-over), ramp = -std::expm1(-over) / over;
-      q = depth - (left * (before - q) + ramp * (depth - before));
-      contact.relaxed_depth = std::max(q, 0.0);
+      q = z - (left * (z0 - q) + ramp * (z - z0));
+      contact.relaxed = std::max(q, 0.0);
     }
     double newton = contact.stored(depth).force;
     if (surface.contact_damping > 0 && dt > 0 && depth > 0)

@@ -182,7 +182,7 @@ ForceFit fit_force(const std::vector<PressedPlace>& places) {
   for (std::size_t i = 0; i < std::size(kSpringRows); ++i) {
     const auto spring = static_cast<SpringLaw>(i);
     const bool cubic = reads_key(spring, "cubic"), stiffening = reads_key(spring, "stiffening");
-    if (has_arm(spring) || (cubic && stiffening)) continue;
+    if (has_arm(spring) || reads_key(spring, "table")) continue;
     std::vector<FitParameter> boxes{{1.0, 0.1, 10.0, 1.0}};
     const double scale = cubic ? 1 / (deepest * deepest) : 1 / deepest;
     if (cubic) boxes.push_back({0.1 * scale, 0.0, 100 * scale, scale});

@@ -98,9 +98,9 @@ void add_fit(CLI::App& app, int& status) {
       ->group(elements);
   verb->add_option("--poisson", options->poisson, "Poisson's ratio (the level's; measured: 0.45)")
       ->check(within(0, 0.499));
-  verb->add_option("--thickness", options->thickness, "of a wall [m] (the level's)")
-      ->check(within(0, 1e3))
-      ->group(elements);
+  verb->add_option("--thickness", options->thickness,
+                   "of a wall [m] (the level's); measured: of the layer, for the law hertz (deep)")
+      ->check(within(0, 1e3));
   verb->add_option("--cell", options->cell, "of the lattice under the indenter [m] (half its radius)")
       ->check(within(0, 1e3))
       ->group(elements);

@@ -8,6 +8,7 @@
 //   NAME_potential(h)        [m2] its integral from 0
 //   NAME_keep(h0)                 number that every NAME_between from the same h0 needs, computed once a step
 //   NAME_between(h0, d, kept)     force, slope, and mean force over the step d, without cancellation
+// law_pieces and law_piece (LawPiece: at, value, slope, second, third, integral of components/cubic_pieces.h) are the rows of the law `table`.
 // REAL is float or double; abs and sqrt are of both. Both sides of a condition are computed and law_select takes one, so that the loops over
 // vertices have no branches. law_exp, law_expm1 (e^x - 1) and law_second ((e^x - 1 - x) / x^2, from x and e^x - 1) are
 // the platform's.
@@ -83,4 +84,70 @@ SHARED LawAt exponential_between(REAL h0, REAL d, REAL em0, LawConstants k) {
   REAL gradient = law_select(h0 < 0.0, law_select(h1 < 0.0, below, across), law_select(h1 < 0.0, across, above));
   bool short_step = abs(d) <= 1e-7 * (abs(h0) + abs(h1));
   return law_at(force1, slope1, gradient, law_select(short_step, 0.5 * slope1, (force1 - gradient) * over_d));
+}
+
+// Table: a monotone cubic through the author's rows, per the slope at 0; linear where it bulges and beyond the last row.
+// x = -h. The law finds its piece by counting, and has branches: the loops over vertices take it one by one.
+SHARED int table_find(REAL x, LawConstants k) {
+  int found = 0;
+  for (int i = 0; i < law_pieces(k); ++i) {
+    if (x >= law_piece(i, k).at) ++found;
+  }
+  return found;
+}
+// The first piece is the bulge's.
+SHARED LawPiece table_piece(int number, LawConstants k) {
+  if (number > 0) return law_piece(number - 1, k);
+  LawPiece bulge;
+  bulge.at = 0.0;
+  bulge.value = 0.0;
+  bulge.slope = 1.0;
+  bulge.second = 0.0;
+  bulge.third = 0.0;
+  bulge.integral = 0.0;
+  return bulge;
+}
+SHARED REAL piece_value(LawPiece p, REAL t) { return p.value + t * (p.slope + t * (p.second + t * p.third)); }
+SHARED REAL piece_slope(LawPiece p, REAL t) { return p.slope + t * (2.0 * p.second + 3.0 * t * p.third); }
+// Mean of the value between two places.
+SHARED REAL piece_mean(LawPiece p, REAL a, REAL b) {
+  return p.value + 0.5 * p.slope * (a + b) + p.second * (a * a + a * b + b * b) / 3.0 +
+         0.25 * p.third * (a + b) * (a * a + b * b);
+}
+SHARED REAL table_force(REAL h, LawConstants k) {
+  LawPiece p = table_piece(table_find(-h, k), k);
+  return -piece_value(p, -h - p.at);
+}
+SHARED REAL table_slope(REAL h, LawConstants k) {
+  LawPiece p = table_piece(table_find(-h, k), k);
+  return piece_slope(p, -h - p.at);
+}
+SHARED REAL table_potential(REAL h, LawConstants k) {
+  LawPiece p = table_piece(table_find(-h, k), k);
+  REAL t = -h - p.at;
+  return p.integral + t * piece_mean(p, 0.0, t);
+}
+SHARED REAL table_keep(REAL h0, LawConstants k) { return 0.0; }
+SHARED LawAt table_between(REAL h0, REAL d, REAL kept, LawConstants k) {
+  REAL x0 = -h0;
+  REAL x1 = -(h0 + d);
+  int n0 = table_find(x0, k);
+  int n1 = table_find(x1, k);
+  LawPiece p1 = table_piece(n1, k);
+  REAL force1 = -piece_value(p1, x1 - p1.at);
+  REAL slope1 = piece_slope(p1, x1 - p1.at);
+  // Over several pieces the mean is that of its parts, by their lengths: without cancellation, however short they are.
+  bool inward = n0 < n1;
+  LawPiece low = table_piece(inward ? n0 : n1, k);
+  LawPiece high = table_piece(inward ? n1 : n0, k);
+  LawPiece next = table_piece((inward ? n0 : n1) + (n0 == n1 ? 0 : 1), k);
+  REAL from = inward ? x0 : x1;
+  REAL to = inward ? x1 : x0;
+  REAL first = next.at - from;
+  REAL last = to - high.at;
+  REAL parts = first * piece_mean(low, from - low.at, next.at - low.at) + (high.integral - next.integral) +
+               last * piece_mean(high, 0.0, last);
+  REAL gradient = n0 == n1 ? -piece_mean(p1, x0 - p1.at, x1 - p1.at) : -parts / (first + (high.at - next.at) + last);
+  bool short_step = abs(d) <= 1e-7 * (abs(h0) + abs(d));
+  return law_at(force1, slope1, gradient, short_step ? 0.5 * slope1 : (force1 - gradient) / d);
 }

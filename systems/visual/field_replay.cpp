@@ -23,6 +23,7 @@ std::vector<float> coefficients_of(const Motion& motion, const PaintedMotion& pa
     if (motion.nonlinear()) {
       out.push_back(painted.empty() ? static_cast<float>(motion.mass) : painted.mass[v]);
       out.push_back(painted.empty() ? static_cast<float>(motion.damping) : painted.damping[v]);
+      if (motion.arm()) out.push_back(arm_stiffness(motion, mesh, v));
     } else if (motion.arm()) {
       for (std::size_t i = 0; i < 9; ++i)
         out.push_back(painted.empty() ? static_cast<float>(motion.solid[i / 3][i % 3]) : painted.solid[v][i]);
@@ -260,7 +261,17 @@ std::size_t FieldReplay::evaluate(const ReplayProgram& program, const gpu::Buffe
   number("inv_dt", 1 / motion_.dt);
   number("cubic", motion_.law.cubic);
   number("stiffening", motion_.law.stiffening);
+  vec4 place[ForceTable::kMost] = {}, curve[ForceTable::kMost] = {};
+  for (std::uint32_t i = 0; i < motion_.law.table.count; ++i) {
+    const CubicPiece& p = motion_.law.table.piece[i];
+    place[i] = vec4(p.at, p.value, p.slope, p.second);
+    curve[i] = vec4(p.third, p.integral, 0, 0);
+  }
+  glUniform1i(glGetUniformLocation(id, "table_count"), static_cast<GLint>(motion_.law.table.count));
+  glUniform4fv(glGetUniformLocation(id, "table_place"), ForceTable::kMost, &place[0].x);
+  glUniform4fv(glGetUniformLocation(id, "table_curve"), ForceTable::kMost, &curve[0].x);
   number("arm_decay", motion_.arm_decay);
+  number("arm_half", motion_.arm_half);
   number("arm_ramp", motion_.arm_time / motion_.dt * (1 - motion_.arm_decay));
   const GLuint bindings[] = {stream.id(),        rest_.id(),          rest_yz_.id(),     state_.id(),
                              coefficients_.id(), sources_there_.id(), steps_there_.id(), offsets_there_.id()};

@@ -1,11 +1,9 @@
 // The bonded layer against published values and its limits.
-#include "content/keys/bonded_layer.h"
+#include "components/bonded_layer.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "content/keys/layer_sphere.h"
 
 namespace pliant {
 namespace {
@@ -80,36 +78,6 @@ TEST(BondedLayer, WhatAPunchPushesDownRisesBesideItWhereTheLayerKeepsItsVolume) 
   };
   EXPECT_NEAR(volume(0.5), 0.0, 2e-3);
   EXPECT_GT(volume(0.3), 0.4);
-}
-
-TEST(LayerSphere, DeepItIsHertzs) {
-  const double R = 0.004;
-  for (const double thickness : {0.0, 100.0}) {
-    const LayerSphere sphere(R, thickness, 0.45, 0.001);
-    for (const double d : {1e-5, 3e-4, 1e-3})
-      EXPECT_NEAR(sphere.force(d) / (4.0 / 3.0 * std::sqrt(R * d) * d), 1.0, 1e-4) << thickness << ' ' << d;
-  }
-}
-
-TEST(LayerSphere, ItIsTheSeriesOfGarciaAndGarciaWhileTheContactIsNarrow) {
-  // Biophysical J. 114 (2018) 2923: a sphere on a bonded layer of Poisson's ratio 1/2, chi = sqrt(R d) / h. It corrects
-  // the series of Dimitriadis et al. (2002), whose second coefficient, 1.283, is too small.
-  const double R = 0.004;
-  for (const double h : {0.02, 0.01, 0.005})
-    for (const double d : {5e-5, 1e-4, 2e-4}) {
-      const double chi = std::sqrt(R * d) / h;
-      const double series = 1 + chi * (1.133 + chi * (1.497 + chi * (1.469 + 0.755 * chi)));
-      const LayerSphere sphere(R, h, 0.5, 2e-4);
-      EXPECT_NEAR(sphere.force(d) / (4.0 / 3.0 * std::sqrt(R * d) * d * series), 1.0, 1.5e-3) << chi;
-    }
-}
-
-TEST(LayerSphere, ThinItIsABedOfColumns) {
-  // p = E' M d(r) / h over the circle that the sphere cuts out: F = pi R M d^2 / h.
-  const double R = 0.004, h = 1e-4, nu = 0.3, d = 4e-4;
-  const double modulus = (1 - nu) / ((1 + nu) * (1 - 2 * nu)) * (1 - nu * nu);
-  const LayerSphere sphere(R, h, nu, d);
-  EXPECT_NEAR(sphere.force(d) / (kPi * R * modulus * d * d / h), 1.0, 0.02);
 }
 
 }  // namespace

@@ -96,6 +96,8 @@ class Difference {
     if (a.deformable && b.deformable) {
       const Deformable &p = *a.deformable, &q = *b.deformable;
       same(at + " spring", p.spring, q.spring);
+      same(at + " table", p.table, q.table);
+      same(at + " sphere", p.sphere, q.sphere);
       for (double Deformable::*member : {&Deformable::stiffness,
                                          &Deformable::cubic,
                                          &Deformable::stiffening,

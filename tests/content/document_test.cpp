@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "components/monotone_cubic.h"
 #include "content/files/file_io.h"
 #include "content/level_file.h"
 #include "tests/content/document_compare.h"
@@ -155,6 +156,24 @@ TEST_F(Document, ALevelMadeInMemoryReadsBackAsItWasSaved) {
     ASSERT_TRUE(saved.ok()) << saved.error().message();
     EXPECT_EQ(Difference::of(level, load(folder_ / name)), "") << name;
   }
+}
+
+TEST_F(Document, ATableOfForceAndTheForceOfASphereReadBackAsTheyWereSaved) {
+  Level table = everything(), sphere = everything();
+  Deformable& d = *table.nodes[0].deformable;
+  d = Deformable{};
+  table.nodes[0].scaled_with_young = 1.0;
+  d.spring = SpringLaw::kQuasiLinearTable;
+  d.table = {4, {{{0, 0}, {1e-3, 1.0 / 3.0}, {2.5e-3, 1.0 / 3.0}, {4e-3, 2.5}}}};
+  d.stiffness = stiffness_of(d.table);
+  d.relaxation_stiffness = 123.25;
+  sphere.nodes[0].deformable->sphere = SphereForce::kSneddon;
+  for (const Level& level : {table, sphere})
+    for (const char* name : {"level.gltf", "level.glb"}) {
+      const Status saved = save_level(level, folder_ / name);
+      ASSERT_TRUE(saved.ok()) << saved.error().message();
+      EXPECT_EQ(Difference::of(level, load(folder_ / name)), "") << name;
+    }
 }
 
 TEST_F(Document, SavingWhatWasLoadedChangesNothingWhateverTheContainer) {

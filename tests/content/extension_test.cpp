@@ -100,6 +100,49 @@ TEST(Extension, ConstantsFollowYoungsModulusUnlessTheyAreStated) {
   EXPECT_EQ(now().relaxation_stiffness, usual.relaxation_stiffness);
 }
 
+TEST(Extension, ATableOfForceIsReadCheckedAndSaved) {
+  const Json rows = {{0, 0}, {0.001, 0.3}, {0.002, 0.8}};
+  for (const char* law : {"table", "qlv_table"}) {
+    Result<Level> level = deformable({{"spring", law}, {"table", rows}}).load();
+    ASSERT_TRUE(level.ok()) << level.error().message();
+    const Deformable& it = *level->nodes[0].deformable;
+    EXPECT_EQ(it.table.count, 3u);
+    EXPECT_EQ(it.table.rows[2], (std::array{0.002, 0.8}));
+    EXPECT_NEAR(it.stiffness, 200.0, 1e-9) << "of the parabola through the rows, at 0";
+    const Json saved = node_extensions(level->nodes[0], Json::object())["PLIANT_deformable"];
+    EXPECT_EQ(saved["table"], rows);
+    EXPECT_FALSE(saved.contains("stiffness"));
+    EXPECT_EQ(set(*level, "*.deformable.table=[[0, 0], [0.001, 0.5]]"), "");
+    EXPECT_DOUBLE_EQ(level->nodes[0].deformable->stiffness, 500.0);
+    EXPECT_NE(set(*level, "*.deformable.stiffness=400").find("follows from the rows of its table"), std::string::npos);
+    EXPECT_NE(set(*level, "*.deformable.table=[[0, 0], [0.001, 0.5], [0.002, 0.4]]").find("a force that falls"),
+              std::string::npos);
+    EXPECT_EQ(level->nodes[0].deformable->table.count, 2u);
+  }
+  const auto refusal = [](const Json& keys) { return deformable(keys).refusal(); };
+  const auto says = [&](const Json& keys, const char* part) {
+    EXPECT_NE(refusal(keys).find(part), std::string::npos) << refusal(keys);
+  };
+  says({{"spring", "table"}}, "table is missing");
+  says({{"spring", "table"}, {"table", {{0, 0}}}}, "2 to 16 rows [depth, force]");
+  says({{"spring", "table"}, {"table", {{0, 0}, {0.001, "1"}}}}, "2 to 16 rows [depth, force]");
+  says({{"spring", "table"}, {"table", {{0, 0}, {-0.001, 1}}}}, "2 to 16 rows [depth, force]");
+  says({{"spring", "table"}, {"table", Json(std::vector<Json>(17, Json{0, 0}))}}, "2 to 16 rows [depth, force]");
+  says({{"spring", "table"}, {"table", {{0, 0.1}, {0.001, 1}}}}, "does not begin with [0, 0]");
+  says({{"spring", "table"}, {"table", {{0, 0}, {0.001, 0}, {0.002, 1}}}}, "no stiffness at 0");
+  says({{"spring", "table"}, {"table", {{0, 0}, {1e8, 1e-9}}}}, "table makes a stiffness of");
+  says({{"spring", "table"}, {"table", rows}, {"stiffness", 300}}, "both stiffness and a table");
+  says({{"spring", "table"}, {"table", rows}, {"young", 5000}}, "both young and a table");
+}
+
+TEST(Extension, SneddonsSphereIsOfDeepTissue) {
+  const Result<Level> level = deformable({{"young", 5000}, {"sphere", "sneddon"}}).load();
+  ASSERT_TRUE(level.ok()) << level.error().message();
+  EXPECT_EQ(level->nodes[0].deformable->sphere, SphereForce::kSneddon);
+  EXPECT_NE(deformable({{"young", 5000}, {"sphere", "sneddon"}, {"thickness", 0.01}}).refusal().find("deep tissue"),
+            std::string::npos);
+}
+
 TEST(Extension, YoungsModulusBecomesTheStiffnessOfAPointContact) {
   // methods.md, section 4: liver of 5.4 kPa, a = 4 mm, nu = 0.5: k = 2 E/(1-nu^2) a = 57.6 N/m.
   const Result<Level> liver = deformable({{"young", 5400}, {"poisson", 0.5}}).load();

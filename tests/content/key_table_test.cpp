@@ -68,6 +68,7 @@ Json other_value(const Key& key, const Json& other) {
                                      Json::array({0.5, 0.25, 0.125}),
                                      Json::array({Json::array({0.5, 0.25, 0.125})}),
                                      Json::array({{{"thickness", 0.5}, {"force", 0.25}}}),
+                                     Json::array({Json::array({0.0, 0.0}), Json::array({0.5, 0.25})}),
                                      {{"min", {0, 0, 0}}, {"max", {0.5, 1, 2}}},
                                      Json::array({"some text"}),
                                      !key.choices ? Json() : Json(key.choices().front()),
@@ -157,7 +158,8 @@ TEST(KeyTable, EveryEnumeratorHasAWordOfItsOwn) {
     for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(value_of_word<Enum>(words[i]), static_cast<Enum>(i));
     EXPECT_FALSE(value_of_word<Enum>("no such word"));
   };
-  expect(SpringLaw::kStandardLinearSolid, 4);
+  expect(SpringLaw::kQuasiLinearTable, 8);
+  expect(SphereForce::kSneddon, 2);
   expect(Response::kLag, 2);
   expect(Shape::kKelvinlet, 6);
   expect(Distance::kSurface, 2);
@@ -281,7 +283,7 @@ TEST(KeyTable, ALawThatIsRegisteredIsAWordOfItsKey) {
   EXPECT_TRUE(check_value(key, "plain"));
   ASSERT_TRUE(register_spring("plain", std::make_shared<Plain>()));
   EXPECT_FALSE(check_value(key, "plain"));
-  EXPECT_THAT(check_value(key, "plian")->what, testing::HasSubstr("sls, plain"));
+  EXPECT_THAT(check_value(key, "plian")->what, testing::HasSubstr("qlv_table, plain"));
   LevelNode node;
   node.deformable.emplace();
   key.set(&node, "plain");

@@ -80,6 +80,8 @@ TEST(UnusedKeys, ALawReadsItsOwnConstantsOnly) {
   EXPECT_THAT(unused(with(SpringLaw::kCubic)), ElementsAre(stiffening, time));
   EXPECT_THAT(unused(with(SpringLaw::kExponential)), ElementsAre(cubic, time));
   EXPECT_THAT(unused(with(SpringLaw::kStandardLinearSolid)), ElementsAre(cubic, stiffening));
+  EXPECT_THAT(unused(with(SpringLaw::kQuasiLinearCubic)), ElementsAre(stiffening));
+  EXPECT_THAT(unused(with(SpringLaw::kQuasiLinearTable)), ElementsAre(cubic, stiffening));
 }
 
 TEST(UnusedKeys, PoissonAndThicknessNeedYoung) {

@@ -94,9 +94,15 @@ std::vector<Json> values_of(const Key& key) {
     case KeyType::kPoints:
       all = {Json::array(), Json{{0.0, 0.0, 0.0}, {0.1, 0.0, 0.0}}};
       break;
+    case KeyType::kNames:
+      all = {Json::array(), Json{"finger"}, Json{"finger", "a second one"}};
+      break;
     case KeyType::kItems:
       all = {Json::array(), Json{{{"force", 1.0}}, {{"name", "fat"}, {"energy", 0.01}, {"grip", 5.0}}},
              Json{{{"force", 0.0}}}};
+      break;
+    case KeyType::kTable:
+      all = {Json::array(), Json{{0.0, 0.0}, {0.001, 0.3}, {0.002, 0.8}}};
       break;
     case KeyType::kBox:
       all = {Json{{"min", {0.0, 0.0, 0.0}}, {"max", {0.1, 0.1, 0.1}}},

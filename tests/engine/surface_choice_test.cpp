@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "content/keys/bonded_layer.h"
+#include "components/bonded_layer.h"
 #include "content/keys/extensions.h"
 #include "content/level_file.h"
 #include "engine/choice/model_choice.h"
@@ -126,7 +126,7 @@ TEST(SurfaceChoice, WhatThereIsNothingToChooseBetweenIsSaid) {
   ASSERT_TRUE(choices);
   std::string all;
   for (const std::string& each : choices->front().remarks) all += each + '\n';
-  for (const char* what : {"truth: ", "patches: ", "field back end: ", "force law: "})
+  for (const char* what : {"truth: ", "patches: ", "field back end: "})
     EXPECT_NE(all.find(what), std::string::npos) << all;
 }
 

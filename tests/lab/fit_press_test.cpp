@@ -2,10 +2,14 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
 #include <random>
 
+#include "components/bonded_layer.h"
+#include "components/monotone_cubic.h"
 #include "lab/files/csv.h"
 #include "lab/fit/fit_record.h"
+#include "systems/touch/model/local_model.h"
 #include "tests/player/command.h"
 
 namespace pliant {
@@ -99,6 +103,127 @@ TEST(FitPress, TheLawThatTheDataHaveIsTheOneThatIsTaken) {
     EXPECT_EQ(fit->laws[fit->best].model.law, law);
     EXPECT_LT(fit->laws[fit->best].held_rms, 0.006) << law;
   }
+}
+
+// Fung's integral by brute force along a ramp and a rest, a law that stiffens and relaxes.
+PressRecord relaxation(const std::function<double(double)>& elastic, double share, double tau) {
+  PressRecord out;
+  out.name = "relaxation";
+  double q = 0.0, last = 0.0;
+  constexpr int kFine = 200;
+  for (int i = 0; i < 200; ++i) {
+    const double t = 0.01 * i, dt = 0.01 / kFine;
+    for (int s = 1; i > 0 && s <= kFine; ++s) {
+      const double now = elastic(0.006 * std::min(1.0, (t - 0.01 + s * dt) / 0.2));
+      q = std::exp(-dt / tau) * q + share * (now - last) * std::exp(-0.5 * dt / tau);
+      last = now;
+    }
+    const double d = 0.006 * std::min(1.0, t / 0.2);
+    out.time.push_back(t);
+    out.depth.push_back(d);
+    out.force.push_back(elastic(d) + q);
+    out.contact.push_back(true);
+  }
+  return out;
+}
+
+TEST(FitPress, ARelaxationRecordGivesTheParametersOfALawThatStiffensAndRelaxes) {
+  RecordFitOptions options;
+  options.law = "qlv_cubic";
+  auto fit = fit_record(relaxation([](double d) { return 150 * d + 4e6 * d * d * d; }, 0.8, 0.3), options);
+  ASSERT_TRUE(fit.ok()) << fit.error().message();
+  std::vector<double> want{150, 4e6, 0.8 * 150, 0.3};
+  for (std::size_t i = 0; i < want.size(); ++i) EXPECT_NEAR(fit->laws[0].parameters[i].value / want[i], 1.0, 5e-3) << i;
+  options.law = "qlv_exponential";
+  fit = fit_record(relaxation([](double d) { return 0.5 * std::expm1(180 * d); }, 0.8, 0.3), options);
+  ASSERT_TRUE(fit.ok()) << fit.error().message();
+  want = {90, 180, 0.8 * 90, 0.3};
+  for (std::size_t i = 0; i < want.size(); ++i) EXPECT_NEAR(fit->laws[0].parameters[i].value / want[i], 1.0, 1e-2) << i;
+  // Without a name, too.
+  options.law = "auto";
+  fit = fit_record(relaxation([](double d) { return 150 * d + 4e6 * d * d * d; }, 0.8, 0.3), options);
+  ASSERT_TRUE(fit.ok()) << fit.error().message();
+  EXPECT_EQ(fit->laws[fit->best].model.law, "qlv_cubic");
+}
+
+TEST(FitPress, ATableFollowsARecordThatNoOtherLawDoes) {
+  PressRecord record;
+  record.name = "toe and plateau";
+  const auto truth = [](double d) {
+    return 0.5 + 0.5 * std::tanh((d - 2e-3) / 4e-4) + 40 * d - 0.5 * (1 - std::tanh(5.0));
+  };
+  for (int i = 0; i <= 200; ++i) {
+    record.depth.push_back(0.006 * i / 200);
+    record.force.push_back(std::max(0.0, truth(record.depth.back())));
+    record.contact.push_back(true);
+  }
+  RecordFitOptions options;
+  const auto others = fit_record(record, options);
+  ASSERT_TRUE(others.ok());
+  options.law = "table";
+  const auto fit = fit_record(record, options);
+  ASSERT_TRUE(fit.ok()) << fit.error().message();
+  EXPECT_LT(fit->laws[0].share, 0.03);
+  EXPECT_LT(fit->laws[0].held_share, 0.3 * others->laws[others->best].held_share);
+  const ForceTable table = fit->laws[0].model.deformable(fit->laws[0].p).table;
+  EXPECT_EQ(fault_of(table), nullptr);
+  EXPECT_NEAR(table.rows[table.count - 1][0], 0.006, 1e-12);
+  EXPECT_NEAR(table.rows[table.count - 1][1], truth(0.006), 0.02);
+}
+
+// Rows of a table are given back by presses on it.
+TEST(FitPress, PressesOnATableGiveItsRowsBack) {
+  Deformable d;
+  d.spring = SpringLaw::kTable;
+  d.table.count = 9;
+  for (std::size_t i = 1; i < 9; ++i)
+    d.table.rows[i] = {0.00075 * static_cast<double>(i),
+                       d.table.rows[i - 1][1] + (i == 4 ? 0.0 : 0.1 * static_cast<double>(i))};
+  d.stiffness = stiffness_of(d.table);
+  const RestoringLaw law = restoring_law(d);
+  PressRecord record;
+  for (int i = 0; i <= 120; ++i) {
+    record.depth.push_back(0.006 * i / 120);
+    record.force.push_back(-d.stiffness * law.force(-record.depth.back()));
+    record.contact.push_back(true);
+  }
+  RecordFitOptions options;
+  options.law = "table";
+  const auto fit = fit_record(record, options);
+  ASSERT_TRUE(fit.ok()) << fit.error().message();
+  const ForceTable table = fit->laws[0].model.deformable(fit->laws[0].p).table;
+  ASSERT_EQ(table.count, 9u);
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(table.rows[i][1], d.table.rows[i][1], 2e-3) << i;
+}
+
+TEST(FitPress, ASphereGivesTheModulusByItsExactForceAndOnALayer) {
+  constexpr double kRadius = 0.004, kModulus = 8e3;
+  PressRecord deep, layer;
+  const double plane = kModulus / (1 - 0.45 * 0.45), h = 0.005;
+  for (int i = 1; i <= 40; ++i) {
+    const double a = 0.95 * kRadius * i / 40, log = std::log((kRadius + a) / (kRadius - a));
+    deep.depth.push_back(a / 2 * log);
+    deep.force.push_back(plane * ((kRadius * kRadius + a * a) / 2 * log - a * kRadius));
+    deep.contact.push_back(true);
+    const LayerPress press = sphere_on_layer(0.5 * i / 40, 0.45);
+    layer.depth.push_back(press.depth * h * h / kRadius);
+    layer.force.push_back(plane * press.force * h * h * h / kRadius);
+    layer.contact.push_back(true);
+  }
+  RecordFitOptions options;
+  options.model.radius = kRadius;
+  options.law = "sneddon";
+  const auto exact = fit_record(deep, options);
+  options.law = "hertz";
+  const auto hertz = fit_record(deep, options);
+  options.model.thickness = h;
+  const auto bonded = fit_record(layer, options);
+  ASSERT_TRUE(exact.ok() && hertz.ok() && bonded.ok());
+  EXPECT_NEAR(exact->laws[0].parameters[0].value / kModulus, 1.0, 1e-5);
+  EXPECT_LT(hertz->laws[0].parameters[0].value / kModulus, 0.92) << "Hertz takes the sphere for a stiffer one";
+  EXPECT_NEAR(bonded->laws[0].parameters[0].value / kModulus, 1.0, 1e-4);
+  options.law = "sneddon";
+  EXPECT_THAT(fit_record(layer, options).error().message(), HasSubstr("deep tissue"));
 }
 
 TEST(FitPress, ABoxHoldsAndWhatStandsOnItHasNoInterval) {

@@ -79,6 +79,7 @@ Motion motion_of(SpringLaw law, double mass, double damping, double stiffening) 
   m.mass = mass;
   m.damping = damping;
   m.law = {law, 1e5, stiffening};
+  m.law.table = restoring_law(frictionless(SpringLaw::kTable)).table;
   return m;
 }
 
@@ -109,7 +110,7 @@ TEST(FieldKernels, NonLinearStepsOfAZoneAreThoseOfItsVertices) {
               targets.nx[i] = forced ? 0.1f * unit(random) : 0.0f;
             }
             const Zone start = zone;
-            step_nonlinear(m, {}, 0, zone.state.data(), zone.rate.data(), forced ? &targets : nullptr);
+            step_nonlinear(m, {}, 0, zone.state.data(), zone.rate.data(), nullptr, forced ? &targets : nullptr);
             for (std::uint32_t i = 0; i < kZoneSize; ++i) {
               const double h0 = static_cast<double>(start.state[i].w), v0 = static_cast<double>(start.rate[i].w);
               const double target = static_cast<double>(targets.h[i]);
@@ -136,12 +137,67 @@ TEST(FieldKernels, NonLinearStepsOfAZoneAreThoseOfItsVertices) {
   }
 }
 
+TEST(FieldKernels, StepsOfAZoneThatRelaxesAreThoseOfItsVertices) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  for (const SpringLaw law : kLaws) {
+    if (row_of(law).step != SpringStep::kPassiveArm) continue;
+    for (const double mass : {1e-8, 1e-4, 1.0})
+      for (const double r1 : {0.2, 4.0})
+        for (const bool forced : {false, true}) {
+          Motion m = motion_of(law, mass, 1e-3, 150.0);
+          m.arm_stiffness = r1;
+          m.arm_half = 0.93;
+          Zone zone, arms;
+          ZoneTargets targets{};
+          for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+            zone.state[i] = {0, 0, 0, 0.006f * unit(random)};
+            zone.rate[i].w = 0.3f * unit(random);
+            arms.state[i].w = 0.003f * unit(random);
+            targets.h[i] = forced ? 0.004f * unit(random) : 0.0f;
+          }
+          const Zone start = zone, held = arms;
+          step_nonlinear(m, {}, 0, zone.state.data(), zone.rate.data(), arms.state.data(), forced ? &targets : nullptr);
+          for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+            const SolidState one = step_relaxing(m.law, {start.state[i].w, start.rate[i].w, held.state[i].w}, mass,
+                                                 1e-3, r1, m.arm_half, forced ? m.law.force(targets.h[i]) : 0.0, m.dt);
+            ASSERT_NEAR(zone.state[i].w, one.height, 2e-9) << int(law) << ' ' << mass;
+            ASSERT_NEAR(zone.rate[i].w, one.velocity, 2e-6) << int(law) << ' ' << mass;
+            ASSERT_NEAR(arms.state[i].w, one.arm, 1e-6 * (std::abs(one.arm) + 0.01)) << int(law) << ' ' << mass;
+          }
+        }
+  }
+}
+
+// The normal correction is the gradient of the height: a tilted plane of heights keeps its tilt while it relaxes.
+TEST(FieldKernels, TheNormalsOfAZoneThatRelaxesAreTheGradientOfItsHeights) {
+  for (const SpringLaw law : kLaws) {
+    if (row_of(law).step != SpringStep::kPassiveArm) continue;
+    Motion m = motion_of(law, 1e-4, 1e-2, 150.0);
+    m.arm_stiffness = 1.5;
+    m.arm_half = 0.97;
+    constexpr double kApart = 1e-5;  // [m] between two places whose heights differ by the tilt
+    constexpr double kTilt = 0.2;
+    SolidState low{-0.003, 0.0, 1.5 * m.law.force(-0.003)}, high{-0.003 + kTilt * kApart, 0.0, 0.0};
+    high.arm = 1.5 * m.law.force(high.height);
+    Zone zone, arms;
+    zone.state[0] = {static_cast<float>(kTilt), 0, 0, -0.003f};
+    arms.state[0] = {static_cast<float>(1.5 * m.law.slope(-0.003) * kTilt), 0, 0, static_cast<float>(low.arm)};
+    for (int n = 0; n < 40; ++n) {
+      step_nonlinear(m, {}, 0, zone.state.data(), zone.rate.data(), arms.state.data(), nullptr);
+      for (SolidState* s : {&low, &high}) *s = step_relaxing(m.law, *s, m.mass, m.damping, 1.5, m.arm_half, 0.0, m.dt);
+      ASSERT_NEAR(zone.state[0].x, (high.height - low.height) / kApart, 0.02 * kTilt) << int(law) << ' ' << n;
+    }
+  }
+}
+
 TEST(FieldKernels, ANonLinearZoneAtRestStaysAtRestToTheBit) {
   for (const auto& [law, hardening] : hardening_laws()) {
     Zone zone;
     zone.state[5].w = -0.003f;
     for (int n = 0; n < 10; ++n)
-      step_nonlinear(motion_of(law, 1e-4, 1e-3, hardening), {}, 0, zone.state.data(), zone.rate.data(), nullptr);
+      step_nonlinear(motion_of(law, 1e-4, 1e-3, hardening), {}, 0, zone.state.data(), zone.rate.data(), nullptr,
+                     nullptr);
     for (std::uint32_t i = 0; i < kZoneSize; ++i) {
       if (i == 5) continue;
       EXPECT_EQ(zone.state[i], vec4(0));
@@ -165,7 +221,7 @@ TEST(FieldKernels, UndampedNonLinearZonesKeepTheirEnergyAndDampedOnesOnlyLose) {
       };
       std::vector<double> first(kZoneSize);
       for (std::uint32_t i = 0; i < kZoneSize; ++i) first[i] = energy(i);
-      for (int n = 0; n < 2000; ++n) step_nonlinear(m, {}, 0, zone.state.data(), zone.rate.data(), nullptr);
+      for (int n = 0; n < 2000; ++n) step_nonlinear(m, {}, 0, zone.state.data(), zone.rate.data(), nullptr, nullptr);
       for (std::uint32_t i = 0; i < kZoneSize; ++i) {
         EXPECT_LE(energy(i), first[i] * 1.0002 + 1e-15);
         if (damping == 0) EXPECT_GE(energy(i), first[i] * 0.9998 - 1e-15);

@@ -46,7 +46,11 @@ TEST(Touch, FloatFieldFollowsTheDoublePrecisionRecoveryWithinOnePartIn1e5OfTheAm
       for (int n = 0; n < 60; ++n) {
         stage.tick();
         for (Twin& t : twins) {
-          if (m.nonlinear()) {
+          if (m.nonlinear() && m.arm()) {
+            const SolidState s =
+                step_relaxing(m.law, {t.h, t.r, t.q}, m.mass, m.damping, m.arm_stiffness, m.arm_half, 0.0, m.dt);
+            t.h = s.height, t.r = s.velocity, t.q = s.arm;
+          } else if (m.nonlinear()) {
             const HeightState s = step_restoring(m.law, {t.h, t.r}, m.mass, m.damping, 1, 0, m.dt);
             t.h = s.height, t.r = s.velocity;
           } else if (!field.arm.empty()) {
@@ -75,8 +79,8 @@ TEST(Touch, SurfaceGoesToSleepWithExactZerosAndAStillSceneCostsNothing) {
     stage.move(probe, {0.02, -0.006, 0}, 0.2);
     EXPECT_GT(stage.field(sheet).awake_vertices, 0u);
     stage.move(probe, {0.02, 0.01, 0}, 0.2);
-    stage.wait(kind == SpringLaw::kStandardLinearSolid ? 12 : 1);
-    EXPECT_TRUE(stage.field(sheet).awake.empty());
+    stage.wait(has_arm(kind) ? 14 : 1);  // a steep law leaves more to creep
+    EXPECT_TRUE(stage.field(sheet).awake.empty()) << int(kind);
     for (const vec4& s : stage.field(sheet).stream) ASSERT_EQ(s, vec4(0));
     stage.tick();
     EXPECT_EQ(stage.field(sheet).awake_vertices, 0u);

@@ -34,7 +34,8 @@ TEST(TouchSeam, ADentGoesOnOverASeamAsIfThereWereNone) {
   Primitive cracked = both;
   for (std::size_t v = half.position.size(); v < cracked.position.size(); ++v)
     cracked.position[v].x += static_cast<float>(0.01 * kSize / kCells);
-  for (const SpringLaw law : {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kStandardLinearSolid}) {
+  for (const SpringLaw law :
+       {SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kStandardLinearSolid, SpringLaw::kQuasiLinearCubic}) {
     Deformable d = frictionless(law);
     d.shape = law == SpringLaw::kCubic ? Shape::kVolume : Shape::kWendland;
     d.reach = 0.025;

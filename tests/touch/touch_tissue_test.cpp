@@ -92,6 +92,7 @@ Deformable as_painted(Deformable d, double stiffness, double damping, double rel
   d.settling_time = natural_frequency(d.damping_ratio, 1.0) / w0;
   d.stiffness *= stiffness;
   d.cubic *= stiffness;
+  for (auto& row : d.table.rows) row[1] *= stiffness;
   d.relaxation_stiffness *= stiffness * relaxation;
   return d;
 }
@@ -167,6 +168,12 @@ TEST(TouchTissue, EachVertexMovesByItsOwnPaint) {
       if (law == SpringLaw::kStandardLinearSolid) {
         const auto m = solid_step(plain.mass, b, k, plain.arm_stiffness * k * factor.z, plain.arm_time, 1e-3 * ticks);
         h.height = m[0][0] * h.height + m[0][1] * h.velocity + m[0][2] * k * before.arm[v].w;
+      } else if (plain.nonlinear() && plain.arm()) {
+        SolidState s{h.height, h.velocity, before.arm[v].w};
+        for (int i = 0; i < ticks; ++i)
+          s = step_relaxing(plain.law, s, plain.mass / k, b / k, plain.arm_stiffness * factor.z, plain.arm_half, 0.0,
+                            1e-3);
+        h.height = s.height;
       } else if (plain.nonlinear()) {
         for (int i = 0; i < ticks; ++i) h = step_restoring(plain.law, h, plain.mass, b, k, 0.0, 1e-3);
       } else {

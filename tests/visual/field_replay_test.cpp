@@ -97,6 +97,8 @@ TEST_P(FieldReplayTest, StepsWhatTheProcessorSteps) {
   Deformable d;
   d.reach = 0.03;
   d.spring = c.law;
+  d.table = frictionless(c.law).table;
+  if (d.table.count > 0) d.stiffness = stiffness_of(d.table);
   d.response = c.response;
   d.distance = c.distance;
   d.relaxation_time = 0.05;

@@ -57,8 +57,20 @@ void main() {
     for (const float d : {-4e-3f, -1e-5f, 2e-5f, 7e-3f}) given.emplace_back(h, d, 0, 0);
   for (const SpringLaw kind : kLaws)
     for (const double stiffening : {150.0, -80.0, 1e-6}) {
-      const RestoringLaw law{kind, 1e5, stiffening};
+      RestoringLaw law{kind, 1e5, stiffening};
+      law.table = restoring_law(frictionless(SpringLaw::kTable)).table;
       program->use();
+      for (std::uint32_t i = 0; i < law.table.count; ++i) {
+        const CubicPiece& p = law.table.piece[i];
+        const vec4 place(p.at, p.value, p.slope, p.second), curve(p.third, p.integral, 0, 0);
+        const auto row = [&](const char* name, const vec4& value) {
+          const std::string at = std::string(name) + '[' + std::to_string(i) + ']';
+          glUniform4fv(glGetUniformLocation(program->id(), at.c_str()), 1, &value.x);
+        };
+        row("table_place", place);
+        row("table_curve", curve);
+      }
+      glUniform1i(glGetUniformLocation(program->id(), "table_count"), static_cast<GLint>(law.table.count));
       const auto number = [&](const char* name, double value) {
         glUniform1f(glGetUniformLocation(program->id(), name), static_cast<float>(value));
       };

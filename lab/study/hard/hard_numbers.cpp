@@ -100,6 +100,8 @@ Json filled(const Key& key, double number) {
       return Json::array({number, number});
     case KeyType::kPoints:
       return Json::array({point});
+    case KeyType::kTable:
+      return Json::array({Json::array({number, number}), Json::array({number, number})});
     case KeyType::kBox:
       return Json{{"min", point}, {"max", point}};
     case KeyType::kItems: {

@@ -42,7 +42,7 @@ void YieldingBody::set(const DeformableParameters& now) {
   static_cast<DeformableParameters&>(deformable_) = now;
   friction_static = now.friction_static;
   friction_sliding = now.friction_sliding;
-  damping_ = now.contact_damping_material ? motion(deformable_, 1.0).damping * now.stiffness : now.contact_damping;
+  damping_ = now.contact_damping_material ? free_damping(deformable_) * now.stiffness : now.contact_damping;
 }
 
 void YieldingBody::vary(const Varying& varying, double time) {

@@ -10,15 +10,18 @@
 namespace pliant {
 namespace {
 
-// Height and rate of the recovering surface under a foot, without the contacts' targets. The depth sustained by the arm
-// (standard linear solid) is excluded: the contact's law includes it already.
+// Height and rate of the recovering surface under a foot, without the contacts' targets. The force sustained by the arm
+// of a relaxing law is excluded: the contact's law includes it already.
 HeightState recovering(const ContactSearch& s, const Foot& foot) {
   const uvec3 t = s.mesh.triangles[foot.triangle];
   HeightState mean;
   for (int i = 0; i < 3; ++i) {
     const HeightState corner = residual_before(s.object, s.mesh, s.field, t[i], s.tick);
-    const double held = s.field.arm.empty() ? 0.0 : static_cast<double>(s.field.arm[t[i]].w);
-    mean.height += foot.barycentric[i] * (corner.height + held);
+    const RestoringLaw& law = s.object.motion.law;
+    const double height = s.field.arm.empty()
+                              ? corner.height
+                              : law.height_of(law.force(corner.height) + static_cast<double>(s.field.arm[t[i]].w));
+    mean.height += foot.barycentric[i] * height;
     mean.velocity += foot.barycentric[i] * corner.velocity;
   }
   return mean;

@@ -59,10 +59,13 @@ void fold(SourceState& source, ObjectState& object, World& world, Tick tick) {
     for (std::uint32_t v = mesh.zone_begin(zone); v < mesh.zone_end(zone); ++v) {
       const vec4 now = source_at(source, source.now, mesh, v);
       const vec4 before = source_at(source, source.before, mesh, v);
+      // As if the arm had not relaxed at all; dynamics hands over the relaxed part (field_kernels.h, step_relaxed).
+      const RestoringLaw& law = object.motion.law;
+      if (!field.arm.empty())
+        field.arm[v] += arm_stiffness(object.motion, mesh, v) *
+                        (law.strained(field.residual[v] + now) - law.strained(field.residual[v]));
       field.residual[v] += now;
       field.rate[v] += (now - before) * inv_dt;
-      // As if the arm had not relaxed at all; dynamics hands over the relaxed part (field_kernels.h, step_relaxed).
-      if (!field.arm.empty()) field.arm[v] += arm_stiffness(object.motion, mesh, v) * now;
     }
     wake(field, zone, kZoneResidual);
   }

@@ -56,6 +56,11 @@ double residual_after(const ObjectState& object, const Mesh& mesh, const HeightF
   if (h == 0.0 && r == 0.0) return 0.0;
   if (motion.nonlinear()) {
     const bool plain = painted.mass.empty();
+    if (motion.arm())
+      return step_relaxing(motion.law, {h, r, field.arm[vertex].w}, plain ? motion.mass : painted.mass[vertex],
+                           plain ? motion.damping : painted.damping[vertex], arm_stiffness(motion, mesh, vertex),
+                           motion.arm_half, 0.0, motion.dt)
+          .height;
     return step_restoring(motion.law, {h, r}, plain ? motion.mass : painted.mass[vertex],
                           plain ? motion.damping : painted.damping[vertex], 1.0, 0.0, motion.dt)
         .height;

@@ -282,7 +282,7 @@ ZoneRest step_residual(const Motion& motion, const PaintedMotion& painted, Heigh
   vec4* state = field.residual.data() + first;
   vec4* rate = field.rate.data() + first;
   if (motion.nonlinear()) {
-    step_nonlinear(motion, painted, zone, state, rate, nullptr);
+    step_nonlinear(motion, painted, zone, state, rate, motion.arm() ? &field.arm[first] : nullptr, nullptr);
   } else if (!painted.solid.empty()) {
     step_solid(&state->x, &rate->x, &field.arm[first].x, painted.solid.data() + first);
   } else if (!painted.linear.empty()) {
@@ -308,12 +308,12 @@ bool step_relaxed(const Motion& motion, const Mesh& mesh, HeightField& field, st
     vec4& z = field.relaxed[v];
     const vec4 now = reached ? vec4(targets.nx[i], targets.ny[i], targets.nz[i], targets.h[i]) : vec4(0);
     if (now == vec4(0) && z == vec4(0)) continue;
-    const vec4 before = field.stream[v] - field.residual[v];
-    z = now - (E * (before - z) + ramp * (now - before));
-    // Equilibrium of the free surface: k h + k1 (h - z) = 0. If it is deeper than the target, the excess is released
-    // there.
+    const vec4 before = motion.law.strained(field.stream[v] - field.residual[v]), force = motion.law.strained(now);
+    z = force - (E * (before - z) + ramp * (force - before));
+    // Equilibrium of the free surface, f the law's force: f + r1 (f - z) = 0. If it is deeper than the target, the
+    // excess is released there.
     const float r1 = arm_stiffness(motion, mesh, v);
-    const float held = r1 > 0 && now.w < 0 ? now.w * (1 + 1 / r1) : 0.0f;
+    const float held = r1 > 0 && force.w < 0 ? force.w * (1 + 1 / r1) : 0.0f;
     if (!(z.w < held) || !(z.w < 0)) {
       if (now == vec4(0)) z = vec4(0);
       continue;
@@ -332,7 +332,8 @@ ZoneRest step_lagging(const Motion& motion, const PaintedMotion& painted, Height
   vec4* state = field.residual.data() + zone * kZoneSize;
   if (motion.nonlinear()) {
     vec4* rate = field.rate.data() + zone * kZoneSize;
-    step_nonlinear(motion, painted, zone, state, rate, &targets);
+    vec4* arm = motion.arm() ? field.arm.data() + zone * kZoneSize : nullptr;
+    step_nonlinear(motion, painted, zone, state, rate, arm, &targets);
     return rest_of(mass, state, rate);
   }
   // The law is linear, so the state relative to the target moves freely.

@@ -118,7 +118,7 @@ namespace {
 // The laws that ship, behind the interface of registered ones.
 #define PLIANT_LAW(word, of, ...)                                                                               \
   struct word##_spring final : SpringFunction {                                                                 \
-    static law_exact::LawConstants at(const SpringConstants& c) { return {c.cubic, c.stiffening}; }             \
+    static law_exact::LawConstants at(const SpringConstants& c) { return {c.cubic, c.stiffening, c.table}; }    \
     double force(double h, const SpringConstants& c) const override { return law_exact::of##_force(h, at(c)); } \
     double potential(double h, const SpringConstants& c) const override {                                       \
       return law_exact::of##_potential(h, at(c));                                                               \
@@ -150,7 +150,26 @@ double exponential_alpha(double stiffening) {
 }
 
 RestoringLaw restoring_law(const Deformable& deformable) {
-  return {deformable.spring, deformable.cubic / deformable.stiffness, exponential_alpha(deformable.stiffening)};
+  RestoringLaw out{deformable.spring, deformable.cubic / deformable.stiffness,
+                   exponential_alpha(deformable.stiffening)};
+  if (reads_key(deformable.spring, "table")) out.table = monotone_cubic(deformable.table, deformable.stiffness);
+  return out;
+}
+
+double RestoringLaw::height_of(double wanted) const {
+  if (!curved() || wanted == 0.0) return wanted;
+  double near = 0.0, far = wanted;  // of the same sign, as the force
+  for (int i = 0; i < 60 && std::abs(force(far)) < std::abs(wanted); ++i)
+    far *= 2;  // a softening law may never have it
+  double h = far;
+  for (int i = 0; i < 100 && std::abs(far - near) > 1e-14 * std::abs(far); ++i) {
+    const double r = force(h) - wanted;
+    (std::abs(force(h)) < std::abs(wanted) ? near : far) = h;
+    const double next = h - r / slope(h);
+    if (std::abs(next - h) <= 1e-14 * std::abs(h)) return h;
+    h = (next - near) * (next - far) < 0.0 && i % 3 != 2 ? next : 0.5 * (near + far);
+  }
+  return h;
 }
 
 HeightState step_restoring(const RestoringLaw& law, HeightState state, double m, double b, double k, double f,
@@ -180,7 +199,9 @@ HeightState step_restoring(const RestoringLaw& law, HeightState state, double m,
   double low = std::min(0.0, farthest), high = std::max(0.0, farthest);
   for (int i = 0; i < 100 && r != 0.0; ++i) {
     double next = d - r / derivative;
-    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    // Between a slope that rises and one that falls, Newton's steps may go to and fro.
+    const bool cycles = i >= 12 && i % 2 == 0;
+    if (!(next >= low && next <= high) || cycles) next = 0.5 * (low + high);
     if (std::abs(next - d) <= 1e-15 * (std::abs(h0) + std::abs(next))) break;
     d = next;
     r = residual(d, derivative);
@@ -189,20 +210,45 @@ HeightState step_restoring(const RestoringLaw& law, HeightState state, double m,
   return stiff ? HeightState{h0 + d, d / T} : HeightState{h0 + d, 2 * d / T - v0};
 }
 
+SolidState step_relaxing(const RestoringLaw& law, SolidState s, double m, double b, double r1, double half_decay,
+                         double f, double T) {
+  const double share = 1 / (1 + r1), lost = r1 * law.force(s.height) - s.arm * half_decay;
+  const HeightState y = step_restoring(law, {s.height, s.velocity}, m * share, b * share, 1.0, (f + lost) * share, T);
+  return {y.height, y.velocity, (r1 * law.force(y.height) - lost) * half_decay};
+}
+
+namespace {
+
+double free_frequency(const Deformable& d) {
+  return std::max(kSlowest, natural_frequency(d.damping_ratio, d.settling_time));
+}
+
+}  // namespace
+
+double free_damping(const Deformable& deformable) {
+  return 2 * damping_of(deformable) / free_frequency(deformable);
+}
+
 Motion motion(const Deformable& deformable, double dt) {
   Motion result;
   result.dt = dt;
-  const double w0 = std::max(kSlowest, natural_frequency(deformable.damping_ratio, deformable.settling_time));
+  const double w0 = free_frequency(deformable);
   result.mass = 1.0 / (w0 * w0);
-  result.damping = 2 * damping_of(deformable) / w0;
+  result.damping = free_damping(deformable);
   result.law = restoring_law(deformable);
   result.linear = exact_step(result.mass, result.damping, 1.0, dt);
   if (has_arm(deformable.spring)) {
     result.arm_stiffness = deformable.relaxation_stiffness / deformable.stiffness;
     result.arm_time = deformable.relaxation_time;
     result.arm_decay = std::exp(-dt / deformable.relaxation_time);
-    result.solid = solid_step(result.mass, result.damping, 1.0, result.arm_stiffness, result.arm_time, dt);
+    result.arm_half = std::exp(-0.5 * dt / deformable.relaxation_time);
+    if (!result.law.curved())
+      result.solid = solid_step(result.mass, result.damping, 1.0, result.arm_stiffness, result.arm_time, dt);
   }
+  if (deformable.young > 0.0 && deformable.thickness > 0.0)
+    result.sphere = layer_sphere(deformable.poisson);
+  else if (deformable.young > 0.0 && deformable.sphere == SphereForce::kSneddon)
+    result.sphere = sneddon_sphere();
   return result;
 }
 
@@ -247,6 +293,11 @@ Status check(const Deformable& d, const std::string& name) {
                  fmt::format("give a number {} {} to {}{}", bound.range.above_min ? "above" : "from", bound.range.min,
                              bound.range.max, bound.why)};
   }
+  if (!reads_key(d.spring, "table")) return Done{};
+  if (const char* const fault = fault_of(d.table))
+    return Error{fmt::format("`{}`: table", name), fault, "give rows of depth and force that rise from 0, 0"};
+  if (d.young > 0.0)
+    return Error{fmt::format("`{}`: table", name), "stands beside young", "keep one: both say the force"};
   return Done{};
 }
 

@@ -9,7 +9,9 @@
 #include <array>
 
 #include "components/deformable.h"
+#include "components/monotone_cubic.h"
 #include "components/registered.h"
+#include "components/sphere_curve.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -56,15 +58,24 @@ struct RestoringLaw {
   SpringLaw kind = SpringLaw::kLinear;
   double cubic = 0.0;       // [1/m2] k3 / k
   double stiffening = 0.0;  // [1/m] alpha, not 0 of the exponential law
+  MonotoneCubic table;      // of the law `table`
   const SpringFunction* function = &spring_function(kind);
 
-  // True for laws whose step is the passive one.
-  bool curved() const { return row_of(kind).step == SpringStep::kPassive; }
-  double force(double h) const { return function->force(h, {cubic, stiffening}); }          // [m]
-  double potential(double h) const { return function->potential(h, {cubic, stiffening}); }  // [m2] its integral from 0
-  double slope(double h) const { return function->slope(h, {cubic, stiffening}); }          // [1]
+  // True for laws whose step is a passive one.
+  bool curved() const { return row_of(kind).step >= SpringStep::kPassive; }
+  SpringConstants constants() const { return {cubic, stiffening, &table}; }
+  double force(double h) const { return function->force(h, constants()); }          // [m]
+  double potential(double h) const { return function->potential(h, constants()); }  // [m2] its integral from 0
+  double slope(double h) const { return function->slope(h, constants()); }          // [1]
   // (U(h1) - U(h0)) / (h1 - h0), without cancellation; it makes the step passive.
-  double discrete_gradient(double h0, double h1) const { return function->mean_force(h0, h1, {cubic, stiffening}); }
+  double discrete_gradient(double h0, double h1) const { return function->mean_force(h0, h1, constants()); }
+  double height_of(double force) const;  // [m] the inverse of force()
+  // A height with its gradient (nx, ny, nz, h), as the force: what a relaxing arm stretches by.
+  vec4 strained(vec4 x) const {
+    if (!curved() || x.w == 0.0f) return x;
+    const double h = static_cast<double>(x.w);
+    return {static_cast<float>(slope(h)) * vec3(x), static_cast<float>(force(h))};
+  }
 };
 RestoringLaw restoring_law(const Deformable& deformable);
 // [1/m] `stiffening`, made non-zero: the exponential law divides by it.
@@ -75,21 +86,35 @@ double exponential_alpha(double stiffening);
 HeightState step_restoring(const RestoringLaw& law, HeightState state, double mass, double damping, double stiffness,
                            double force, double dt);
 
+// Quasi-linear viscoelasticity, m h'' = -b h' - F(h) - q, q' = r1 F'(h) h' - q/tau: half a relaxation at fixed h, a
+// step of the springs F + q under the constant force r1 F(h0) - q0 (step_restoring), another half. No part makes
+// energy: with z = F - q / r1 and the convex U* (F = U'), the arm stores r1 (U(h) + U*(z) - z h) >= 0 (methods.md 1.2).
+struct SolidState {
+  double height = 0.0, velocity = 0.0;  // [m] [m/s]
+  double arm = 0.0;                     // [m] q
+};
+SolidState step_relaxing(const RestoringLaw& law, SolidState state, double mass, double damping, double arm_stiffness,
+                         double half_decay, double force, double dt);
+
 // A Deformable's parameters prepared for steps of T, k = 1.
 struct Motion {
   double dt = 1e-3;      // [s]
   double mass = 1.0;     // [s2]  m/k
   double damping = 0.0;  // [s]   b/k
   RestoringLaw law;
-  StepCoefficients linear;   // of the linear law
-  double arm_stiffness = 0;  // [1]   k1/k, standard linear solid
-  double arm_time = 0;       // [s]
-  double arm_decay = 1.0;    // e^(-T/tau)
-  std::array<std::array<double, 3>, 3> solid{};
+  StepCoefficients linear;                       // of the linear law
+  double arm_stiffness = 0;                      // [1]   k1/k, of a law with an arm
+  double arm_time = 0;                           // [s]
+  double arm_decay = 1.0;                        // e^(-T/tau)
+  double arm_half = 1.0;                         // e^(-T/2tau)
+  std::array<std::array<double, 3>, 3> solid{};  // of the standard linear solid
+  SphereCurve sphere;                            // of a contact with a sphere; empty: Hertz
   bool nonlinear() const { return law.curved(); }
   bool arm() const { return has_arm(law.kind); }
 };
 Motion motion(const Deformable& deformable, double dt);
+// [s] Its `damping`.
+double free_damping(const Deformable& deformable);
 
 // Rejects parameters for which the step fails: the sentence names the key, its value and its range.
 Status check(const Deformable& deformable, const std::string& name);

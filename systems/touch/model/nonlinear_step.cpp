@@ -62,18 +62,20 @@ struct Own {
 
 struct alignas(64) Work {
   Lanes h0, v0, f, f_slope;
-  Lanes mass, damping;            // [s2] m/k, [s] b/k
+  Lanes mass, damping;    // [s2] m/k, [s] b/k, both over 1 + r1
+  Lanes r1, share, held;  // [1] k1/k, 1 / (1 + r1); [m] force of the arm's spring if it had not relaxed, less its own
+  Lanes slope0, slope1;   // [1] of the law before and after the step
   Lanes kept, inertia, constant;  // of the residual: inertia d + spring(d) + constant
   Lanes stiff;                    // 1: backward Euler, 0: discrete gradient
   Lanes d, low, high, step;       // step: size of the last Newton step minus the tolerance
 };
 
-template <class Law>
+template <bool kArm, class Law>
 PLIANT_INLINE void begin(const Law& law, const Motion& motion, Work& w, bool forced) {
   const double T = motion.dt;
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
     const double target = w.f[i], m = w.mass[i], b = w.damping[i];
-    const double f = forced ? law.force(target) : 0.0;
+    const double own = forced ? law.force(target) : 0.0, f = kArm ? w.share[i] * (own + w.held[i]) : own;
     w.f_slope[i] = forced ? law.slope(target) : 0.0;
     const double h0 = w.h0[i];
     const bool stiff = law.slope(h0) * T * T > 2.25 * m;
@@ -165,20 +167,25 @@ PLIANT_KERNEL void widen(const Parts& state, const Parts& rate, const float* __r
 }
 
 // 2 m (vm - v0)/T + b vm + slope (n0 + T vm / 2) = f_n, with vm the mean rate of the step.
+// With an arm as step_relaxing.
+template <bool kArm>
 PLIANT_KERNEL void step_normals(const Motion& motion, const Work& w, const float* __restrict target,
-                                float* __restrict n, float* __restrict rate) {
+                                float* __restrict n, float* __restrict rate, float* __restrict arm) {
   const double T = motion.dt;
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
     const double slope = w.f[i], s = n[i], r = rate[i], m2 = 2 * w.mass[i] / T, b = w.damping[i];
-    const double vm = (m2 * r - slope * s + w.f_slope[i] * target[i]) / (m2 + b + 0.5 * T * slope);
+    const double pulled = w.f_slope[i] * target[i];
+    const double pull = kArm ? w.share[i] * (pulled + w.r1[i] * w.slope0[i] * s - arm[i]) : pulled;
+    const double vm = (m2 * r - slope * s + pull) / (m2 + b + 0.5 * T * slope);
     n[i] = static_cast<float>(s + T * vm);
+    if (kArm) arm[i] = static_cast<float>(arm[i] + w.r1[i] * (w.slope1[i] * (s + T * vm) - w.slope0[i] * s));
     rate[i] = static_cast<float>(2 * vm - r);
   }
 }
 
-template <class Law>
+template <bool kArm, class Law>
 PLIANT_KERNEL void begin_lanes(const Law& law, const Motion& motion, Work& w, bool forced) {
-  begin(law, motion, w, forced);
+  begin<kArm>(law, motion, w, forced);
 }
 template <class Law>
 PLIANT_KERNEL void newton_lanes(const Law& law, Work& w) {
@@ -190,26 +197,67 @@ PLIANT_KERNEL void finish_lanes(const Law& law, const Motion& motion, Work& w, f
 }
 
 // Vertices that have not converged: scalar solver.
-void settle(const Motion& motion, const ZoneTargets* targets, Work& w) {
+void settle(const Motion& motion, const ZoneTargets* targets, bool arm, Work& w) {
   for (std::uint32_t i = 0; i < kZoneSize; ++i) {
     if (w.step[i] <= 0) continue;
-    const double f = targets ? motion.law.force(static_cast<double>(targets->h[i])) : 0.0;
+    const double own = targets ? motion.law.force(static_cast<double>(targets->h[i])) : 0.0,
+                 f = arm ? w.share[i] * (own + w.held[i]) : own;
     const HeightState start{w.h0[i], w.v0[i]};
     w.d[i] = step_restoring(motion.law, start, w.mass[i], w.damping[i], 1.0, f, motion.dt).height - w.h0[i];
   }
 }
 
+// Half a relaxation before the step, and what the arm's spring does in it.
+template <class Law>
+void begin_arm(const Law& law, const Motion& motion, const PaintedMotion& painted, std::uint32_t zone, Parts& arm,
+               Work& w) {
+  const float half = static_cast<float>(motion.arm_half);
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    arm.h[i] *= half;
+    for (int c = 0; c < 3; ++c) arm.n[c][i] *= half;
+    const double r1 = painted.arm.empty() ? motion.arm_stiffness : painted.arm[std::size_t{zone} * kZoneSize + i];
+    w.r1[i] = r1;
+    w.share[i] = 1 / (1 + r1);
+    w.slope0[i] = law.slope(w.h0[i]);
+    w.held[i] = r1 * law.force(w.h0[i]) - static_cast<double>(arm.h[i]);
+    w.mass[i] *= w.share[i];
+    w.damping[i] *= w.share[i];
+  }
+}
+
+template <class Law>
+void end_arm(const Law& law, const Motion& motion, Parts& arm, Work& w) {
+  const float half = static_cast<float>(motion.arm_half);
+  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
+    arm.h[i] = half * static_cast<float>(w.r1[i] * law.force(w.h0[i] + w.d[i]) - w.held[i]);
+    w.slope1[i] = law.slope(w.h0[i] + w.d[i]);
+  }
+}
+
+template <bool kArm, class Law>
+void step_heights(const Law& law, const Motion& motion, const ZoneTargets* targets, Work& w, float* h, float* v) {
+  begin_lanes<kArm>(law, motion, w, targets != nullptr);
+  bool settled = false;
+  for (int round = 0; round < kSteps && !settled; ++round) {
+    newton_lanes(law, w);
+    settled = all_settled(w);
+  }
+  if (!settled) settle(motion, targets, kArm, w);
+  finish_lanes(law, motion, w, h, v);
+}
+
 }  // namespace
 
 void step_nonlinear(const Motion& motion, const PaintedMotion& painted, std::uint32_t zone, vec4* state, vec4* rate,
-                    const ZoneTargets* targets) {
+                    vec4* arm, const ZoneTargets* targets) {
   static constexpr float kNothing[kZoneSize] = {};
   const float* const goal[4] = {targets ? targets->nx.data() : kNothing, targets ? targets->ny.data() : kNothing,
                                 targets ? targets->nz.data() : kNothing, targets ? targets->h.data() : kNothing};
-  Parts s, r;
+  Parts s, r, a;
   Work w;
   split(&state->x, s);
   split(&rate->x, r);
+  if (arm) split(&arm->x, a);
   widen(s, r, goal[3], w);
   if (painted.mass.empty()) {
     std::fill_n(w.mass, kZoneSize, motion.mass);
@@ -218,21 +266,17 @@ void step_nonlinear(const Motion& motion, const PaintedMotion& painted, std::uin
     std::copy_n(painted.mass.data() + std::size_t{zone} * kZoneSize, kZoneSize, w.mass);
     std::copy_n(painted.damping.data() + std::size_t{zone} * kZoneSize, kZoneSize, w.damping);
   }
-  const bool forced = targets != nullptr;
   const RestoringLaw& law = motion.law;
   const auto step = [&](const auto& its) {
-    if constexpr (std::decay_t<decltype(its)>::kStep == SpringStep::kPassive) {
-      begin_lanes(its, motion, w, forced);
-      bool settled = false;
-      for (int round = 0; round < kSteps && !settled; ++round) {
-        newton_lanes(its, w);
-        settled = all_settled(w);
-      }
-      if (!settled) settle(motion, targets, w);
-      finish_lanes(its, motion, w, s.h, r.h);
+    constexpr SpringStep kStep = std::decay_t<decltype(its)>::kStep;
+    if constexpr (kStep == SpringStep::kPassive) step_heights<false>(its, motion, targets, w, s.h, r.h);
+    if constexpr (kStep == SpringStep::kPassiveArm) {
+      begin_arm(its, motion, painted, zone, a, w);
+      step_heights<true>(its, motion, targets, w, s.h, r.h);
+      end_arm(its, motion, a, w);
     }
   };
-  const law_lanes::LawConstants constants{law.cubic, {law.stiffening, 1 / law.stiffening}};
+  const law_lanes::LawConstants constants{law.cubic, {law.stiffening, 1 / law.stiffening}, &law.table};
   switch (static_cast<std::size_t>(law.kind)) {
 #define PLIANT_LAW(word, ...)         \
   case word##_in_lanes::kPlace:       \
@@ -243,7 +287,14 @@ void step_nonlinear(const Motion& motion, const PaintedMotion& painted, std::uin
     default:
       step(Own{law});
   }
-  for (int c = 0; c < 3; ++c) step_normals(motion, w, goal[c], s.n[c], r.n[c]);
+  for (int c = 0; c < 3; ++c)
+    arm ? step_normals<true>(motion, w, goal[c], s.n[c], r.n[c], a.n[c])
+        : step_normals<false>(motion, w, goal[c], s.n[c], r.n[c], nullptr);
+  if (arm) {
+    for (auto& n : a.n)
+      for (float& each : n) each *= static_cast<float>(motion.arm_half);
+    join(a, &arm->x);
+  }
   join(s, &state->x);
   join(r, &rate->x);
 }

@@ -10,8 +10,9 @@ struct ZoneTargets;
 
 // Heights by the passive step. The normal correction is the gradient of the height, so it obeys the law linearised
 // there (implicit midpoint with the slope at the middle). `targets`: the spring forces of these shapes act
-// (Response::kLag); null: none. `painted` may be empty. state and rate: (nx, ny, nz, h) of kZoneSize vertices.
+// (Response::kLag); null: none. `painted` may be empty. state, rate and arm: (nx, ny, nz, h) of kZoneSize vertices.
+// With an arm it is step_relaxing's; null: the law has none.
 void step_nonlinear(const Motion& motion, const PaintedMotion& painted, std::uint32_t zone, vec4* state, vec4* rate,
-                    const ZoneTargets* targets);
+                    vec4* arm, const ZoneTargets* targets);
 
 }  // namespace pliant

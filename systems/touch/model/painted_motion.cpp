@@ -26,7 +26,8 @@ Motion paint(const Motion& motion, double stiffness, double damping, double rela
   out.mass /= stiffness;
   out.damping *= damping / stiffness;
   out.arm_stiffness *= relaxation;
-  if (motion.arm()) out.solid = solid_step(out.mass, out.damping, 1.0, out.arm_stiffness, out.arm_time, out.dt);
+  if (motion.arm() && !motion.nonlinear())
+    out.solid = solid_step(out.mass, out.damping, 1.0, out.arm_stiffness, out.arm_time, out.dt);
   out.linear = exact_step(out.mass, out.damping, 1.0, out.dt);
   return out;
 }
@@ -55,6 +56,7 @@ PaintedMotion paint_motion(const Motion& motion, const Mesh& mesh) {
   if (motion.nonlinear()) {
     out.mass.resize(size);
     out.damping.resize(size);
+    if (solid) out.arm.resize(size);
   } else if (solid) {
     out.solid.resize(size);
   } else {
@@ -71,6 +73,7 @@ PaintedMotion paint_motion(const Motion& motion, const Mesh& mesh) {
       if (motion.nonlinear()) {
         out.mass[v] = static_cast<float>(here.mass);
         out.damping[v] = static_cast<float>(here.damping);
+        if (solid) out.arm[v] = static_cast<float>(here.arm_stiffness);
       } else if (solid) {
         for (std::size_t i = 0; i < 9; ++i) out.solid[v][i] = static_cast<float>(here.solid[i / 3][i % 3]);
       } else {

@@ -15,7 +15,8 @@ namespace pliant {
 struct PaintedMotion {
   std::vector<vec4> linear;                 // linear law: hh, hv, vh, vv of the exact step
   std::vector<std::array<float, 9>> solid;  // standard linear solid: rows of the exact step
-  std::vector<float> mass, damping;         // cubic and exponential law: [s2] m/k and [s] b/k
+  std::vector<float> mass, damping;         // laws with a passive step: [s2] m/k and [s] b/k
+  std::vector<float> arm;                   // [1] k1/k of those with an arm
   double most_mass = 0.0;                   // [s2] largest m/k: of the slowest vertex
   bool empty() const { return linear.empty() && solid.empty() && mass.empty(); }
 };

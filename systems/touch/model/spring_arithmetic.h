@@ -6,7 +6,11 @@
 #include <cmath>
 #include <cstdint>
 
+#include "components/monotone_cubic.h"
+
 namespace pliant {
+
+using LawPiece = CubicPiece;
 
 #define SHARED inline __attribute__((always_inline))
 #define REAL double
@@ -18,8 +22,18 @@ using std::abs;
 using std::sqrt;
 
 struct LawConstants {
-  double cubic, stiffening;  // [1/m2] [1/m], the latter not zero
+  double cubic, stiffening;              // [1/m2] [1/m], the latter not zero
+  const MonotoneCubic* table = nullptr;  // nullptr: no rows
 };
+
+template <class Constants>
+SHARED int law_pieces(const Constants& k) {
+  return k.table ? static_cast<int>(k.table->count) : 0;
+}
+template <class Constants>
+SHARED const LawPiece& law_piece(int i, const Constants& k) {
+  return k.table->piece[static_cast<std::size_t>(i)];
+}
 
 SHARED double law_select(bool first, double a, double b) {
   return first ? a : b;
@@ -41,6 +55,8 @@ SHARED double law_second(double x, double em1) {
 }  // namespace law_exact
 
 namespace law_lanes {
+using law_exact::law_piece;
+using law_exact::law_pieces;
 using law_exact::law_second;
 using law_exact::law_select;
 using std::abs;
@@ -55,6 +71,7 @@ struct Divisor {
 struct LawConstants {
   double cubic;
   Divisor stiffening;
+  const MonotoneCubic* table = nullptr;
 };
 
 // e^x - 1 to a few ulp. x is clamped to the range of double; beyond it the bracket decides.

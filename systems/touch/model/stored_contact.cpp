@@ -11,10 +11,14 @@ namespace {
 // A shallower contact stores no energy: its share would divide by it. [1] of the reach
 constexpr double kLeastDepth = 1e-9;
 
-// q, the creep depth of the tissue at a place, and its slope. The slope is that of the dent, which the field stores
-// with every height (its normal correction is -dh/dx). The slope of the interpolated heights would be as jagged as the
-// mesh.
+// [1] Of a table's plateau, whose memory has no slope.
+constexpr double kLeastSlope = 1e-3;
+
+// q, the relaxed depth of the tissue at a place (as the law's force, contact_law.h), and its slope. The slope is that
+// of the dent, which the field stores with every height (its normal correction is -dh/dx). The slope of the
+// interpolated heights would be as jagged as the mesh.
 Painted relaxed_depth(const FootBlend& place, const Mesh& mesh, const Motion& motion, const HeightField& field) {
+  const RestoringLaw& law = motion.law;
   Painted sum{0.0, dvec3(0)};
   for (std::uint32_t f = 0; f < place.count; ++f) {
     const Foot& foot = place.foot[f];
@@ -23,15 +27,17 @@ Painted relaxed_depth(const FootBlend& place, const Mesh& mesh, const Motion& mo
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t v = mesh.triangles[foot.triangle][i];
       const float r1 = arm_stiffness(motion, mesh, v);
-      // Under the targets, plus the part taken over by the residual: q = k1 / k (h - z).
-      const vec4 z = field.relaxed[v] + (r1 > 0 ? field.residual[v] - field.arm[v] / r1 : vec4(0));
-      depth -= foot.barycentric[i] * static_cast<double>(z.w);
-      slope += foot.barycentric[i] * dvec3(z);
+      // Under the targets, plus the part taken over by the residual: its arm is r1 (force - z).
+      const vec4 z = field.relaxed[v] + (r1 > 0 ? law.strained(field.residual[v]) - field.arm[v] / r1 : vec4(0));
+      // Between vertices as a height, which is smoother than the force of a law that stiffens.
+      const double h = law.height_of(static_cast<double>(z.w));
+      depth -= foot.barycentric[i] * h;
+      slope += foot.barycentric[i] / std::max(law.slope(h), kLeastSlope) * dvec3(z);
     }
     sum.value += place.weight[f] * depth;
     sum.gradient += place.weight[f] * (glm::transpose(foot.moves) * slope) + depth * place.weight_slope[f];
   }
-  return sum;
+  return {-law.force(-sum.value), law.slope(-sum.value) * sum.gradient};
 }
 
 // Of a surface that varies: with last tick's stiffness; k3 of the cubic law and the arm stay.
@@ -74,7 +80,7 @@ bool store(const ContactSearch& search, const Deformable& deformable, Pressing& 
     law.arm *= relaxation.value;
     relaxed = relaxed_depth(place, mesh, object.motion, field);
     if (relaxed.value < 0) relaxed = {0.0, dvec3(0)};  // no tensile force
-    law.relaxed_depth = relaxed.value;
+    law.relaxed = relaxed.value;
   }
   pressing.law = law;
   pressing.stored = law.stored(depth);

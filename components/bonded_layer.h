@@ -11,6 +11,9 @@
 // The displacement of the surface beside the punch, relative to d, r in a (the Hankel transform of the same pressures,
 // its half-space part in closed form; 1 under the punch):
 //   u(r) = (2 / pi) (int_0^(asin 1/r) phi(r sin s) ds - int_0^inf (1 - L(x h / a)) A(x) J0(x r) dx).
+//
+// A paraboloid r^2 / 2R (a sphere near its pole) on the same layer: phi = d phi_1 - (a^2 / R) phi_2 for the right sides
+// 1 and t^2, and the pressure ends with the contact, phi(1) = 0 (Lebedev & Ufliand, PMM 22, 1958).
 #pragma once
 
 #include <vector>
@@ -30,6 +33,13 @@ class BondedLayer {
   std::vector<double> at_, weight_;  // x, and 2 / pi (1 - L) A(x) dx; empty for a half-space
   double factor_ = 1.0;
 };
+
+// Of a sphere whose contact has this radius over thickness: d R / h^2, F R / (E* h^3), and kappa of that contact, by
+// which dF = 2 E* a kappa dd.
+struct LayerPress {
+  double depth, force, factor;
+};
+LayerPress sphere_on_layer(double radius_over_thickness, double poisson);
 
 // [1] kappa for any a / h. Above kThin from the equation of thin layers: the pressure p under the punch obeys
 //   p - l^2 (p'' + p'/r) = M d / h,   p(a) = 0,   M = 2 G (1 - nu) / (1 - 2 nu),   l^2 = M h^2 / (3 G),

@@ -1,4 +1,4 @@
-#include "content/keys/bonded_layer.h"
+#include "components/bonded_layer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,40 +42,73 @@ double missing(double z, double k) {  // 1 - L(z), in terms of e^(-2z) to avoid 
   return (2 * k * (cosh2 - sinh2) + (1 + k * k + 4 * z * z + 4 * z) * e) / below;
 }
 
+// Fredholm's equation at the points of a Gauss rule, for the right sides 1 and t^2.
+struct LayerEquation {
+  Rule t, z;
+  std::vector<double> at, weight;  // x, and 2 / pi (1 - L) dx
+  std::vector<double> phi[2];
+
+  LayerEquation(double ratio, double poisson)
+      : t(gauss(12 + static_cast<int>(2 * ratio))), z(gauss(60 + static_cast<int>(20 * ratio))) {
+    const std::size_t n = t.at.size();
+    const double k = 3 - 4 * poisson;
+    std::vector<double> system(n * n, 0.0), cosine(n);
+    phi[0].assign(n, 1.0);
+    for (const double each : t.at) phi[1].push_back(each * each);
+    for (std::size_t q = 0; q < z.at.size(); ++q) {
+      at.push_back(kLargestZ * z.at[q] * ratio);
+      weight.push_back(2 / kPi * ratio * kLargestZ * z.weight[q] * missing(kLargestZ * z.at[q], k));
+      for (std::size_t i = 0; i < n; ++i) cosine[i] = std::cos(at[q] * t.at[i]);
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) system[i * n + j] -= weight[q] * cosine[i] * cosine[j] * t.weight[j];
+    }
+    for (std::size_t i = 0; i < n; ++i) system[i * n + i] += 1.0;
+    // Gaussian elimination without pivoting; the kernel is a contraction, so no pivot is small.
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = i + 1; j < n; ++j) {
+        const double share = system[j * n + i] / system[i * n + i];
+        for (std::size_t c = i; c < n; ++c) system[j * n + c] -= share * system[i * n + c];
+        for (std::vector<double>& each : phi) each[j] -= share * each[i];
+      }
+    for (std::vector<double>& each : phi)
+      for (std::size_t i = n; i-- > 0;) {
+        for (std::size_t c = i + 1; c < n; ++c) each[i] -= system[i * n + c] * each[c];
+        each[i] /= system[i * n + i];
+      }
+  }
+  double sum(std::size_t side) const {
+    double out = 0.0;
+    for (std::size_t i = 0; i < t.at.size(); ++i) out += t.weight[i] * phi[side][i];
+    return out;
+  }
+  double pressure(std::size_t side, std::size_t q) const {  // A(x) at the q-th x
+    double out = 0.0;
+    for (std::size_t i = 0; i < t.at.size(); ++i) out += t.weight[i] * phi[side][i] * std::cos(at[q] * t.at[i]);
+    return out;
+  }
+  double at_edge(std::size_t side) const {  // phi(1)
+    double out = 1.0;
+    for (std::size_t q = 0; q < at.size(); ++q) out += weight[q] * std::cos(at[q]) * pressure(side, q);
+    return out;
+  }
+};
+
 }  // namespace
 
 BondedLayer::BondedLayer(double radius_over_thickness, double poisson) {
-  const double ratio = std::min(radius_over_thickness, kThinnest), k = 3 - 4 * poisson;
+  const double ratio = std::min(radius_over_thickness, kThinnest);
   if (!(ratio > 0)) return;
-  const Rule t = gauss(12 + static_cast<int>(2 * ratio)), z = gauss(60 + static_cast<int>(20 * ratio));
-  const std::size_t n = t.at.size();
-  std::vector<double> system(n * n, 0.0), phi(n, 1.0), cosine(n);
-  for (std::size_t q = 0; q < z.at.size(); ++q) {
-    at_.push_back(kLargestZ * z.at[q] * ratio);
-    weight_.push_back(2 / kPi * ratio * kLargestZ * z.weight[q] * missing(kLargestZ * z.at[q], k));
-    for (std::size_t i = 0; i < n; ++i) cosine[i] = std::cos(at_[q] * t.at[i]);
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j) system[i * n + j] -= weight_[q] * cosine[i] * cosine[j] * t.weight[j];
-  }
-  for (std::size_t i = 0; i < n; ++i) system[i * n + i] += 1.0;
-  // Gaussian elimination without pivoting; the kernel is a contraction, so no pivot is small.
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i + 1; j < n; ++j) {
-      const double share = system[j * n + i] / system[i * n + i];
-      for (std::size_t c = i; c < n; ++c) system[j * n + c] -= share * system[i * n + c];
-      phi[j] -= share * phi[i];
-    }
-  factor_ = 0.0;
-  for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t c = i + 1; c < n; ++c) phi[i] -= system[i * n + c] * phi[c];
-    phi[i] /= system[i * n + i];
-    factor_ += t.weight[i] * phi[i];
-  }
-  for (std::size_t q = 0; q < at_.size(); ++q) {
-    double pressure = 0.0;
-    for (std::size_t i = 0; i < n; ++i) pressure += t.weight[i] * phi[i] * std::cos(at_[q] * t.at[i]);
-    weight_[q] *= pressure;
-  }
+  const LayerEquation equation(ratio, poisson);
+  factor_ = equation.sum(0);
+  at_ = equation.at;
+  for (std::size_t q = 0; q < at_.size(); ++q) weight_.push_back(equation.weight[q] * equation.pressure(0, q));
+}
+
+LayerPress sphere_on_layer(double radius_over_thickness, double poisson) {
+  const double ratio = radius_over_thickness;
+  const LayerEquation equation(ratio, poisson);
+  const double depth = ratio * ratio * equation.at_edge(1) / equation.at_edge(0), factor = equation.sum(0);
+  return {depth, 2 * ratio * (depth * factor - ratio * ratio * equation.sum(1)), factor};
 }
 
 double BondedLayer::surface(double radii) const {
