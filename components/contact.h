@@ -28,7 +28,7 @@ struct ContactEffects {
   double finest = 0.0;         // [m]   finest wavelength of texture and relief that is felt at this speed
 };
 
-// What the tip has done to the surface here. Written by friction_feedback; all zero where nothing breaks or yields.
+// The damage that the tip has done to the surface here. Written by friction_feedback; all zero where nothing breaks or yields.
 struct ContactDamage {
   std::uint32_t broken = 0;  // layers that it has gone through
   bool relaxes = false;      // the outer layer broke: its dent recovers from the next tick on

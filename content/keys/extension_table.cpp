@@ -326,7 +326,7 @@ void scale_with_young(LevelNode& node) {
   node.scaled_with_young = share;
 }
 
-// What layers and yielding cannot be combined with.
+// Keys that layers and yielding cannot be combined with.
 std::optional<Note> settle_damage(const Deformable& it) {
   for (std::size_t i = 0; i < it.layers.size(); ++i)
     if (!(it.layers[i].force > 0.0) && !(it.layers[i].energy > 0.0))

@@ -22,7 +22,7 @@ void find_in_node_extensions(const Json& extensions, const std::string& pointer,
                              const std::vector<std::string>& node_names, Findings& findings);
 void find_in_scene_extensions(const Json& extensions, const std::string& pointer, Findings& findings);
 
-// Checks across nodes: named devices exist and have a PLIANT_haptic_device.
+// Checks across nodes: named devices exist and have a PLIANT_haptic_device, named probes a PLIANT_probe.
 Status check_references(const Level& level);
 
 // The PLIANT_* extensions of a node or scene as JSON: keys that differ from their default, and stated keys. `before`

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "components/varying.h"
-#include "content/keys/extension_table.h"
 #include "content/level/varying_keys.h"
 
 namespace pliant {
@@ -46,13 +45,13 @@ Status add_varying(SpawnState& state, std::size_t n) {
     for (const LevelChannel& channel : animation.channels) {
       if (channel.property != NodeProperty::kKey || channel.node != static_cast<std::int32_t>(n)) continue;
       if (Status s = check_key(state, n, deformable, channel.key); !s) return s;
-      const Range range = find_key(*find_extension("deformable"), channel.key)->range;
-      for (const auto member : find_varying_key(channel.key)->members) {
+      const VaryingKey& key = *find_varying_key(channel.key);
+      for (const auto member : key.members) {
         const auto same = [&](const ParameterTrack& other) { return other.member == member; };
         if (std::any_of(varying.tracks.begin(), varying.tracks.end(), same))
           twice = true;
         else
-          varying.tracks.push_back({member, range, channel.track});
+          varying.tracks.push_back({member, key.range, channel.track});
       }
       if (channel.key == "contact_damping") deformable.contact_damping_material = false;
     }

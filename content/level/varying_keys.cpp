@@ -12,13 +12,14 @@ constexpr const char* kExtension = "/extensions/PLIANT_deformable/";
 
 const std::vector<VaryingKey>& varying_keys() {
   using D = DeformableParameters;
-  static const std::vector<VaryingKey> keys{{"stiffness", {&D::stiffness}},
-                                            {"contact_damping", {&D::contact_damping}},
-                                            {"damping_ratio", {&D::damping_ratio}},
-                                            {"friction", {&D::friction_static, &D::friction_sliding}},
-                                            {"friction_static", {&D::friction_static}},
-                                            {"friction_sliding", {&D::friction_sliding}},
-                                            {"friction_viscous", {&D::friction_viscous}}};
+  using R = DeformableRange;
+  static const std::vector<VaryingKey> keys{{"stiffness", R::kStiffness, {&D::stiffness}},
+                                            {"contact_damping", R::kContactDamping, {&D::contact_damping}},
+                                            {"damping_ratio", R::kDampingRatio, {&D::damping_ratio}},
+                                            {"friction", kFrictionRange, {&D::friction_static, &D::friction_sliding}},
+                                            {"friction_static", kFrictionRange, {&D::friction_static}},
+                                            {"friction_sliding", kFrictionRange, {&D::friction_sliding}},
+                                            {"friction_viscous", R::kViscous, {&D::friction_viscous}}};
   return keys;
 }
 

@@ -10,6 +10,7 @@ namespace pliant {
 
 struct VaryingKey {
   const char* key;
+  Range range;
   std::vector<double DeformableParameters::*> members;
 };
 const std::vector<VaryingKey>& varying_keys();

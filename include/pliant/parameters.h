@@ -229,7 +229,7 @@ struct DeviceParameters {
   double max_slew = 1000.0;  // [N/s] of the norm of the change; released force falls by at least 1000 N/s
 };
 
-// What an effect does to a probe, without a surface (methods.md 1.13).
+// Effect on a probe, without a surface (methods.md 1.13).
 enum class EffectKind : std::uint8_t {
   kViscosity,   // drag
   kGravity,     // constant force

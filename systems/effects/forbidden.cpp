@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-// What U is multiplied by near a side: the smooth step S of t = s / e, s the distance to the side. e = d h / (d + h) is
+// Factor of U near a side: the smooth step S of t = s / e, s the distance to the side. e = d h / (d + h) is
 // nearly the depth d, and below h, so that the middle of the region has all of U. Derivatives by d and s.
 struct Fade {
   double value = 1.0, by_d = 0.0, by_s = 0.0, by_dd = 0.0, by_ds = 0.0, by_ss = 0.0;

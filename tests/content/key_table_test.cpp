@@ -11,6 +11,7 @@
 
 #include "content/keys/enum_words.h"
 #include "content/keys/extension_table.h"
+#include "content/level/varying_keys.h"
 #include "content/keys/extensions.h"
 #include "content/level_file.h"
 #include "systems/touch/model/local_model.h"
@@ -95,6 +96,15 @@ struct Bare {
   }
   void* owner(const Extension& extension) { return extension.on_scene ? static_cast<void*>(&level) : &node; }
 };
+
+TEST(KeyTable, AKeyThatVariesKeepsItsRange) {
+  for (const VaryingKey& each : varying_keys()) {
+    const Key* key = find_key(*find_extension("deformable"), each.key);
+    ASSERT_NE(key, nullptr) << each.key;
+    EXPECT_EQ(each.range.min, key->range.min) << each.key;
+    EXPECT_EQ(each.range.max, key->range.max) << each.key;
+  }
+}
 
 TEST(KeyTable, EveryDefaultIsThatOfTheComponentAndIsValid) {
   for (const SchemaFile& file : extension_schemas()) {

@@ -83,7 +83,7 @@ TEST(SphereLaw, OnALayerItIsTheSolutionOfItsEquationAtEveryContactRadius) {
     }
 }
 
-// What a probe feels on a block of known modulus.
+// Force of a probe on a block of known modulus.
 TEST(SphereLaw, AProbeFeelsIt) {
   struct Case {
     SphereForce sphere;

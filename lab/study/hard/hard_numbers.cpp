@@ -191,7 +191,7 @@ HardFigure bad_edits(const HardSetting&) {
     ++keys;
     for (const double bad : kBadNumbers) {
       LevelNode broken = node;
-      key.set(&broken, bad);
+      key.set(&broken, filled(key, bad));
       if (!is_said(check(*broken.deformable, "organ"), key.name, "organ"))
         passed.add(++count, fmt::format("{} {:g}", key.name, bad));
     }

@@ -7,8 +7,8 @@
 namespace pliant {
 
 // The triangles of an object that another surface covers while a seam is closed, connected to the seam: those behind
-// the surface that ends there, with a triangle of the other at all their corners that faces them and is no farther than
-// a crack is wide. The seams are known. Allocates.
+// the surface that ends there, with a triangle of the other at all their corners that faces them at most as far
+// as a crack is wide. The seams are known. Allocates.
 void find_inner_walls(const World& world, TouchState& touch, std::uint32_t slot);
 
 // Whether the triangle is one of those now.

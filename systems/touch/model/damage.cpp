@@ -104,7 +104,7 @@ void draw_set(const ContactSearch& search, const SourceState& source, const SetD
   }
 }
 
-// Makes the set at the foot `depth` deep. False: there is no room for another dent.
+// Makes the set at the foot `depth` deep. False: the list is full.
 bool deepen(const ContactSearch& search, const Deformable& deformable, const SourceState& source, double depth) {
   ObjectState& object = search.object;
   const dvec3 p = source.place.p, n = source.place.normal;

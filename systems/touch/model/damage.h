@@ -1,4 +1,4 @@
-// What a probe leaves in a surface: layers that it broke through, and dents that stay (methods.md 1.14). Neither raises
+// Damage that a probe leaves in a surface: layers that it broke through, and dents that stay (methods.md 1.14). Neither raises
 // the stored energy.
 #pragma once
 

@@ -226,6 +226,49 @@ void grip_tips(World& world, const ObjectState& object, const Deformable& deform
   }
 }
 
+// The contacts that store energy, settled ones first.
+void press_contacts(const ContactSearch& search, const Deformable& deformable, const Pose& pose, Pressed& pressed,
+                    std::vector<LoadedContact>& loaded) {
+  World& world = search.world;
+  Registry& registry = world.registry;
+  ObjectState& object = search.object;
+  const Mesh& mesh = search.mesh;
+  const bool uneven = object.texture.count > 0 || (mesh.relief && deformable.relief > 0);
+  const std::span<Pressing> pressing = pressed.pressing;
+  std::size_t& count = pressed.count;
+  SharedDents& dents = pressed.dents;
+  for (const bool settled : {true, false}) {
+    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
+      SourceState& source = object.sources[i];
+      if (!source.tracked || source.tip.drawn || source.settled != settled) continue;
+      Contact& contact = registry.get<Contact>(source.contact);
+      advance_free_surface(contact, source.place, mesh, object.motion);
+      pressing[count] = {&source, &contact, {}, 0.0, {}, 0.0, {}, {}, source.place.gradient, {}};
+      if (contact.height < 0) pressing[count].velocity = velocity_on(registry, pose, contact, source, search.tick);
+      if (contact.height < 0 && uneven) {
+        pressing[count].raised = raise(world, object, deformable, mesh, pressing[count], search.tick);
+        pressing[count].gradient -= pressing[count].raised.gradient;
+      }
+      if (contact.height < 0 && !object.sets.empty()) {
+        const Raised set = set_under(object, source.place, source.axis);
+        pressing[count].raised.height += set.height;
+        pressing[count].raised.gradient += set.gradient;
+        pressing[count].gradient -= set.gradient;
+      }
+      const bool stores = contact.height < 0 && (settled ? store(search, deformable, pressing[count], loaded[count])
+                                                         : settle(search, deformable, pressed, loaded));
+      if (stores) {
+        ++count;
+        if (settled) dents.add(search, pressing.first(count));
+      } else {
+        dents.remove(count);
+        if (contact.height < 0 && !std::isfinite(pressing[count].stored.energy)) world.dropped |= kDroppedNonFinite;
+        release(contact);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void friction_feedback(World& world, Tick tick) {
@@ -240,42 +283,12 @@ void friction_feedback(World& world, Tick tick) {
     const HeightField& field = world.fields[deformable.field];
     const ContactSearch search{world, object, mesh, field, tick};
     const Pose& pose = registry.get<Pose>(object.entity);
-    const bool uneven = object.texture.count > 0 || (mesh.relief && deformable.relief > 0);
     std::vector<LoadedContact>& loaded = world.touch->loaded;
     Pressed pressed;
     const std::span<Pressing> pressing = pressed.pressing;
-    std::size_t& count = pressed.count;
+    press_contacts(search, deformable, pose, pressed, loaded);
+    const std::size_t count = pressed.count;
     SharedDents& dents = pressed.dents;
-    for (const bool settled : {true, false}) {
-      for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
-        SourceState& source = object.sources[i];
-        if (!source.tracked || source.tip.drawn || source.settled != settled) continue;
-        Contact& contact = registry.get<Contact>(source.contact);
-        advance_free_surface(contact, source.place, mesh, object.motion);
-        pressing[count] = {&source, &contact, {}, 0.0, {}, 0.0, {}, {}, source.place.gradient, {}};
-        if (contact.height < 0) pressing[count].velocity = velocity_on(registry, pose, contact, source, tick);
-        if (contact.height < 0 && uneven) {
-          pressing[count].raised = raise(world, object, deformable, mesh, pressing[count], tick);
-          pressing[count].gradient -= pressing[count].raised.gradient;
-        }
-        if (contact.height < 0 && !object.sets.empty()) {
-          const Raised set = set_under(object, source.place, source.axis);
-          pressing[count].raised.height += set.height;
-          pressing[count].raised.gradient += set.gradient;
-          pressing[count].gradient -= set.gradient;
-        }
-        const bool stores = contact.height < 0 && (settled ? store(search, deformable, pressing[count], loaded[count])
-                                                           : settle(search, deformable, pressed, loaded));
-        if (stores) {
-          ++count;
-          if (settled) dents.add(search, pressing.first(count));
-        } else {
-          dents.remove(count);
-          if (contact.height < 0 && !std::isfinite(pressing[count].stored.energy)) world.dropped |= kDroppedNonFinite;
-          release(contact);
-        }
-      }
-    }
     object.stored = 0.0;
     const bool gives_way = !deformable.layers.empty() || deformable.yield_force > 0;
     if (count == 0) {

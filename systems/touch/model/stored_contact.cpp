@@ -46,8 +46,12 @@ double energy_before(const ObjectState& object, const Deformable& deformable, co
   if (object.stiffness_before == 0.0 || object.stiffness_before == deformable.stiffness) return energy;
   const double share = object.stiffness_before / deformable.stiffness;
   ContactLaw before = law;
+  RestoringLaw curve = *law.law;
+  curve.cubic /= share;
+  before.law = &curve;
   before.stiffness *= share;
-  before.law.cubic /= share;
+  before.unlayered *= share;
+  before.arm /= share;
   return before.stored(depth).energy;
 }
 

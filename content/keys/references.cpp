@@ -1,0 +1,35 @@
+#include <algorithm>
+
+#include "content/keys/extension_table.h"
+#include "content/keys/extensions.h"
+
+namespace pliant {
+
+Status check_references(const Level& level) {
+  std::vector<std::string> devices, probes;
+  for (const LevelNode& node : level.nodes) {
+    if (node.device) devices.push_back(node.name);
+    if (node.probe) probes.push_back(node.name);
+  }
+  const auto check = [&](const LevelNode& node, const char* extension, const std::string& device) -> Status {
+    if (device.empty() || std::find(devices.begin(), devices.end(), device) != devices.end()) return Done{};
+    return Error{node.name + "." + extension + ".device",
+                 "names '" + device.substr(0, 100) + "', which is no node with a PLIANT_haptic_device",
+                 suggestion(device, devices), "level.unknown_device"};
+  };
+  for (const LevelNode& node : level.nodes) {
+    if (node.effect)
+      for (const std::string& name : node.effect->probes)
+        if (std::find(probes.begin(), probes.end(), name) == probes.end())
+          return Error{node.name + ".effect.probes",
+                       "names '" + name.substr(0, 100) + "', which is no node with a PLIANT_probe",
+                       suggestion(name, probes), "name.unknown"};
+    if (node.probe)
+      if (const Status status = check(node, "probe", node.probe_device); !status) return status;
+    if (node.handle)
+      if (const Status status = check(node, "handle", node.handle->device); !status) return status;
+  }
+  return Done{};
+}
+
+}  // namespace pliant
