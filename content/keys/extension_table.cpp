@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "content/keys/bonded_layer.h"
+#include "components/bonded_layer.h"
 #include "content/keys/enum_words.h"
 #include "content/level/spawn_soft.h"
 #include "content/mesh/mesh_crease.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "content/keys/bonded_layer.h"
+#include "components/bonded_layer.h"
 
 namespace pliant {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "content/keys/bonded_layer.h"
+#include "components/bonded_layer.h"
 #include "content/keys/extensions.h"
 #include "engine/choice/alone.h"
 

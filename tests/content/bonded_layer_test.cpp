@@ -1,5 +1,5 @@
 // The bonded layer against published values and its limits.
-#include "content/keys/bonded_layer.h"
+#include "components/bonded_layer.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "content/keys/bonded_layer.h"
+#include "components/bonded_layer.h"
 #include "content/keys/extensions.h"
 #include "content/level_file.h"
 #include "engine/choice/model_choice.h"

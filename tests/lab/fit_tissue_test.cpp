@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "content/keys/bonded_layer.h"
+#include "components/bonded_layer.h"
 #include "lab/fit/press_bodies.h"
 #include "lab/fit/surface_check.h"
 #include "lab/fit/surface_fit.h"
