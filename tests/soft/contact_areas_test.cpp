@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -12,8 +13,9 @@
 namespace pliant {
 namespace {
 
-double total(const std::vector<double>& shares) {
-  return std::accumulate(shares.begin(), shares.end(), 0.0);
+double total(const std::vector<PressedShare>& shares) {
+  return std::accumulate(shares.begin(), shares.end(), 0.0,
+                         [](double sum, const PressedShare& share) { return sum + share.area; });
 }
 
 TEST(ContactAreas, SharesAddUpToThePatch) {
@@ -21,10 +23,12 @@ TEST(ContactAreas, SharesAddUpToThePatch) {
   std::vector<PressedPoint> points;
   for (int i = 0; i < 7; ++i)
     for (int k = 0; k < 5; ++k) points.push_back({0.5 * i * x + 0.5 * k * z, up});
-  const std::vector<double> even = shares_of_area(points, 1.0);
+  const std::vector<PressedShare> even = shares_of_area(points, 1.0);
   EXPECT_NEAR(total(even), 3.0 * 2.0, 1e-9);
-  EXPECT_NEAR(even[6], 0.25, 1e-12) << "inside";
-  EXPECT_NEAR(even[2], 0.125, 1e-12) << "on the rim";
+  EXPECT_NEAR(even[6].area, 0.25, 1e-12) << "inside";
+  EXPECT_NEAR(even[2].area, 0.125, 1e-12) << "on the rim";
+  EXPECT_LT(length(even[2].middle - 0.125 * x), 1e-12) << "inwards";
+  EXPECT_LT(length(even[6].middle), 1e-12);
 
   std::mt19937 random(2);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -39,15 +43,49 @@ TEST(ContactAreas, SharesAddUpToThePatch) {
 
 TEST(ContactAreas, PointsThatAreAloneFaceElsewhereOrCoincideShareNothingElse) {
   const dvec3 up(0, 1, 0);
-  EXPECT_EQ(shares_of_area({{dvec3(0), up}}, 0.7), std::vector<double>{0.7});
-  EXPECT_EQ(shares_of_area({{dvec3(0), up}, {dvec3(1, 0, 0), -up}}, 0.7), (std::vector<double>{0.7, 0.7}));
-  EXPECT_EQ(shares_of_area({{dvec3(0), up}, {dvec3(0), up}}, 0.7), (std::vector<double>{0.35, 0.35}));
+  EXPECT_EQ(shares_of_area({{dvec3(0), up}}, 0.7)[0].area, 0.7);
+  for (const PressedShare& share : shares_of_area({{dvec3(0), up}, {dvec3(1, 0, 0), -up}}, 0.7))
+    EXPECT_EQ(share.area, 0.7);
+  for (const PressedShare& share : shares_of_area({{dvec3(0), up}, {dvec3(0), up}}, 0.7)) EXPECT_EQ(share.area, 0.35);
   // Two patches far apart: what is between them belongs to neither.
   std::vector<PressedPoint> two;
   for (const double far : {0.0, 50.0})
     for (int i = 0; i < 4; ++i)
       for (int k = 0; k < 4; ++k) two.push_back({dvec3(far + i, 0, k), up});
   EXPECT_LT(total(shares_of_area(two, 1.0)), 2 * 16.0);
+}
+
+// Points of a mesh under a flat punch: those on its rim act at two thirds of the way to the middle of their area.
+TEST(ContactAreas, AFlatPunchOfPointsIsAFlatPunch) {
+  constexpr double kPunch = 4.0;
+  for (const double spacing : {1.0, 1.4}) {
+    std::vector<PressedPoint> points;
+    for (int i = 0; i < 32; ++i)
+      points.push_back({kPunch * dvec3(std::cos(M_PI * i / 16), 0, std::sin(M_PI * i / 16)), dvec3(0, 1, 0)});
+    for (int i = -4; i <= 4; ++i)
+      for (int k = -4; k <= 4; ++k)
+        if (spacing * std::hypot(i, k) < kPunch - 0.3) points.push_back({spacing * dvec3(i, 0, k), dvec3(0, 1, 0)});
+    const std::vector<PressedShare> shares = shares_of_area(points, 0.866);
+    const auto count = static_cast<Eigen::Index>(points.size());
+    std::vector<LocalPlace> places;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      places.push_back({points[i].at + 2.0 / 3.0 * shares[i].middle,
+                        dvec3(0, 1, 0),
+                        kFlatOfDisc * std::sqrt(shares[i].area / M_PI),
+                        1e4,
+                        {},
+                        0.0});
+    const LocalElasticity tissue{1.0, 0.45};
+    Eigen::MatrixXd W(count, count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      for (Eigen::Index j = 0; j < count; ++j)
+        W(i, j) = local_compliance(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(j)], tissue,
+                                   nullptr)(1, 1) +
+                  1 / (2 * tissue.reduced() * 1e4);  // what the smeared load takes
+    const Vector force = W.ldlt().solve(Vector::Ones(count));
+    EXPECT_NEAR(force.sum() / (2 * tissue.reduced() * kPunch), 1.0, 0.01) << spacing;
+    EXPECT_GT(force.minCoeff(), 0.0);
+  }
 }
 
 TEST(TipLaw, AloneItIsHertzAndInSeriesItsForceIsTheRoot) {

@@ -108,25 +108,27 @@ SpherePress press_sphere(const SplitBlock& block, double radius, double depth, d
   return out;
 }
 
-// Hertz on a layer, on cells up to twice as wide as the contact; today's lattice is beside it.
+// Hertz on a layer: the contact is a third of a cell, a half and two thirds wide. The lattice alone is beside it.
 TEST(SplitContact, ASphereOnCoarseCellsIsHertzSphere) {
-  SplitBlock block{.half_width = 0.024, .thickness = 0.02, .cell = 0.004, .squares = 12};
-  for (const auto& [radius, depth] : {std::pair{0.002, 0.0008}, {0.004, 0.001}, {0.008, 0.001}}) {
-    const LayerSphere layer(radius, block.thickness, block.poisson, 2 * depth);
-    for (const dvec2 at : {dvec2(0.0, 0.0), dvec2(0.0013, 0.0021)}) {
-      block.contact = SoftContact::kSplit;
-      const SpherePress split = press_sphere(block, radius, depth, at);
-      const double truth = block.reduced() * layer.force(split.depth);
-      block.contact = SoftContact::kLattice;
-      const SpherePress plain = press_sphere(block, radius, depth, at);
-      const double of_plain = block.reduced() * layer.force(plain.depth);
-      std::printf(
-          "R %.1f mm: depth %.3f mm, split %.4f N, truth %.4f N (%+.2f %%), felt %.4f; lattice %+.0f %%; aside %.4f\n",
-          1e3 * radius, 1e3 * split.depth, split.force, truth, 100 * (split.force / truth - 1), split.felt,
-          100 * (plain.force / of_plain - 1), split.aside);
-      EXPECT_NEAR(split.force, truth, 0.03 * truth);
-      EXPECT_NEAR(split.felt, split.force, 0.01 * split.force);
-    }
+  struct Row {
+    double radius, depth;  // [m]
+    dvec2 at;
+    bool lattice_too;
+  };
+  for (const Row& row : {Row{0.002, 0.0008, dvec2(0.0013, 0.0021), true},
+                         {0.004, 0.001, dvec2(0), false},
+                         {0.008, 0.001, dvec2(0.0007, -0.0012), false}}) {
+    SplitBlock block{.half_width = 0.024, .thickness = 0.02, .cell = 0.004, .squares = 12};
+    const LayerSphere layer(row.radius, block.thickness, block.poisson, 2 * row.depth);
+    const SpherePress split = press_sphere(block, row.radius, row.depth, row.at);
+    const double truth = block.reduced() * layer.force(split.depth);
+    EXPECT_NEAR(split.force, truth, 0.02 * truth) << row.radius;
+    EXPECT_NEAR(split.felt, split.force, 0.01 * split.force) << row.radius;
+    EXPECT_LT(split.aside, 0.005 * split.force) << row.radius;
+    if (!row.lattice_too) continue;
+    block.contact = SoftContact::kLattice;
+    const SpherePress plain = press_sphere(block, row.radius, row.depth, row.at);
+    EXPECT_GT(plain.force, 2.0 * block.reduced() * layer.force(plain.depth));
   }
 }
 
@@ -170,10 +172,12 @@ TEST(SplitContact, AFlatPunchOnABlockOfCellsOfItsRadiusHasHayesForce) {
     const double force = stage.contact_force(punch, tissue).y;
     const double truth =
         2 * block.reduced() * kRadius * bonded_layer_factor(kRadius / block.thickness, block.poisson) * depth;
-    std::printf("punch (%s): depth %.4f mm, %.5f N, truth %.5f N: %+.1f %%; %zu contacts\n",
-                contact == SoftContact::kSplit ? "split" : "lattice", 1e3 * depth, force, truth,
-                100 * (force / truth - 1), stage.soft().contacts.size());
-    if (contact == SoftContact::kSplit) EXPECT_NEAR(force, truth, 0.05 * truth);
+    std::printf("punch (%s): %+.1f %%\n", contact == SoftContact::kSplit ? "split" : "lattice",
+                100 * (force / truth - 1));
+    if (contact == SoftContact::kSplit)
+      EXPECT_NEAR(force, truth, 0.05 * truth);
+    else
+      EXPECT_GT(force, 1.7 * truth);
   }
 }
 

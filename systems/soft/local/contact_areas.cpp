@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "systems/soft/collide/farthest_axis.h"
 
@@ -10,15 +12,21 @@ namespace {
 
 constexpr double kFacesAlike = 0.7;        // [1] cosine
 constexpr double kLeastPatchShare = 0.06;  // [1] of `alone`: the hull's corners are not needles
+constexpr double kRow = 0.1;               // [1] of `alone`: a smaller hull is a row
+constexpr double kSamePlace = 1e-12;       // [1] of `alone`: squared distance
 constexpr std::size_t kNeighbours = 6;
 
-double area_of(const std::vector<dvec2>& polygon) {
-  double twice = 0.0;
+// Area and its middle.
+std::pair<double, dvec2> area_of(const std::vector<dvec2>& polygon) {
+  double area = 0.0;
+  dvec2 moment(0.0);
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const dvec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-    twice += a.x * b.y - a.y * b.x;
+    const double part = 0.5 * (a.x * b.y - a.y * b.x);
+    area += part;
+    moment += part / 3.0 * (a + b);
   }
-  return 0.5 * twice;
+  return {area, area > 0.0 ? moment / area : dvec2(0.0)};
 }
 
 // Andrew's monotone chain; counter-clockwise.
@@ -42,53 +50,63 @@ std::vector<dvec2> hull_of(std::vector<dvec2> points) {
   return hull;
 }
 
-// The part of a convex polygon where dot(normal, x) <= most.
-std::vector<dvec2> cut(const std::vector<dvec2>& polygon, dvec2 normal, double most) {
-  std::vector<dvec2> out;
+// Leaves the part of a convex polygon where dot(normal, x) <= most.
+void cut(dvec2 normal, double most, std::vector<dvec2>& polygon, std::vector<dvec2>& scratch) {
+  scratch.clear();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const dvec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
     const double over_a = dot(normal, a) - most, over_b = dot(normal, b) - most;
-    if (over_a <= 0.0) out.push_back(a);
-    if ((over_a <= 0.0) != (over_b <= 0.0)) out.push_back(a + over_a / (over_a - over_b) * (b - a));
+    if (over_a <= 0.0) scratch.push_back(a);
+    if ((over_a <= 0.0) != (over_b <= 0.0)) scratch.push_back(a + over_a / (over_a - over_b) * (b - a));
   }
-  return out;
+  polygon.swap(scratch);
+}
+
+// Of the point at the origin of a plane, among all of them; false: they are in a row.
+bool find_share(const std::vector<dvec2>& points, double reach, double alone, double& area, dvec2& middle) {
+  std::vector<dvec2> cell = hull_of(points), scratch;
+  if (cell.size() < 3 || area_of(cell).first < kRow * alone) return false;
+  for (int k = 0; k < 8; ++k) cut(dvec2(std::cos(M_PI * k / 4), std::sin(M_PI * k / 4)), reach, cell, scratch);
+  double same = 0.0;  // points at this place, which share its cell
+  for (const dvec2 other : points) {
+    const double square = dot(other, other);
+    if (square > kSamePlace * alone)
+      cut(other, 0.5 * square, cell, scratch);
+    else
+      same += 1.0;
+  }
+  std::tie(area, middle) = area_of(cell);
+  area = std::max(kLeastPatchShare * alone, area / same);
+  return true;
 }
 
 }  // namespace
 
-std::vector<double> shares_of_area(const std::vector<PressedPoint>& points, double alone) {
-  std::vector<double> out;
+std::vector<PressedShare> shares_of_area(const std::vector<PressedPoint>& points, double alone) {
+  std::vector<PressedShare> out;
+  std::vector<dvec2> near;
+  std::vector<double> distances;
   for (const PressedPoint& point : points) {
     const dvec3 aside = farthest_axis(point.normal), x = normalize(aside - dot(aside, point.normal) * point.normal),
                 y = cross(point.normal, x);
-    std::vector<dvec2> near;
-    std::vector<double> distances;
+    near.clear(), distances.clear();
     for (const PressedPoint& other : points) {
       if (dot(point.normal, other.normal) < kFacesAlike) continue;
       near.emplace_back(dot(other.at - point.at, x), dot(other.at - point.at, y));
-      const double distance = length(near.back());
-      if (distance > 1e-6 * std::sqrt(alone)) distances.push_back(distance);
+      const double square = dot(near.back(), near.back());
+      if (square > kSamePlace * alone) distances.push_back(std::sqrt(square));
     }
+    PressedShare share{alone, dvec3(0.0)};
     if (distances.size() < 2) {
-      out.push_back(alone / static_cast<double>(near.size() - distances.size()));
-      continue;
+      share.area /= static_cast<double>(near.size() - distances.size());
+    } else {
+      const auto farthest =
+          distances.begin() + static_cast<std::ptrdiff_t>(std::min(kNeighbours, distances.size()) - 1);
+      std::nth_element(distances.begin(), farthest, distances.end());
+      dvec2 middle(0.0);
+      if (find_share(near, *farthest, alone, share.area, middle)) share.middle = middle.x * x + middle.y * y;
     }
-    const std::size_t n = std::min(kNeighbours, distances.size()) - 1;
-    std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(n), distances.end());
-    const double most = distances[n];
-    std::vector<dvec2> cell = hull_of(near);
-    const bool flat = cell.size() < 3 || area_of(cell) < 0.1 * alone;
-    for (int k = 0; k < 8 && !flat; ++k) cell = cut(cell, dvec2(std::cos(M_PI * k / 4), std::sin(M_PI * k / 4)), most);
-    std::size_t same = 0;  // points at this place, which share its cell
-    for (const dvec2 other : near) {
-      const double square = dot(other, other);
-      if (!(square > 1e-12 * alone))
-        ++same;
-      else if (!flat && cell.size() >= 3)
-        cell = cut(cell, other, 0.5 * square);
-    }
-    const double area = flat ? alone : cell.size() < 3 ? 0.0 : area_of(cell);
-    out.push_back(std::max(kLeastPatchShare * alone, area / static_cast<double>(same)));
+    out.push_back(share);
   }
   return out;
 }

@@ -5,7 +5,7 @@
 
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/collide/contact_memory.h"
-#include "systems/soft/collide/farthest_axis.h"
+#include "systems/soft/collide/surface_walk.h"
 #include "systems/soft/local/contact_areas.h"
 #include "systems/soft/local/smearing_surface.h"
 #include "systems/soft/local/tip_law.h"
@@ -23,6 +23,10 @@ constexpr double kTurned = 0.9;          // [1] cosine from which a load is smea
 constexpr double kLeastBend = -0.5;      // [1] of 1 / R_s: a hollow as narrow as the tip touches elsewhere
 constexpr double kNarrowestPair = 0.05;  // [1] of R: pair terms of coincident tips stay finite
 constexpr int kTipRounds = 3;            // place -> frame -> place
+// [1] of the way to the middle of an area on the rim: under a sharp one pressure grows as one over the root of the
+// distance from it, so its centre is a third of the strip inside, the area's a half.
+constexpr double kCentreOfRim = 2.0 / 3.0;
+constexpr std::size_t kMostAround = 24;  // triangles at a vertex that are looked at
 constexpr double kVertexArea = 0.866;    // [1] of a vertex's part of a mesh, over the square of its edges
 
 const SoftBodyState* split_tissue(const Body& body) {
@@ -55,13 +59,59 @@ double bend_at(const Mesh& mesh, std::uint32_t triangle) {
   return std::isfinite(sum) ? sum / 3.0 : 0.0;
 }
 
-// The side of a contact of meshes on split tissue. Returns how far [m] along the contact's normal its place moves.
-double smear_side(const SoftBodyState& tissue, const ContactPoint& contact, bool is_a, double own, SurfacePoint& mine) {
-  const dvec3 outward = is_a ? -contact.normal : contact.normal, at = at_rest(*tissue.collision_mesh, mine);
+// The same point of a surface, on that of the triangles at it which faces `outward` most.
+SurfacePoint on_facing_triangle(const Body& body, const SurfacePoint& point, dvec3 outward) {
+  const Mesh& mesh = *body.collision_mesh;
+  const auto faces = [&](std::uint32_t t) {
+    const uvec3 c = mesh.triangles[t];
+    const std::vector<dvec3>& x = body.surface_position;
+    const dvec3 n = cross(x[c.y] - x[c.x], x[c.z] - x[c.x]);
+    return dot(n, n) > 0.0 ? dot(normalize(n), outward) : -1.0;
+  };
+  std::vector<SurfacePoint> around{point};
+  SurfacePoint best = point;
+  double most = faces(point.triangle);
+  for (std::size_t i = 0; i < around.size() && around.size() < kMostAround; ++i) {
+    const SurfacePoint here = around[i];
+    const uvec3 corners = mesh.triangles[here.triangle];
+    for (int edge = 0; edge < 3; ++edge) {  // from corner `edge` to the next
+      const std::uint32_t next = mesh.across[here.triangle][edge];
+      const auto known = [&](const SurfacePoint& p) { return p.triangle == next; };
+      if (here.barycentric[(edge + 2) % 3] != 0.0 || next == kBorder ||
+          std::any_of(around.begin(), around.end(), known))
+        continue;
+      SurfacePoint there = here;
+      there.triangle = next;
+      there.barycentric = dvec3(0.0);
+      for (int k = 0; k < 3; ++k)
+        for (int of = 0; of < 3; ++of)
+          if (mesh.triangles[next][k] == corners[of]) there.barycentric[k] = here.barycentric[of];
+      if (there.barycentric.x + there.barycentric.y + there.barycentric.z < 0.5) continue;  // no common edge
+      around.push_back(there);
+      if (faces(next) > most) most = faces(next), best = there;
+    }
+  }
+  return best;
+}
+
+// Moves both sides of a contact to the centre of its share of the pressure: that of a point on the rim is on one side
+// of it. Action and reaction stay on one line. Where one has no surface, the contact stays.
+void move_to_centre(const std::vector<std::unique_ptr<Body>>& bodies, dvec3 by, ContactPoint& c) {
+  const std::optional<SurfacePoint> a = walk(*bodies[c.body_a], on_facing_triangle(*bodies[c.body_a], c.a, -c.normal),
+                                             by),
+                                    b = walk(*bodies[c.body_b], on_facing_triangle(*bodies[c.body_b], c.b, c.normal),
+                                             by);
+  if (a && b) c.a = *a, c.b = *b;
+}
+
+// Smears the side of a contact of meshes on split tissue. Returns the way [m] from the point to the place of the
+// surface without its dent.
+dvec3 smear_side(const SoftBodyState& tissue, dvec3 outward, double own, SurfacePoint& mine) {
+  const dvec3 at = at_rest(*tissue.collision_mesh, mine);
   const SmearingSurface& surface = *tissue.smearing();
   dvec3 normal = normal_at_rest(*tissue.collision_mesh, mine);
   auto load = std::make_shared<SmearedLoad>(surface.load_at(at, normal, own));
-  if (load->nodes.empty()) return 0.0;
+  if (load->nodes.empty()) return dvec3(0.0);
   surface.follow(tissue.tissue().position(), *load);
   normal = outward * load->turn;
   if (dot(normal, load->place.normal) < kTurned) {
@@ -74,7 +124,7 @@ double smear_side(const SoftBodyState& tissue, const ContactPoint& contact, bool
   load->place.normal = outward * load->turn;
   const double widest = kWidestTip * load->place.smeared / load->place.lattice.normal;
   load->place.own = load->pair_radius = std::min(own, widest);
-  const double shift = dot(contact.normal, load->to_world(at) - mine.position);
+  const dvec3 shift = load->to_world(at) - mine.position;
   mine.smeared = std::move(load);
   return shift;
 }
@@ -239,13 +289,15 @@ void smear_meshes(const std::vector<std::unique_ptr<Body>>& bodies, std::vector<
     }
     const double edge =
         static_cast<double>(std::min(bodies[low]->collision_mesh->mean_edge, bodies[high]->collision_mesh->mean_edge));
-    const std::vector<double> areas = shares_of_area(of_pair, kVertexArea * edge * edge);
+    const std::vector<PressedShare> shares = shares_of_area(of_pair, kVertexArea * edge * edge);
     for (std::size_t k = first; k < last; ++k) {
       ContactPoint& c = contacts[points[k]];
-      const double own = kFlatOfDisc * std::sqrt(areas[k - first] / M_PI);
+      const double own = kFlatOfDisc * std::sqrt(shares[k - first].area / M_PI);
+      const dvec3 by = kCentreOfRim * shares[k - first].middle;
+      if (dot(by, by) > 0.0) move_to_centre(bodies, by, c);
       double moved = 0.0;
-      if (const auto* a = split_tissue(*bodies[c.body_a])) moved += smear_side(*a, c, true, own, c.a);
-      if (const auto* b = split_tissue(*bodies[c.body_b])) moved -= smear_side(*b, c, false, own, c.b);
+      if (const auto* a = split_tissue(*bodies[c.body_a])) moved += dot(c.normal, smear_side(*a, -c.normal, own, c.a));
+      if (const auto* b = split_tissue(*bodies[c.body_b])) moved -= dot(c.normal, smear_side(*b, c.normal, own, c.b));
       if (!c.a.smeared && !c.b.smeared) continue;
       c.gap += moved;
       c.depth = 0.0;
