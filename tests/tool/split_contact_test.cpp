@@ -172,8 +172,6 @@ TEST(SplitContact, AFlatPunchOnABlockOfCellsOfItsRadiusHasHayesForce) {
     const double force = stage.contact_force(punch, tissue).y;
     const double truth =
         2 * block.reduced() * kRadius * bonded_layer_factor(kRadius / block.thickness, block.poisson) * depth;
-    std::printf("punch (%s): %+.1f %%\n", contact == SoftContact::kSplit ? "split" : "lattice",
-                100 * (force / truth - 1));
     if (contact == SoftContact::kSplit)
       EXPECT_NEAR(force, truth, 0.05 * truth);
     else
