@@ -10,12 +10,11 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kLargestZ = 24.0;  // of z, from which 1 - L is below rounding
 
-struct Rule {
-  std::vector<double> at, weight;
-};
-// Gauss-Legendre rule on [0, 1]: roots of the polynomial by Newton's method.
-Rule gauss(int n) {
-  Rule out{std::vector<double>(static_cast<std::size_t>(n)), std::vector<double>(static_cast<std::size_t>(n))};
+}  // namespace
+
+// Roots of the polynomial by Newton's method.
+GaussRule gauss_rule(int n) {
+  GaussRule out{std::vector<double>(static_cast<std::size_t>(n)), std::vector<double>(static_cast<std::size_t>(n))};
   for (int i = 0; i < n; ++i) {
     double x = std::cos(kPi * (i + 0.75) / (n + 0.5)), slope = 0.0;
     for (int k = 0; k < 50; ++k) {
@@ -36,28 +35,31 @@ Rule gauss(int n) {
   return out;
 }
 
-double missing(double z, double k) {  // 1 - L(z), in terms of e^(-2z) to avoid overflow
+// In terms of e^(-2z) to avoid overflow.
+double missing_of_layer(double z, double poisson) {
+  const double k = 3 - 4 * poisson;
   const double e = std::exp(-2 * z), sinh2 = (1 - e * e) / 2, cosh2 = (1 + e * e) / 2;
   const double below = 2 * k * cosh2 + (1 + k * k + 4 * z * z) * e;
   return (2 * k * (cosh2 - sinh2) + (1 + k * k + 4 * z * z + 4 * z) * e) / below;
 }
 
+namespace {
+
 // Fredholm's equation at the points of a Gauss rule, for the right sides 1 and t^2.
 struct LayerEquation {
-  Rule t, z;
+  GaussRule t, z;
   std::vector<double> at, weight;  // x, and 2 / pi (1 - L) dx
   std::vector<double> phi[2];
 
   LayerEquation(double ratio, double poisson)
-      : t(gauss(12 + static_cast<int>(2 * ratio))), z(gauss(60 + static_cast<int>(20 * ratio))) {
+      : t(gauss_rule(12 + static_cast<int>(2 * ratio))), z(gauss_rule(60 + static_cast<int>(20 * ratio))) {
     const std::size_t n = t.at.size();
-    const double k = 3 - 4 * poisson;
     std::vector<double> system(n * n, 0.0), cosine(n);
     phi[0].assign(n, 1.0);
     for (const double each : t.at) phi[1].push_back(each * each);
     for (std::size_t q = 0; q < z.at.size(); ++q) {
       at.push_back(kLargestZ * z.at[q] * ratio);
-      weight.push_back(2 / kPi * ratio * kLargestZ * z.weight[q] * missing(kLargestZ * z.at[q], k));
+      weight.push_back(2 / kPi * ratio * kLargestZ * z.weight[q] * missing_of_layer(kLargestZ * z.at[q], poisson));
       for (std::size_t i = 0; i < n; ++i) cosine[i] = std::cos(at[q] * t.at[i]);
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n; ++j) system[i * n + j] -= weight[q] * cosine[i] * cosine[j] * t.weight[j];
@@ -113,7 +115,7 @@ LayerPress sphere_on_layer(double radius_over_thickness, double poisson) {
 
 double BondedLayer::surface(double radii) const {
   if (radii <= 1.0) return 1.0;
-  static const Rule turn = gauss(24);
+  static const GaussRule turn = gauss_rule(24);
   const double end = std::asin(1 / radii);
   double u = 2 / kPi * end;
   for (std::size_t q = 0; q < at_.size(); ++q) {

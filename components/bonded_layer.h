@@ -23,6 +23,15 @@ namespace pliant {
 // a / h from 0 (half-space: kappa 1) up to this; thinner layers are solved as if they had it. nu from 0 to 0.5.
 inline constexpr double kThinnest = 60.0;
 
+// Gauss-Legendre rule on [0, 1].
+struct GaussRule {
+  std::vector<double> at, weight;
+};
+GaussRule gauss_rule(int points);
+
+// [1] 1 - L(z): from z = 24 on below rounding.
+double missing_of_layer(double z, double poisson);
+
 class BondedLayer {
  public:
   BondedLayer(double radius_over_thickness, double poisson);

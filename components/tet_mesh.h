@@ -25,6 +25,13 @@ struct Embedding {
   std::array<double, 4> weight{1, 0, 0, 0};  // [1]
 };
 
+// A point of the surface's rest shape with its share of the surface, and the tetrahedron that it moves with.
+struct SurfaceSample {
+  dvec3 position{0}, normal{0, 1, 0};  // [m], [1] outward; object frame
+  double area = 0.0;                   // [m2]
+  Embedding embedding;
+};
+
 // Shape of the worst and of the median element.
 struct TetQuality {
   double smallest_dihedral = 0.0, largest_dihedral = 0.0;  // [rad] over all elements
@@ -59,7 +66,8 @@ struct TetMesh {
   std::uint32_t free_count = 0;    // nodes [0, free_count) are free
   std::uint32_t handle_count = 0;  // nodes [free_count, free_count + handle_count) belong to the rigid handle
   std::vector<Tet> tets;
-  std::vector<Embedding> embedding;  // of each vertex of the body's touch mesh (SoftBody::collision_mesh)
+  std::vector<Embedding> embedding;    // of each vertex of the body's touch mesh (SoftBody::collision_mesh)
+  std::vector<SurfaceSample> samples;  // of the touch mesh, a quarter of a cell apart; empty unless SoftContact::kSplit
   std::vector<CarriedPart> parts;
   // [m] Initial positions of the nodes, if not at rest (UnderGravity). Writer: prepare_soft.
   std::vector<dvec3> start;

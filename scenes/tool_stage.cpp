@@ -6,6 +6,7 @@
 
 #include "content/level/probe_shell.h"
 #include "content/mesh/mesh_build.h"
+#include "content/tets/surface_samples.h"
 #include "systems/prepare_world.h"
 #include "systems/schedule.h"
 #include "systems/tool/tool_step.h"
@@ -83,6 +84,7 @@ ToolStage::ToolStage(double soft_step, double rate_hz) : Stage(rate_hz), soft_sc
 Entity ToolStage::add_soft(TetMesh tets, SoftBody body, Pose pose, const Handle6* handle) {
   Mesh collision_mesh = built(border(tets));
   tets.embedding = embed(tets, collision_mesh);
+  if (body.contact == SoftContact::kSplit) tets.samples = sample_surface(collision_mesh, tets);
   body.collision_mesh = world.meshes.add(std::move(collision_mesh));
   body.tets = world.tet_meshes.add(std::move(tets));
   const Entity entity = world.registry.create();

@@ -68,6 +68,16 @@ constexpr const char* word_of(UnderGravity shape) {
   return nullptr;
 }
 
+constexpr const char* word_of(SoftContact contact) {
+  switch (contact) {
+    case SoftContact::kLattice:
+      return "lattice";
+    case SoftContact::kSplit:
+      return "split";
+  }
+  return nullptr;
+}
+
 constexpr const char* word_of(Carries carries) {
   switch (carries) {
     case Carries::kNothing:

@@ -481,6 +481,10 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(
       choice("carries", s(&S::carries),
              "drawn meshes that go with its tissue: none, or those inside of it or below its node (vessels, lumps)"));
+  keys.push_back(
+      choice("contact", s(&S::contact),
+             "what a contact acts on: `lattice`, the nodes beside it, too stiff where it is small against the cells; "
+             "`split`, the lattice with its force smeared and an analytic dent in series"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, s(&S::error),
                         "error budget: takes the cheapest unstated cell, soft step, solver and, of a tool, force whose "
                         "measured error is within it; 0: none"));

@@ -40,8 +40,8 @@ void visit_members(auto& io, auto& of, const DrawMesh*) {
   io(vertices, indices, parts);
 }
 void visit_members(auto& io, auto& of, const TetMesh*) {
-  auto& [name, nodes, free_count, handle_count, tets, embedding, parts, start, quality, report] = of;
-  ASSERT(parts.empty());  // what it carries belongs to a World
+  auto& [name, nodes, free_count, handle_count, tets, embedding, samples, parts, start, quality, report] = of;
+  ASSERT(parts.empty() && samples.empty());  // what it carries, and how it is touched, belongs to a World
   io(name, nodes, free_count, handle_count, tets, embedding, start, quality, report);
 }
 void visit_members(auto& io, auto& of, const TetReport*) {

@@ -16,6 +16,7 @@
 #include "content/level/spawn_soft.h"
 #include "content/level/spawn_state.h"
 #include "content/level/spawn_varying.h"
+#include "content/tets/surface_samples.h"
 
 namespace pliant {
 namespace {
@@ -154,6 +155,7 @@ class Spawner {
     const Entity entity = state_.entities[n];
     world_.registry.add<Pose>(entity, pose);
     SoftBody& body = world_.registry.add<SoftBody>(entity, *node.soft_body);
+    if (body.contact == SoftContact::kSplit) parts->tets.samples = sample_surface(parts->surface.mesh, parts->tets);
     body.tets = world_.tet_meshes.add(std::move(parts->tets));
     body.collision_mesh = world_.meshes.add(std::move(parts->surface.mesh));
     world_.registry.add<Drawable>(entity, {world_.draw_meshes.add(std::move(parts->surface.draw))});

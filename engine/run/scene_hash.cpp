@@ -56,7 +56,8 @@ void add_keys(Hash& hash, const Extension& extension, const void* owner, const f
   for (const Key& key : extension.keys) {
     if (key.alias || is_not_felt(extension, key)) continue;
     const Json value = key.get(owner);
-    if (key.name == "under_gravity" && value == "falls") continue;  // keeps the hash of scenes older than this key
+    // Keeps the hash of scenes older than these keys.
+    if ((key.name == "under_gravity" && value == "falls") || (key.name == "contact" && value == "lattice")) continue;
     add_text(hash, value.dump(-1, ' ', false, Json::error_handler_t::replace));
     if (key.type == KeyType::kText && value.is_string() && extension.name != "haptic_device")
       add_named_file(hash, folder, value.get<std::string>());

@@ -31,6 +31,7 @@ constexpr Fixed kFixed[] = {
     {"soft_body.mesh", "the tetrahedra are read when the session opens"},
     {"soft_body.pinned", "the tissue's unknowns are laid out when the session opens"},
     {"soft_body.solver", "it is made when the session opens"},
+    {"soft_body.contact", "what contacts act on is laid out when the session opens"},
     {"soft_body.error", "the model is chosen by it when the session opens"},
     {"rigid_body.fixed", "what moves is laid out when the session opens"},
     {"probe.length", "its tips are laid out when the session opens"},

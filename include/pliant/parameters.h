@@ -156,6 +156,12 @@ enum class UnderGravity : std::uint8_t {
   kModelled,  // the mesh is the equilibrium under gravity and the initial state; the weightless shape is computed
 };
 
+// What a contact on tissue acts on.
+enum class SoftContact : std::uint8_t {
+  kLattice,  // the lattice's nodes beside it: too stiff where it is small against the cells
+  kSplit,    // the lattice with its force smeared, and in series an analytic dent (systems/soft/local)
+};
+
 // Tissue: co-rotational FEM on tetrahedra (P2). Keys of PLIANT_soft_body.
 struct SoftBodyParameters {
   double young = 5e3;                    // [Pa]
@@ -174,6 +180,7 @@ struct SoftBodyParameters {
   double error = 0.0;  // [1] error budget from which unset model parameters are chosen; 0: none
   UnderGravity under_gravity = UnderGravity::kFalls;
   Carries carries = Carries::kNothing;
+  SoftContact contact = SoftContact::kLattice;
 };
 
 enum class Attachment : std::uint8_t { kSpring, kSlave };

@@ -86,6 +86,7 @@ void add_probes(const World& world, SoftState& soft) {
     auto tool = std::make_unique<RigidTool>(world.meshes[probe.shell], probe_mass(), probe_handle(probe, device),
                                             Pose{probe.position, probe.rotation});
     tool->kind = BodyKind::kProbe;
+    tool->tips = tips_of(probe, world.meshes[probe.shell]);
     tool->absent = true;  // until its device is sensed
     add(soft, entity, std::move(tool));
   }

@@ -18,6 +18,7 @@
 #include "systems/soft/contact/contact_point.h"
 #include "systems/soft/contact/contact_problem.h"
 #include "systems/soft/contact/delassus.h"
+#include "systems/soft/local/split_contacts.h"
 
 namespace pliant {
 
@@ -65,6 +66,7 @@ struct SoftState {
   std::vector<std::uint32_t> yielding;        // YieldingBody, one per Deformable
   std::unique_ptr<Proximity> proximity;
   std::vector<ContactPoint> contacts;  // of the last step, with their impulses
+  SplitContacts split;
   Delassus delassus;
   ContactProblem problem;
   SweepReport report;

@@ -112,8 +112,10 @@ void find_contacts(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   const std::uint64_t begin = now_ns();
+  soft.split.remember(soft.contacts);
   soft.proximity->find(soft.bodies, tick.dt, soft.contacts);
   leave_out_failed(soft);
+  soft.split.place(soft.bodies, tick.dt, soft.contacts);
   soft.tally.contacts_cut += cut_contacts(soft.bodies, kMostOfBody, soft.contacts);
   for (const std::uint32_t i : soft.yielding) soft.surface(i).place(soft.contacts, i, tick.dt);
   for (const ContactPoint& contact : soft.contacts) soft.tally.deepest = std::max(soft.tally.deepest, contact.depth);

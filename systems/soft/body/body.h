@@ -3,6 +3,7 @@
 // (soft_body_state.h), fixed (no degrees of freedom), yielding (a P1 surface: no degrees of freedom, but compliance).
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,10 +16,20 @@
 
 namespace pliant {
 
+struct SmearedLoad;  // systems/soft/local/smeared_load.h
+
 struct SurfacePoint {
   std::uint32_t triangle = 0;  // of the collision mesh
   dvec3 barycentric{1, 0, 0};  // [1]
   dvec3 position{0};           // [m] world, at the beginning of the step
+  // Of a split contact on tissue: where its force acts instead, and where its motion is read.
+  std::shared_ptr<const SmearedLoad> smeared;
+};
+
+// A tip of a probe.
+struct SphereTip {
+  dvec3 centre{0};      // [m] object frame
+  double radius = 0.0;  // [m] > 0
 };
 
 // Mass properties of a rigid body, in its object frame.
@@ -89,7 +100,8 @@ class Body {
   bool absent = false;     // no contacts: its pose is not known yet
   bool taken_out = false;  // removed by the owner of the run: no contacts, and not stepped
   BodyLoads loads;
-  bool self_collides = false;  // its collision mesh can touch itself
+  std::vector<SphereTip> tips;  // of a probe made of spheres; else empty
+  bool self_collides = false;   // its collision mesh can touch itself
 
   // Degrees of freedom; 0: contacts cannot move it.
   virtual int size() const = 0;
@@ -132,10 +144,13 @@ class Body {
   virtual void advance(double T) = 0;
   // Its contacts are compliant, although it has no degrees of freedom.
   virtual bool yields() const { return false; }
-  // Yielding surfaces: w += compliance [m/(N s)... per T] between contacts on this body; rows 3 * contact.
+  // Yielding surfaces and split contacts: w += compliance [1/kg] between contacts on this body, along their axes; rows
+  // 3 * contact.
   struct Side {
     int contact;  // index of the contact: rows 3 * contact ...
     const SurfacePoint* point;
+    const dmat3* axes = nullptr;
+    double sign = 1.0;  // as PushedSide's
   };
   virtual void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
     (void)sides, (void)T, (void)w;

@@ -21,5 +21,7 @@ inline constexpr double kProbeHeadroom = 4.0;      // [1] of the device's larges
 std::vector<Entity> probe_tools(const World& world);
 Handle6 probe_handle(const Probe& probe, const HapticDevice& device);
 RigidMass probe_mass();
+// Its spheres, of the shell's radius; none, if it has a capsule.
+std::vector<SphereTip> tips_of(const Probe& probe, const Mesh& shell);
 
 }  // namespace pliant

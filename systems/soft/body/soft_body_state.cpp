@@ -5,6 +5,8 @@
 
 #include "runtime/assert.h"
 #include "runtime/long_work.h"
+#include "systems/soft/local/smearing_surface.h"
+#include "systems/soft/local/tip_law.h"
 
 namespace pliant {
 namespace {
@@ -92,8 +94,17 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& surface, const Sof
     tissue_.velocity()[i] = dvec3(0);
   }
   velocity_ = Vector::Zero(size());
+  if (body.contact == SoftContact::kSplit) smear();
   refresh_surface(tissue_.position(), surface_position);
   surface_velocity.assign(surface_position.size(), dvec3(0));
+}
+
+SoftBodyState::~SoftBodyState() = default;
+
+// Weights are of the shape in which the surface is embedded: that under gravity, if the body keeps its shape.
+void SoftBodyState::smear() {
+  if (tets_.samples.empty()) return;
+  smearing_ = std::make_unique<const SmearingSurface>(tets_, tissue_.material().poisson);
 }
 
 void SoftBodyState::free_step(double T, dvec3 gravity) {
@@ -109,12 +120,13 @@ void SoftBodyState::free_step(double T, dvec3 gravity) {
   } else {
     solvable_ = solver_.factorise(tissue_.inner(), {}, Matrix6::Zero(), tissue_.right(), velocity_);
   }
+  if (smearing_) free_velocity_ = velocity_;
   move_surface(surface_velocity);
 }
 
 void SoftBodyState::move_surface(std::vector<dvec3>& out) const {
   std::vector<dvec3> of_nodes(tets_.node_count());
-  for (std::uint32_t i = 0; i < of_nodes.size(); ++i) of_nodes[i] = node_velocity(i);
+  for (std::uint32_t i = 0; i < of_nodes.size(); ++i) of_nodes[i] = node_velocity(i, velocity_);
   refresh_surface(of_nodes, out);
 }
 
@@ -135,6 +147,7 @@ void SoftBodyState::set_elasticity(double young, double poisson, RayleighDamping
   damping_ = damping;
   tissue_.set_elasticity(young, poisson, damping.alpha, damping.beta);
   if (tie_) tie_->set_material(tissue_.material());
+  if (smearing_) smear();
 }
 
 void SoftBodyState::halt() {
@@ -171,7 +184,7 @@ void SoftBodyState::unsettle() {
 void SoftBodyState::advance(double T) {
   std::vector<dvec3>&x = tissue_.position(), &v = tissue_.velocity();
   for (std::uint32_t i = 0; i < tissue_.moving(); ++i) {
-    v[i] = node_velocity(i);
+    v[i] = node_velocity(i, velocity_);
     x[i] += T * v[i];
   }
   if (handle_) {
@@ -180,19 +193,19 @@ void SoftBodyState::advance(double T) {
     velocity_.tail<6>() = handle_->motion().velocity;
     for (std::uint32_t i = tissue_.moving(); i < tets_.pinned_begin(); ++i) {
       x[i] = handle_->motion().pose.position + arm(i);
-      v[i] = node_velocity(i);
+      v[i] = node_velocity(i, velocity_);
     }
   }
   refresh_surface(x, surface_position);
 }
 
-dvec3 SoftBodyState::node_velocity(std::uint32_t node) const {
+dvec3 SoftBodyState::node_velocity(std::uint32_t node, const Vector& velocity) const {
   if (node < tissue_.moving()) {
-    const double* v = velocity_.data() + 3 * node;
+    const double* v = velocity.data() + 3 * node;
     return {v[0], v[1], v[2]};
   }
   if (!slaved(node)) return dvec3(0);
-  const Vector6 w = velocity_.tail<6>();
+  const Vector6 w = velocity.tail<6>();
   return linear(w) + cross(angular(w), arm(node));
 }
 
@@ -208,12 +221,68 @@ void SoftBodyState::refresh_surface(const std::vector<dvec3>& of_nodes, std::vec
 
 template <class Use>
 void SoftBodyState::for_each_node(const SurfacePoint& point, Use use) const {
+  if (point.smeared) {
+    for (const auto& part : point.smeared->nodes) use(part.first, part.second);
+    return;
+  }
   for (int corner = 0; corner < 3; ++corner) {
     if (point.barycentric[corner] == 0.0) continue;
     const Embedding& place = tets_.embedding[collision_mesh->triangles[point.triangle][corner]];
     for (std::size_t k = 0; k < 4; ++k)
       if (place.weight[k] != 0.0) use(tets_.tets[place.tet][k], point.barycentric[corner] * place.weight[k]);
   }
+}
+
+LocalElasticity SoftBodyState::elasticity() const {
+  return {tissue_.material().young, tissue_.material().poisson};
+}
+
+dvec3 SoftBodyState::free_velocity(const SmearedLoad& load) const {
+  dvec3 sum(0);
+  for (const auto& part : load.nodes) sum += part.second * node_velocity(part.first, free_velocity_);
+  return sum;
+}
+
+void SoftBodyState::smear_again(SurfacePoint& walked) const {
+  const SmearedLoad& before = *walked.smeared;
+  const uvec3 t = collision_mesh->triangles[walked.triangle];
+  dvec3 at(0);
+  for (int i = 0; i < 3; ++i) at += walked.barycentric[i] * dvec3(collision_mesh->position(t[i]));
+  auto load = std::make_shared<SmearedLoad>(smearing_->load_at(at, before.place.normal, before.place.own));
+  if (!load->nodes.empty()) walked.smeared = std::move(load);
+}
+
+// L / T^2 (local_compliance.h) along the contacts' axes; the part of each contact alone by its law.
+void SoftBodyState::add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
+  std::vector<const Side*> smeared;
+  for (const Side& side : sides)
+    if (side.point->smeared) smeared.push_back(&side);
+  if (smeared.empty()) return;
+  const LocalElasticity tissue = elasticity();
+  const auto n = static_cast<Eigen::Index>(smeared.size());
+  Eigen::MatrixXd L(3 * n, 3 * n);
+  const auto along = [](const Side& side) -> Block {  // to the contact's axes
+    return side.sign * to_block(glm::transpose(*side.axes) * side.point->smeared->turn);
+  };
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Side& side = *smeared[static_cast<std::size_t>(i)];
+    L.block<3, 3>(3 * i, 3 * i) =
+        along(side) * self_compliance(*side.point->smeared, tissue, smearing_->layer()) * along(side).transpose();
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const Side& other = *smeared[static_cast<std::size_t>(j)];
+      const Block pair = along(side) *
+                         local_compliance(pair_place(*side.point->smeared), pair_place(*other.point->smeared), tissue,
+                                          &smearing_->layer()) *
+                         along(other).transpose();
+      L.block<3, 3>(3 * i, 3 * j) = pair;
+      L.block<3, 3>(3 * j, 3 * i) = pair.transpose();
+    }
+  }
+  make_positive(L);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      w.block<3, 3>(3 * smeared[static_cast<std::size_t>(i)]->contact,
+                    3 * smeared[static_cast<std::size_t>(j)]->contact) += L.block<3, 3>(3 * i, 3 * j) / (T * T);
 }
 
 void SoftBodyState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const {

@@ -13,8 +13,12 @@
 
 namespace pliant {
 
+class SmearingSurface;   // systems/soft/local/smearing_surface.h
+struct LocalElasticity;  // systems/soft/local/local_compliance.h
+
 class SoftBodyState final : public ToolBody {
  public:
+  ~SoftBodyState() override;
   const SoftBodyState* as_tissue() const override { return this; }
   // `tets` and `collision mesh` outlive it. `handle`: null without one (its nodes, if any, then move freely).
   // `placement`: initial object frame to world.
@@ -49,6 +53,15 @@ class SoftBodyState final : public ToolBody {
   const TetMesh& tets() const { return tets_; }
   const Tissue& tissue() const { return tissue_; }
   void set_tie_stiffness(double ratio) { tie_->stiffness = ratio; }  // [1] handle_tie.h; with spring attachment
+  // Of a body whose contacts are split (SoftContact::kSplit); else null.
+  const SmearingSurface* smearing() const { return smearing_.get(); }
+  LocalElasticity elasticity() const;  // of tissue(), for the laws of split contacts
+  // The same contact beside it on the surface (surface_walk.h): its load is smeared there.
+  void smear_again(SurfacePoint& walked) const;
+  // [m/s] v* at a smeared load.
+  dvec3 free_velocity(const SmearedLoad& load) const;
+  bool yields() const override { return smearing_ != nullptr; }
+  void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const override;
   bool solvable() const override {
     return solvable_;
   }  // false: the last step's matrix could not be factorised; nothing moved
@@ -65,10 +78,11 @@ class SoftBodyState final : public ToolBody {
   // most collision meshes have their vertices at nodes, so one of twelve weights is non-zero.
   template <class Use>
   void for_each_node(const SurfacePoint& point, Use use) const;
+  void smear();
   bool slaved(std::uint32_t node) const { return node >= tissue_.moving() && node < tets_.pinned_begin(); }
   Eigen::Index handle_row() const { return 3 * static_cast<Eigen::Index>(tissue_.moving()); }
   dvec3 arm(std::uint32_t node) const { return handle_->arm(node - tets_.free_count); }
-  dvec3 node_velocity(std::uint32_t node) const;  // [m/s] from velocity()
+  dvec3 node_velocity(std::uint32_t node, const Vector& velocity) const;  // [m/s]
   void separate_tissue(double T);
   void refresh_surface(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_surface) const;
 
@@ -78,7 +92,9 @@ class SoftBodyState final : public ToolBody {
   std::optional<HandleTie> tie_;
   CoupledSolver solver_;
   mutable BlockColumns pushed_;  // working memory of respond()
-  dquat placed_{1, 0, 0, 0};     // object frame to world at the start
+  std::unique_ptr<const SmearingSurface> smearing_;
+  Vector free_velocity_;      // v* of the step; only of a body with smearing
+  dquat placed_{1, 0, 0, 0};  // object frame to world at the start
   std::vector<const std::vector<uvec3>*> part_triangles_;
   bool solvable_ = true;
 };

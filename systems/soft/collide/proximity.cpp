@@ -8,11 +8,13 @@
 #include <optional>
 
 #include "runtime/assert.h"
+#include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/body/yielding_body.h"
 #include "systems/soft/collide/contact_geometry.h"
 #include "systems/soft/collide/found_contacts.h"
 #include "systems/soft/collide/shortest_way.h"
 #include "systems/soft/contact/contact_point.h"
+#include "systems/soft/local/split_contacts.h"
 
 namespace pliant {
 namespace {
@@ -57,6 +59,7 @@ struct Proximity::Parts {
   FoundContacts contacts;
   std::vector<double> own_margin;              // [m] per body
   std::vector<bool> yields;                    // per body
+  std::vector<bool> dented;                    // per body: contacts are not where its collision mesh is
   std::vector<bool> seen;                      // per body: an earlier step included it
   std::map<std::uint64_t, PairPast> touching;  // pairs that interpenetrate
   ContactMemory memory;
@@ -153,7 +156,7 @@ struct Proximity::Parts {
     for (const ContactPoint& c : kept) keys.push_back(c.key);
     std::sort(keys.begin(), keys.end());
     for (const Candidate& c : contacts.thinned) {
-      if (std::binary_search(keys.begin(), keys.end(), c.key) || yields[c.body_low] || yields[c.body_high]) continue;
+      if (std::binary_search(keys.begin(), keys.end(), c.key) || dented[c.body_low] || dented[c.body_high]) continue;
       const double end = contacts.end_gap(contacts.found[c.source]),
                    sunk = kSunk * margin_between(c.body_low, c.body_high);
       if (!(end < std::min(-sunk, kRises * c.gap))) continue;
@@ -190,6 +193,7 @@ struct Proximity::Parts {
         contacts.collision_meshes[i].fit_swept(), find_between(bodies, i, i);
       for (std::uint32_t k = i + 1; k < count; ++k) {
         if (!bodies[i]->meets(*bodies[k]) || !takes_part(k) || !may_miss(i, k)) continue;
+        if (met_by_tips(*bodies[i], *bodies[k])) continue;  // a tip is in the surface without its dent
         contacts.collision_meshes[i].fit_swept(), contacts.collision_meshes[k].fit_swept();
         find_between(bodies, i, k);
       }
@@ -214,6 +218,7 @@ Proximity::Proximity(const std::vector<std::unique_ptr<Body>>& bodies) : parts_(
     parts_->contacts.mean_edge.push_back(static_cast<double>(body->collision_mesh->mean_edge));
     parts_->own_margin.push_back(margin_of(*body));
     parts_->yields.push_back(body->is_surface());
+    parts_->dented.push_back(body->is_surface() || (body->as_tissue() && body->as_tissue()->smearing()));
   }
   parts_->seen.assign(bodies.size(), false);
 }

@@ -27,6 +27,7 @@ struct ContactPoint {
   double mu_static = 0.4, mu_sliding = 0.3;  // [1] of the pair
   std::uint64_t key = 0;                     // the same pair of features has the same key in the next step: warm start
   dvec3 impulse{0};                          // [N s] along the axes, on a; of the last solve
+  dvec3 strained{0};                         // [m] of a split contact: its local tangential displacement, world
   bool sliding = false;
   bool joined = false;       // added although thinning dropped it: without it the bodies sink in
   std::uint32_t source = 0;  // an index of Proximity, in this step

@@ -3,14 +3,19 @@
 #include <algorithm>
 #include <numeric>
 
+#include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/contact/contact_budget.h"
 #include "systems/soft/contact/contact_islands.h"
+#include "systems/soft/local/smearing_surface.h"
+#include "systems/soft/local/tip_law.h"
 
 namespace pliant {
 namespace {
 
-constexpr int kRoundsUnsettled = 2;  // rounds after which a solution that did not converge is not extended
-constexpr int kMostRounds = 8;       // in which contacts found by a solution join; a round reaches one body further
+constexpr int kRoundsUnsettled = 2;   // rounds after which a solution that did not converge is not extended
+constexpr int kTipRoundsOfSolve = 8;  // of a probe's tips, whose laws are not linear: three are usual
+constexpr double kTipSettled = 1e-5;  // [1] of their forces
+constexpr int kMostRounds = 8;        // in which contacts found by a solution join; a round reaches one body further
 
 // The contacts of each body.
 void sort_by_body(const std::vector<ContactPoint>& contacts, std::vector<BodyResponse>& of) {
@@ -58,7 +63,7 @@ void find_compliances(const std::vector<std::unique_ptr<Body>>& bodies, const st
     sides.clear();
     for (const int i : delassus.of[b].contacts) {
       const ContactPoint& c = contacts[static_cast<std::size_t>(i)];
-      sides.push_back({i, c.body_a == b ? &c.a : &c.b});
+      sides.push_back({i, c.body_a == b ? &c.a : &c.b, &c.axes, c.body_a == b ? 1.0 : -1.0});
     }
     if (!sides.empty()) bodies[b]->add_compliance(sides, T, delassus.compliance);
   }
@@ -208,6 +213,7 @@ class OperatorFiller {
 
 // [m/s] J v* of one side: every body interpolates its collision mesh linearly.
 dvec3 free_velocity(const Body& body, const SurfacePoint& point) {
+  if (point.smeared) return body.as_tissue()->free_velocity(*point.smeared);
   const uvec3 t = body.collision_mesh->triangles[point.triangle];
   return point.barycentric.x * body.surface_velocity[t.x] + point.barycentric.y * body.surface_velocity[t.y] +
          point.barycentric.z * body.surface_velocity[t.z];
@@ -218,6 +224,67 @@ double still_inside(const ContactPoint& c, std::size_t i, double beta, const Del
   const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
   const bool yields = delassus.compliance.size() > 0 && delassus.compliance(row, row) > 0.0;
   return yields ? 0.0 : (1.0 - beta) * c.depth;
+}
+
+// [m] Of a split contact's law, linear in this solve.
+double offset_of(const std::vector<std::unique_ptr<Body>>& bodies, const ContactPoint& c) {
+  if (!c.b.smeared) return 0.0;
+  const SoftBodyState& tissue = *bodies[c.body_b]->as_tissue();
+  return tip_offset(*c.b.smeared, tissue.elasticity(), tissue.smearing()->layer());
+}
+
+Block block_of(const dmat3& m) {
+  Block out;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) out(r, c) = m[c][r];
+  return out;
+}
+
+// Makes the laws of a probe's tips linear about the solution's forces. False: they are already.
+bool linearise_tips(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::vector<ContactPoint>& contacts,
+                    Delassus& delassus, ContactProblem& problem) {
+  bool changed = false;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    ContactPoint& c = contacts[i];
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
+    if (!c.b.smeared || !(c.b.smeared->tip_radius > 0.0)) continue;
+    const double force = problem.impulse[row] / T;
+    if (!(force > 0.0) || std::abs(force - c.b.smeared->tip_force) <= kTipSettled * force) continue;
+    ContactProblem& part =
+        problem.part_count > 0 ? problem.parts[static_cast<std::size_t>(problem.place[i].first)] : problem;
+    if (!part.sparse.first.empty()) continue;  // a heap: the next step goes on from here
+    const SoftBodyState& tissue = *bodies[c.body_b]->as_tissue();
+    const LocalElasticity elastic = tissue.elasticity();
+    const LayerKernel& layer = tissue.smearing()->layer();
+    auto next = std::make_shared<SmearedLoad>(*c.b.smeared);
+    next->tip_force = force;
+    const Block axes = block_of(glm::transpose(c.axes) * next->turn);
+    const Block change = axes *
+                         (self_compliance(*next, elastic, layer) - self_compliance(*c.b.smeared, elastic, layer)) *
+                         axes.transpose() / (T * T);
+    const Eigen::Index at = problem.part_count > 0 ? 3 * static_cast<Eigen::Index>(problem.place[i].second) : row;
+    part.W.block<3, 3>(at, at) += change;
+    delassus.compliance.block<3, 3>(row, row) += change;
+    problem.bias[row] += (tip_offset(*next, elastic, layer) - tip_offset(*c.b.smeared, elastic, layer)) / T;
+    c.b.smeared = std::move(next);
+    changed = true;
+  }
+  return changed;
+}
+
+// The local tangential displacement of split contacts, whole at every step's end.
+void keep_strain(double T, const Delassus& delassus, const ContactProblem& problem,
+                 std::vector<ContactPoint>& contacts) {
+  const auto rows = static_cast<Eigen::Index>(3 * contacts.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    ContactPoint& c = contacts[i];
+    if (!c.a.smeared && !c.b.smeared) continue;
+    c.strained = dvec3(0.0);
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
+    if (!(problem.impulse[row] > 0.0)) continue;
+    for (int k = 1; k < 3; ++k)
+      c.strained += T * delassus.compliance.row(row + k).head(rows).dot(problem.impulse.head(rows)) * c.axes[k];
+  }
 }
 
 // Updates the contacts' laws to their predicted normals and gaps. An end gap was predicted with the velocities of the
@@ -268,7 +335,8 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
       problem.bias[row + k] = dot(c.axes[k], u);
       problem.impulse[row + k] = c.impulse[k];
     }
-    problem.bias[row] += (c.gap + still_inside(c, i, beta, delassus)) / T;
+    problem.bias[row] += (c.gap + still_inside(c, i, beta, delassus) + offset_of(bodies, c)) / T;
+    for (int k = 1; k < 3; ++k) problem.bias[row + k] -= dot(c.axes[k], c.strained) / T;
     problem.mu_static[i] = c.mu_static;
     problem.mu_sliding[i] = c.mu_sliding;
     problem.sliding[i] = c.sliding;
@@ -330,6 +398,17 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
     apply_impulses(bodies, delassus, contacts, problem.impulse - first);
   }
   keep_impulses(problem, contacts);
+  const Vector first = problem.impulse;
+  bool bent = false;
+  for (int round = 0; round < kTipRoundsOfSolve && linearise_tips(bodies, T, contacts, delassus, problem); ++round) {
+    report = solve(problem, limits);
+    bent = true;
+  }
+  if (bent) {
+    apply_impulses(bodies, delassus, contacts, problem.impulse - first);
+    keep_impulses(problem, contacts);
+  }
+  keep_strain(T, delassus, problem, contacts);
   return report;
 }
 

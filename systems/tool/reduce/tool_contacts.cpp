@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/collide/surface_walk.h"
 
 namespace pliant {
@@ -94,8 +95,9 @@ void ToolContacts::gather_slip(std::uint32_t body, int i, int k, const Rows& x, 
     const double share = length(way), h = farthest(step_, p);
     if (!(share > 0.0 && h > 0.0)) return;
     const dvec3 by = h / share * (p.axes * dvec3(0.0, way));
-    const std::optional<SurfacePoint> ahead = walk(of, point, by), back = walk(of, point, -by);
+    std::optional<SurfacePoint> ahead = walk(of, point, by), back = walk(of, point, -by);
     if (!ahead || !back) return;
+    if (point.smeared) of.as_tissue()->smear_again(*ahead), of.as_tissue()->smear_again(*back);
     of.gather(*ahead, p.axes, sign * share / (2.0 * h), x, out);
     of.gather(*back, p.axes, -sign * share / (2.0 * h), x, out);
   };

@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kMostSteps = 24;
+constexpr int kCapsuleSteps = 24;
 constexpr double kExactly = 1e-10;  // [1] of the axis
 constexpr int kMostClimbs = 4;
 
@@ -52,7 +52,7 @@ AxisSphere sphere_at(const ContactSearch& s, const Axis& axis, const AxisSphere&
 AxisSphere lowest(const ContactSearch& s, const Axis& axis, AxisSphere at) {
   double farthest = std::min(0.25, std::max(1e-3, static_cast<double>(s.mesh.mean_edge) / length(axis.tip.axis)));
   double low = 0.0, high = 1.0;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kCapsuleSteps; ++i) {
     const bool back = at.slope > 0;
     (back ? high : low) = at.along;
     double way = back ? -farthest : farthest;
@@ -130,7 +130,7 @@ Ridge ridge_along(const ContactSearch& s, const SourceState& a, const SourceStat
   AxisSphere from = sphere_at(s, axis, a.place.main(), a.axis.along),
              to = sphere_at(s, axis, b.place.main(), b.axis.along);
   // Where the height stops rising on the way: from either end, as long as it rises.
-  for (int i = 0; i < kMostSteps && std::abs(to.along - from.along) > kNear; ++i) {
+  for (int i = 0; i < kCapsuleSteps && std::abs(to.along - from.along) > kNear; ++i) {
     const double middle = 0.5 * (from.along + to.along);
     AxisSphere next = sphere_at(s, axis, from, middle);
     if (sense * next.slope > 0)

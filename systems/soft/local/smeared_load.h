@@ -1,0 +1,33 @@
+// Where a split contact acts on tissue (methods.md 2.10): on the lattice smeared over a disc about a place of the
+// surface, and beside it on an analytic dent. One per contact and step; the place is fixed to the body.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "systems/soft/local/local_compliance.h"
+
+namespace pliant {
+
+struct SmearedLoad {
+  LocalPlace place;  // object frame, undeformed
+  // Nodes and their weights [1]: of the load and of the motion that is read. They sum to 1.
+  std::vector<std::pair<std::uint32_t, double>> nodes;
+  std::vector<std::pair<std::uint32_t, double>> tets;  // the same of tetrahedra, for their rotation
+  dvec3 mean{0};                                       // [m] <w, X>: of the nodes at rest
+
+  // In this step:
+  dmat3 turn{1};   // Q: rotation of the tissue there
+  dvec3 moved{0};  // [m] <w, x>, world
+  // [m] world: where the surface is without the contact's dent, exact under rigid motion; and back.
+  dvec3 to_world(dvec3 x) const { return turn * (x - mean) + moved; }
+  dvec3 to_rest(dvec3 x) const { return (x - moved) * turn + mean; }
+
+  // Of a spherical tip: F = 4/3 E* sqrt(R_s) d^1.5 alone on a half-space.
+  double tip_radius = 0.0;   // [m] R_s, of tip and surface together; 0: a point of fixed radius
+  double tip_force = 0.0;    // [N] about which its law is linear in this solve
+  double pair_radius = 0.0;  // [m] of its pair terms: they do not grow with the load
+};
+
+}  // namespace pliant

@@ -1,0 +1,98 @@
+#include "systems/soft/local/tip_law.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+constexpr int kTipSteps = 40;        // of Newton's method: quadratic, from below
+constexpr double kTipExact = 1e-12;  // [1]
+constexpr double kLeastTip = 1e-3;   // [1] of R: contact radius of an unloaded tip
+constexpr double kPositive = 1e-9;   // [1] of the largest compliance: negative eigenvalues that are rounding
+constexpr double kAt[4] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
+constexpr double kWeight[4] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269};
+
+}  // namespace
+
+double hertz_radius(double force, double tip_radius, double reduced) {
+  return std::cbrt(0.75 * std::max(0.0, force) * tip_radius / reduced);
+}
+
+TipState tip_law(const SmearedLoad& tip, double force, const LocalElasticity& tissue, const LayerKernel& layer) {
+  const LocalPlace& at = tip.place;
+  const double reduced = tissue.reduced(),
+               widest = std::min(tip.pair_radius, kWidestTip * at.smeared / at.lattice.normal);
+  const bool thin = at.thickness > 0.0;
+  const double share = at.lattice.normal * (thin ? layer.share(at.smeared, at.thickness) : 1.0) / at.smeared;
+  const double own = hertz_radius(force, tip.tip_radius, reduced), a = std::min(own, widest);
+  double depth = a * a / tip.tip_radius, factor = 1.0;  // D(F(a)) = int 2 a / (R_s kappa) da
+  if (thin && a > 0.0) {
+    depth = 0.0;
+    for (int i = 0; i < 4; ++i)
+      depth += kWeight[i] * 2 * kAt[i] * a * a / (tip.tip_radius * layer.punch(kAt[i] * a / at.thickness));
+    factor = layer.punch(a / at.thickness);
+  }
+  const double until = 4.0 / 3.0 * reduced * a * a * a / tip.tip_radius;
+  const double slope = a > 0.0 ? 1 / (2 * reduced * a * factor) : 1e300;
+  TipState out;
+  out.radius = a;
+  out.depth = depth - share * force / (2 * reduced);
+  if (own > widest) out.depth += slope * (force - until);
+  out.slope = slope - share / (2 * reduced);
+  return out;
+}
+
+LocalPlace pair_place(const SmearedLoad& load) {
+  LocalPlace out = load.place;
+  out.own = load.pair_radius;
+  return out;
+}
+
+namespace {
+
+// The place of a contact's own part: a tip's at its tip_force.
+LocalPlace own_place(const SmearedLoad& load, const LocalElasticity& tissue, const LayerKernel& layer) {
+  LocalPlace out = load.place;
+  if (load.tip_radius > 0.0)
+    out.own = std::max(tip_law(load, load.tip_force, tissue, layer).radius, kLeastTip * out.smeared);
+  return out;
+}
+
+}  // namespace
+
+Block self_compliance(const SmearedLoad& load, const LocalElasticity& tissue, const LayerKernel& layer) {
+  return local_self_compliance(own_place(load, tissue, layer), tissue, &layer);
+}
+
+double tip_offset(const SmearedLoad& load, const LocalElasticity& tissue, const LayerKernel& layer) {
+  if (!(load.tip_radius > 0.0)) return 0.0;
+  const double slope = local_normal_compliance(own_place(load, tissue, layer), tissue, &layer);
+  return tip_law(load, load.tip_force, tissue, layer).depth - slope * load.tip_force;
+}
+
+void make_positive(Eigen::MatrixXd& compliance) {
+  Eigen::MatrixXd lifted = compliance;
+  lifted.diagonal().array() += kPositive * compliance.diagonal().maxCoeff();
+  if (Eigen::LLT<Eigen::MatrixXd>(lifted).info() == Eigen::Success) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(compliance);
+  compliance = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+double tip_force(const SmearedLoad& tip, double compliance, double depth, const LocalElasticity& tissue,
+                 const LayerKernel& layer) {
+  // delta is concave: from any start the next iterate is below the root, from there on they ascend.
+  double force = 4.0 / 3.0 * tissue.reduced() * std::sqrt(tip.tip_radius) * std::pow(depth, 1.5);
+  for (int i = 0; i < kTipSteps; ++i) {
+    const TipState at = tip_law(tip, force, tissue, layer);
+    const double by = (depth - at.depth - compliance * force) / (at.slope + compliance);
+    const double next = std::max(force + by, 1e-3 * force);
+    if (std::abs(next - force) <= kTipExact * force) return next;
+    force = next;
+  }
+  return force;
+}
+
+}  // namespace pliant
