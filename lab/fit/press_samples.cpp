@@ -24,8 +24,8 @@ PressPlace place_at(const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric)
   return place_on(curved_patch(mesh, triangle), triangle, barycentric, nullptr);
 }
 
-std::vector<SurfaceSample> samples_around(const Mesh& mesh, const PressPlace& place, double within, double apart) {
-  std::vector<SurfaceSample> out;
+std::vector<PlacedSample> samples_around(const Mesh& mesh, const PressPlace& place, double within, double apart) {
+  std::vector<PlacedSample> out;
   for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
     const uvec3 t = mesh.triangles[k];
     const dvec3 p[3] = {dvec3(mesh.position(t[0])), dvec3(mesh.position(t[1])), dvec3(mesh.position(t[2]))};
@@ -41,7 +41,7 @@ std::vector<SurfaceSample> samples_around(const Mesh& mesh, const PressPlace& pl
         const PressPlace at = place_on(patch, k, {1 - b1 - b2, b1, b2}, &twice);
         const dvec3 away = at.position - place.position;
         if (dot(away, away) > within * within || !(dot(at.normal, place.normal) > kFacing)) continue;
-        SurfaceSample& sample = out.emplace_back();
+        PlacedSample& sample = out.emplace_back();
         static_cast<PressPlace&>(sample) = at;
         sample.area = 0.5 * length(twice) / (parts * parts);
       }

@@ -17,11 +17,11 @@ struct PressPlace {
 };
 PressPlace place_at(const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric);
 
-struct SurfaceSample : PressPlace {
+struct PlacedSample : PressPlace {
   double area = 0.0;  // [m2] represented by the sample
 };
 // Samples of the curved patches with a spacing of about `apart` [m]: all points within `within` [m] of the place whose
 // normals face the same way (the opposite side of the object is another surface).
-std::vector<SurfaceSample> samples_around(const Mesh& mesh, const PressPlace& place, double within, double apart);
+std::vector<PlacedSample> samples_around(const Mesh& mesh, const PressPlace& place, double within, double apart);
 
 }  // namespace pliant

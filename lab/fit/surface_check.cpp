@@ -75,7 +75,7 @@ Result<std::vector<std::vector<PressedTissue>>> press_surface(const std::vector<
       state.depth = depth;
       state.force = dot(force, places[i].place.normal);
       if (const Status streamed = session->stream("surface", stream); !streamed) return streamed.error();
-      for (const SurfaceSample& seen : places[i].seen) {
+      for (const PlacedSample& seen : places[i].seen) {
         const uvec3 t = built.triangles[seen.triangle];
         double& height = state.height.emplace_back(0.0);
         for (int c = 0; c < 3; ++c) height += seen.barycentric[c] * static_cast<double>(stream[t[c]].w);

@@ -50,7 +50,7 @@ struct Sample {
 
 }  // namespace
 
-SurfaceDifference surface_difference(const std::vector<SurfaceSample>& seen, const std::vector<double>& heights,
+SurfaceDifference surface_difference(const std::vector<PlacedSample>& seen, const std::vector<double>& heights,
                                      const std::vector<double>& truth) {
   SurfaceDifference out;
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -62,7 +62,7 @@ SurfaceDifference surface_difference(const std::vector<SurfaceSample>& seen, con
   return out;
 }
 
-SurfaceDifference radial_remainder(const std::vector<SurfaceSample>& seen, const PressPlace& place, double radius,
+SurfaceDifference radial_remainder(const std::vector<PlacedSample>& seen, const PressPlace& place, double radius,
                                    const std::vector<double>& heights) {
   constexpr Eigen::Index kKnots = 4 * static_cast<Eigen::Index>(kAroundPress) + 1;
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(kKnots, kKnots);

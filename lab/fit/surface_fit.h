@@ -13,8 +13,8 @@ namespace pliant {
 // One place with its presses in ascending depth.
 struct PressedPlace {
   PressPlace place;
-  double stiffness = 0.0;           // [N/m] of a small press
-  std::vector<SurfaceSample> seen;  // sample points of the presses' heights
+  double stiffness = 0.0;          // [N/m] of a small press
+  std::vector<PlacedSample> seen;  // sample points of the presses' heights
   std::vector<PressedTissue> presses;
 };
 
@@ -33,12 +33,12 @@ struct SurfaceDifference {
   double off = 0.0, size = 0.0;  // [m4]
   double area = 0.0;             // [m2]
 };
-SurfaceDifference surface_difference(const std::vector<SurfaceSample>& seen, const std::vector<double>& heights,
+SurfaceDifference surface_difference(const std::vector<PlacedSample>& seen, const std::vector<double>& heights,
                                      const std::vector<double>& truth);
 
 // Residual of a dent after subtracting its best radial fit: a continuous function of the distance, linear between knots
 // a quarter of the indenter's radius apart.
-SurfaceDifference radial_remainder(const std::vector<SurfaceSample>& seen, const PressPlace& place, double radius,
+SurfaceDifference radial_remainder(const std::vector<PlacedSample>& seen, const PressPlace& place, double radius,
                                    const std::vector<double>& heights);
 // True if at this press depth [m] another side of the object is within 1.5 depths: a probe there is equally deep below
 // that side.

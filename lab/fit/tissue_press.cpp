@@ -22,9 +22,9 @@ constexpr std::size_t kMoments = 6;        // 1, x, y, x^2, xy, y^2
 constexpr double kFlattestTissue = 1e-6;   // [1] smallest eigenvalue, relative to the largest
 constexpr double kSmallTolerance = 1e-6;   // [1] of the solution: the stiffness error of a small press is its square
 
-std::vector<Embedding> embedding_of(const std::vector<SurfaceSample>& samples, const TetMesh& tets) {
+std::vector<Embedding> embedding_of(const std::vector<PlacedSample>& samples, const TetMesh& tets) {
   std::vector<dvec3> points, normals;
-  for (const SurfaceSample& sample : samples) {
+  for (const PlacedSample& sample : samples) {
     points.push_back(sample.position);
     normals.push_back(sample.normal);
   }
@@ -73,7 +73,7 @@ Result<TissuePress::Punch> TissuePress::punch(const Mesh& surface, const PressPl
   const dvec3 ex = normalize(cross(side, place.normal)), ey = cross(place.normal, ex);
   const std::uint32_t moving = tissue_->moving();
   Punch out{Eigen::MatrixXd::Zero(3 * moving, kMoments), {}, {}, Vector::Zero(kMoments)};
-  const std::vector<SurfaceSample> under = samples_around(surface, place, radius, radius / kFinest);
+  const std::vector<PlacedSample> under = samples_around(surface, place, radius, radius / kFinest);
   const std::vector<Embedding> held = embedding_of(under, *tets_);
   for (std::size_t i = 0; i < under.size(); ++i) {
     const dvec3 away = (under[i].position - place.position) / radius;
@@ -158,7 +158,7 @@ double TissuePress::settle(const Punch& punch, double depth, Vector& u) {
   return 0.0;
 }
 
-std::vector<PressedTissue> TissuePress::press_to(const Punch& it, const std::vector<SurfaceSample>& seen, double depth,
+std::vector<PressedTissue> TissuePress::press_to(const Punch& it, const std::vector<PlacedSample>& seen, double depth,
                                                  int steps) {
   ASSERT(!iterative_);
   const std::vector<Embedding> held = embedding_of(seen, *tets_);

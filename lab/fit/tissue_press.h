@@ -55,7 +55,7 @@ class TissuePress {
   Result<Punch> punch(const Mesh& surface, const PressPlace& place, double radius);
   // For a kDeep body. Presses in `steps` equal parts to this depth [m], ascending. Ends early if the iteration does not
   // converge. Heights are those of `seen`.
-  std::vector<PressedTissue> press_to(const Punch& punch, const std::vector<SurfaceSample>& seen, double depth,
+  std::vector<PressedTissue> press_to(const Punch& punch, const std::vector<PlacedSample>& seen, double depth,
                                       int steps);
 
   const TetMesh& tets() const { return *tets_; }

@@ -158,7 +158,7 @@ TEST(FitTissue, SamplesCoverTheSurfaceAroundAPlaceOnce) {
   const PressBodies block = bodies(0.4, 0.005, true);
   const PressPlace place = middle_of(block.surface());
   double area = 0.0;
-  for (const SurfaceSample& sample : samples_around(block.surface(), place, 0.01, 0.0005)) {
+  for (const PlacedSample& sample : samples_around(block.surface(), place, 0.01, 0.0005)) {
     area += sample.area;
     EXPECT_LE(length(sample.position - place.position), 0.01);
     EXPECT_GT(sample.normal.y, 0.99);
@@ -206,7 +206,7 @@ TEST(FitTissue, WhatNoDentCanGiveIsWhatDependsOnMoreThanTheDistance) {
   const PressPlace place = middle_of(block.surface());
   const auto seen = samples_around(block.surface(), place, 0.015, 0.001);
   std::vector<double> dent, tilted;
-  for (const SurfaceSample& sample : seen) {
+  for (const PlacedSample& sample : seen) {
     const dvec3 away = sample.position - place.position;
     dent.push_back(-std::exp(-dot(away, away) / (0.006 * 0.006)));
     tilted.push_back(away.x);
