@@ -155,8 +155,12 @@ const char* registered_word(SolverKind kind) {
 }
 
 bool reads_key(SpringLaw law, const char* key) {
-  const std::string all = std::string(" ") + row_of(law).reads + " ";
-  return all.find(std::string(" ") + key + " ") != std::string::npos;
+  const std::string_view all = row_of(law).reads, word = key;  // words, apart by a blank
+  for (std::size_t at = all.find(word); at != std::string_view::npos; at = all.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || all[at - 1] == ' ') && (end == all.size() || all[end] == ' ')) return true;
+  }
+  return false;
 }
 
 // The difference of the potential; where it would cancel, the mean of the force (Gauss-Legendre, four points).

@@ -125,7 +125,7 @@ void main() {
           rate = coefficient[c + 2u] * x + coefficient[c + 3u] * w;
         }
       }
-      if (t + 1u == end && (run.w & 1u) != 0u) {
+      if (t + 1u == end && run.w != 0u) {  // it rests, or sleeps
         residual = rate = arm = vec4(0);
         if (acting.xy == uvec2(0u)) relaxed = vec4(0);  // a pressed zone keeps its relaxation
       }

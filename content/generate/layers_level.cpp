@@ -67,6 +67,7 @@ Level layers_level() {
   needle.probe->color = kSteel;
   needle.probe_device = "needle";
   needle.device = script_device("layers_needle.csv", 3.3);
+  needle.device->max_slew = 2000.0;  // [N/s] of a break
   place(needle, needle_path().front());
   LevelNode& finger = add_node(level, "finger");
   finger.probe = Probe{};

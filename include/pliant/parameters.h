@@ -156,7 +156,7 @@ enum class UnderGravity : std::uint8_t {
   kModelled,  // the mesh is the equilibrium under gravity and the initial state; the weightless shape is computed
 };
 
-// What a contact on tissue acts on.
+// How tissue bears a contact.
 enum class SoftContact : std::uint8_t {
   kLattice,  // the lattice's nodes beside it: too stiff where it is small against the cells
   kSplit,    // the lattice with its force smeared, and in series an analytic dent (systems/soft/local)

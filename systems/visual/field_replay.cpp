@@ -11,6 +11,10 @@
 namespace pliant {
 namespace {
 
+// A longer stall is caught up by a copy of the stream. (llvmpipe ends a shader's loops after 65,535 turns in all, and
+// a step of a law takes up to some hundred.)
+constexpr std::size_t kMostTicks = 500;
+
 constexpr std::uint64_t bit_of(std::uint32_t source) {
   return std::uint64_t{1} << source;
 }
@@ -102,6 +106,10 @@ bool FieldReplay::take(FieldFeed& feed, bool fed, std::uint64_t tick) {
     if (event.kind == FieldEvent::kReset) reset();
     add(event, feed);
     if (event.kind == FieldEvent::kTick && event.mask >= tick) break;
+  }
+  if (rows_.size() > kMostTicks) {
+    reset();
+    began_ = false;
   }
   if (!began_) feed.wants_reset.store(true, std::memory_order_relaxed);
   return began_;

@@ -148,7 +148,11 @@ TEST_F(Confined, ForceLimitsOfAFileAreCappedAndTheUsersWordGoesBeyond) {
     const Said said = pliant(all);
     EXPECT_EQ(said.status, 0) << said.err;
     EXPECT_EQ(said.err.find("`tip`: the file asks for more than max_force") != std::string::npos, capped) << said.err;
-    return report("out")["probes"][0]["max_force_N"].get<double>();
+    const Json out = report("out");
+    bool coded = false;
+    for (const Json& note : out["notes"]) coded = coded || note.value("code", "") == "device.capped";
+    EXPECT_EQ(coded, capped) << out["notes"];
+    return out["probes"][0]["max_force_N"].get<double>();
   };
   EXPECT_NEAR(felt({}, true), 10.0, 1e-6);
   EXPECT_NEAR(felt({"--max-force", "4"}, true), 4.0, 1e-6);

@@ -50,14 +50,10 @@ TEST_F(Run, ACapsulesTorqueHasColumns) {
 }
 
 TEST_F(Run, EveryNoteHasACode) {
-  ASSERT_EQ(press("out", {"--set", "tip.haptic_device.max_force=500"}).status, 0);
-  bool capped = false;
+  ASSERT_EQ(press("out", {"--set", "*.deformable.stiffening=200"}).status, 0);
   const Json all = report("out")["notes"];
-  for (const Json& note : all) {
-    EXPECT_TRUE(note.contains("code")) << note.dump();
-    capped = capped || note["code"] == "device.capped";
-  }
-  EXPECT_TRUE(capped) << all.dump();
+  EXPECT_FALSE(all.empty());
+  for (const Json& note : all) EXPECT_TRUE(note.contains("code")) << note.dump();
 }
 
 TEST_F(Run, TheForceIsTheLawOfTheDepthAndTheReportSaysWhatTheRowsSay) {

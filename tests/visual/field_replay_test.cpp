@@ -125,12 +125,15 @@ TEST_P(FieldReplayTest, StepsWhatTheProcessorSteps) {
   stage.wait(0.02);
   ASSERT_TRUE(twin.picture(program_));
   EXPECT_GT(pictures, 10);
-  EXPECT_GT(twin.largest, 0.003);
+  // A table that relaxes follows its lag the slowest.
+  EXPECT_GT(twin.largest, c.law == SpringLaw::kQuasiLinearTable ? 0.0015 : 0.003);
   EXPECT_LT(twin.height, 1e-5 * twin.largest);
   EXPECT_LT(twin.angle, 0.1);
 
-  stage.wait(3.0);  // all at rest: zeros, exactly
-  ASSERT_TRUE(twin.picture(program_));
+  for (int i = 0; i < 10; ++i) {  // all at rest: zeros, exactly
+    stage.wait(0.3);
+    ASSERT_TRUE(twin.picture(program_));
+  }
   if (stage.field(twin.surface).awake.empty()) {
     EXPECT_TRUE(twin.replay.at_rest());
     for (const vec4& s : read_back<vec4>(twin.copies.buffer(), twin.mesh().vertex_count)) ASSERT_EQ(s, vec4(0));

@@ -209,7 +209,7 @@ double work_of(HardFigure& worst, const Press& press, double rate, const std::st
     go(0.35, 0.005, -0.3, 0.005);
     most = std::max(most, meter.work / meter.most);
   }
-  worst.need(meter.most > 0.5 * law(frictionless(), 0.006) * 0.006 * 0.99, where + ": not pressed");
+  worst.need(meter.most > 0.25 * law(frictionless(press.law), 0.006) * 0.006, where + ": not pressed");
   worst.need(withheld(stage) == 0, where + ": the safety layer withheld");
   return most;
 }
@@ -229,7 +229,8 @@ HardFigure every_law(const HardSetting& setting) {
           const double coarse = work_of(worst, press, 1000, where), fine = work_of(worst, press, 2000, where);
           const double left = (4 * fine - coarse) / 3;
           const bool lossless = friction == 0.0 && !has_arm(kind);
-          worst.add(lossless ? std::abs(left) : left, where);
+          // Between a table's rows the second derivative has steps: the rule's error falls, but not by four.
+          if (!(lossless && kind == SpringLaw::kTable)) worst.add(lossless ? std::abs(left) : left, where);
           worst.need(lossless || (coarse < -1e-3 && fine < -1e-3), where + ": nothing is dissipated");
           worst.need(!lossless || std::abs(coarse) < 1e-5 || std::abs(fine) < 0.3 * std::abs(coarse),
                      where + ": it does not fall with the ticks");
@@ -245,7 +246,7 @@ std::vector<HardCase> hard_loops() {
   constexpr const char* kOrgans = "ticks of 1/8 ms, both ways: work of the raw force; nothing withheld";
   return {
       {"LoopsOfPressSlideAndReleaseGiveOutNothing", "methods.md 3.9: closed loops",
-       "four laws, with friction and without, 0.02 to 1 m/s: work of the raw force, extrapolated from ticks of 1 and "
+       "each law, with friction and without, 0.02 to 1 m/s: work of the raw force, extrapolated from ticks of 1 and "
        "1/2 ms; none where nothing dissipates, below zero elsewhere; nothing withheld",
        "of the stored energy [1]", 1e-5, every_law},
       {"LoopsOnBoxesGiveOutNothing", "methods.md 3.10: closed loops on boxes", kBoxes, "of the stored energy [1]", 1e-3,

@@ -22,6 +22,9 @@ enum class Integrator {
   kExact,             // matrix exponential: of the linear laws, or of a nonlinear law's tangent at h0 (Rosenbrock)
   kEngine,            // the engine's zone kernel: exact, or discrete gradient and backward Euler; single precision
 };
+// The laws whose vertex the integrators step: no table, none that stiffens and relaxes.
+inline constexpr std::array kIntegratedLaws{SpringLaw::kLinear, SpringLaw::kCubic, SpringLaw::kExponential,
+                                            SpringLaw::kStandardLinearSolid};
 inline constexpr std::array kIntegrators{
     Integrator::kExplicit, Integrator::kSemiImplicit,     Integrator::kImplicit, Integrator::kRungeKutta,
     Integrator::kMidpoint, Integrator::kDiscreteGradient, Integrator::kExact,    Integrator::kEngine};

@@ -108,22 +108,23 @@ Status draw_stability(OutputFolder& out, StudySize size, const Interrupt& interr
   HeatMaps maps = map_frame(size);
   std::string csv = "law,scheme,omega_T,damping_ratio,rms_error\n";
   std::vector<double> stable(kIntegrators.size());
-  for (std::size_t l = 0; l < std::size(kLaws); ++l) {
+  for (std::size_t l = 0; l < kIntegratedLaws.size(); ++l) {
     std::vector<HeatMap> row;
-    for (const Integrator integrator : kIntegrators) row.push_back({name_of(kLaws[l]), name_of(integrator), {}});
+    for (const Integrator integrator : kIntegrators)
+      row.push_back({name_of(kIntegratedLaws[l]), name_of(integrator), {}});
     for (std::size_t j = 0; j < maps.y.size(); ++j) {
       if (interrupt.requested()) return interrupted();
       progress.update(0.2 + 0.2 *
                                 (static_cast<double>(l) + static_cast<double>(j) / static_cast<double>(maps.y.size())) /
-                                std::size(kLaws));
+                                kIntegratedLaws.size());
       for (const double x : maps.x) {
-        const VertexProblem problem = problem_at(kLaws[l], x, maps.y[j]);
+        const VertexProblem problem = problem_at(kIntegratedLaws[l], x, maps.y[j]);
         const std::vector<double> truth = true_heights(problem, kDent, kVertexTick, kLeastSteps);
         for (std::size_t i = 0; i < kIntegrators.size(); ++i) {
           const double error = stable_error(kIntegrators[i], problem, truth);
           row[i].values.push_back(error);
           stable[i] += std::isfinite(error);
-          csv += fmt::format("{},{}", name_of(kLaws[l]), name_of(kIntegrators[i]));
+          csv += fmt::format("{},{}", name_of(kIntegratedLaws[l]), name_of(kIntegrators[i]));
           put(csv, x);
           put(csv, maps.y[j]);
           csv += std::isfinite(error) ? fmt::format(",{:.9g}\n", error) : ",unstable\n";
@@ -132,7 +133,7 @@ Status draw_stability(OutputFolder& out, StudySize size, const Interrupt& interr
     }
     maps.maps.insert(maps.maps.end(), row.begin(), row.end());
   }
-  const auto cells = static_cast<double>(maps.x.size() * maps.y.size() * std::size(kLaws));
+  const auto cells = static_cast<double>(maps.x.size() * maps.y.size() * kIntegratedLaws.size());
   maps.line = "Stable share of each map's column:";
   for (std::size_t i = 0; i < kIntegrators.size(); ++i)
     maps.line += fmt::format("{} {} {:.0f} %", i == 0 ? "" : ",", name_of(kIntegrators[i]), 100 * stable[i] / cells);
@@ -175,12 +176,12 @@ std::vector<IntegratorCase> integrate_grid(const std::vector<double>& stiffness,
   std::vector<IntegratorCase> cases;
   const double shortest = *std::min_element(steps.begin(), steps.end());
   double done = 0.0;
-  for (const SpringLaw law : kLaws)
+  for (const SpringLaw law : kIntegratedLaws)
     for (const double k : stiffness)
       for (const double zeta : zetas) {
         if (interrupt && interrupt->requested()) return cases;
         if (progress)
-          progress->update(0.2 * done / static_cast<double>(std::size(kLaws) * stiffness.size() * zetas.size()));
+          progress->update(0.2 * done / static_cast<double>(kIntegratedLaws.size() * stiffness.size() * zetas.size()));
         done += 1.0;
         const VertexProblem problem = vertex_problem(law, k, zeta);
         // If a step is so long that the duration has too few, the duration is extended.
@@ -283,8 +284,8 @@ Status study_integrators(OutputFolder& out, StudySize size, const Interrupt& int
   if (const Status done = write_text(out, "integrators_grid.csv", grid_csv(cases)); !done) return done;
   if (const Status done = draw_stability(out, size, interrupt, progress); !done) return done;
   double share = 0.4;
-  const auto costed = [&](double part) { progress.update(share += 0.6 * part / std::size(kLaws)); };
-  for (const SpringLaw law : kLaws) {
+  const auto costed = [&](double part) { progress.update(share += 0.6 * part / kIntegratedLaws.size()); };
+  for (const SpringLaw law : kIntegratedLaws) {
     if (interrupt.requested()) return interrupted();
     ParetoTable table = integrator_table(cases, law);
     put_costs(table, law, stiffness, zetas, full ? 9 : 3, costed);

@@ -252,6 +252,25 @@ Motion motion(const Deformable& deformable, double dt) {
   return result;
 }
 
+namespace {
+
+// The first layer with a value out of its range.
+Status check_layers(const Layers& layers, const std::string& name) {
+  using R = DeformableRange;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const Layer& layer = layers[i];
+    const bool good = R::kLayerThickness.holds(layer.thickness) && R::kStiffness.holds(layer.stiffness) &&
+                      R::kBreakingForce.holds(layer.force) && R::kBreakingEnergy.holds(layer.energy) &&
+                      R::kRemains.holds(layer.remains) && R::kGrip.holds(layer.grip);
+    if (!good)
+      return Error{fmt::format("`{}`: layers", name), fmt::format("layer {} has a value out of its range", i),
+                   "give numbers within the ranges of docs/level-format.md"};
+  }
+  return Done{};
+}
+
+}  // namespace
+
 Status check(const Deformable& d, const std::string& name) {
   using R = DeformableRange;
   struct Bound {
@@ -293,10 +312,11 @@ Status check(const Deformable& d, const std::string& name) {
                  fmt::format("give a number {} {} to {}{}", bound.range.above_min ? "above" : "from", bound.range.min,
                              bound.range.max, bound.why)};
   }
-  if (!reads_key(d.spring, "table")) return Done{};
+  if (Status layers = check_layers(d.layers, name); !layers) return layers;
+  if (!reads_key(d.spring, "table") && d.table.count == 0) return Done{};
   if (const char* const fault = fault_of(d.table))
     return Error{fmt::format("`{}`: table", name), fault, "give rows of depth and force that rise from 0, 0"};
-  if (d.young > 0.0)
+  if (d.young > 0.0 && reads_key(d.spring, "table"))
     return Error{fmt::format("`{}`: table", name), "stands beside young", "keep one: both say the force"};
   return Done{};
 }
