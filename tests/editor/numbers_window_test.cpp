@@ -31,8 +31,8 @@ hear Saved
 close
 )");
   const Said said = pliant(
-      {"edit", "small.glb", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
-      "ASAN_OPTIONS=detect_leaks=0 timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
+      {"edit", "small.glb", "--size", "1280x1000", "--config", "config", "--input", "script.txt", "--out", "shots"},
+      "ASAN_OPTIONS=detect_leaks=0 timeout 200 xvfb-run -a -s '-screen 0 1300x1100x24'");
   ASSERT_EQ(said.status, 0) << said.err;
   const Result<Level> level = load_level(folder / "small.glb");
   ASSERT_TRUE(level.ok()) << level.error().message();
@@ -66,8 +66,8 @@ hear Saved
 close
 )");
   const Said said = pliant(
-      {"edit", "small.glb", "--size", "1280x720", "--config", "config", "--input", "script.txt", "--out", "shots"},
-      "ASAN_OPTIONS=detect_leaks=0 timeout 200 xvfb-run -a -s '-screen 0 1300x800x24'");
+      {"edit", "small.glb", "--size", "1280x1900", "--config", "config", "--input", "script.txt", "--out", "shots"},
+      "ASAN_OPTIONS=detect_leaks=0 timeout 200 xvfb-run -a -s '-screen 0 1300x2000x24'");
   ASSERT_EQ(said.status, 0) << said.err;
   const Result<Level> level = load_level(folder / "small.glb");
   ASSERT_TRUE(level.ok()) << level.error().message();
