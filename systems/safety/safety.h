@@ -30,7 +30,7 @@
 // were missed.
 //
 // A surface whose stiffness rises in time (components/varying.h) may push a hand with what it gains: that goes to the
-// hand's account, as if the hand had given it. What it loses as its stiffness falls is forfeit.
+// hand's account, as if the hand had given it. The loss of a falling stiffness is forfeit.
 //
 // A surface with prescribed motion may push a hand, as a motor would: passivity and the stiffness limit apply to the
 // hand's motion relative to that surface. Clamp and slew bound the rest.

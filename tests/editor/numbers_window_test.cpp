@@ -1,4 +1,6 @@
 // Text typed into number fields: with units, with arithmetic, or rejected with a sentence.
+#include <fmt/format.h>
+
 #include "content/level_file.h"
 #include "tests/editor/small_level.h"
 #include "tests/player/command.h"
@@ -6,13 +8,27 @@
 namespace pliant::testing {
 namespace {
 
-class NumbersWindowTest : public CommandTest {};
+class NumbersWindowTest : public CommandTest {
+ protected:
+  // The node `sheet` after the script, in a window 1280 pixels wide.
+  LevelNode edited(const std::string& script, int height) {
+    EXPECT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
+    write_text(folder / "script.txt", script);
+    const Said said = pliant(
+        {"edit", "small.glb", "--size", fmt::format("1280x{}", height), "--config", "config", "--input", "script.txt",
+         "--out", "shots"},
+        fmt::format("ASAN_OPTIONS=detect_leaks=0 timeout 200 xvfb-run -a -s '-screen 0 1300x{}x24'", height + 100));
+    EXPECT_EQ(said.status, 0) << said.err;
+    const Result<Level> level = load_level(folder / "small.glb");
+    EXPECT_TRUE(level.ok()) << level.error().message();
+    return level.ok() ? level->nodes[0] : LevelNode{};
+  }
+};
 
 TEST_F(NumbersWindowTest, AreTakenWithTheirUnitsOrRefused) {
   if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
-  ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
-  write_text(folder / "script.txt", R"(
+  const LevelNode sheet = edited(R"(
 await Inspector/Search
 click Scene/sheet/row
 click Tab/Inspector
@@ -29,14 +45,9 @@ set Inspector/Position y 0,1
 key Ctrl+S
 hear Saved
 close
-)");
-  const Said said = pliant(
-      {"edit", "small.glb", "--size", "1280x1000", "--config", "config", "--input", "script.txt", "--out", "shots"},
-      "ASAN_OPTIONS=detect_leaks=0 timeout 200 xvfb-run -a -s '-screen 0 1300x1100x24'");
-  ASSERT_EQ(said.status, 0) << said.err;
-  const Result<Level> level = load_level(folder / "small.glb");
-  ASSERT_TRUE(level.ok()) << level.error().message();
-  const LevelNode& sheet = level->nodes[0];
+)",
+                                 1000);
+  ASSERT_TRUE(sheet.deformable);
   EXPECT_EQ(sheet.deformable->stiffness, 500.0);
   EXPECT_EQ(sheet.deformable->reach, 0.005);
   EXPECT_EQ(sheet.local.translation.x, 0.1f);
@@ -46,8 +57,7 @@ close
 TEST_F(NumbersWindowTest, ASurfacesEffectsAreSetAndSaved) {
   if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
-  ASSERT_TRUE(save_level(sheet_and_finger(), folder / "small.glb").ok());
-  write_text(folder / "script.txt", R"(
+  const LevelNode sheet = edited(R"(
 await Inspector/Search
 click Scene/sheet/row
 click Tab/Inspector
@@ -64,14 +74,10 @@ set Inspector/deformable/friction_viscous 0.25
 key Ctrl+S
 hear Saved
 close
-)");
-  const Said said = pliant(
-      {"edit", "small.glb", "--size", "1280x1900", "--config", "config", "--input", "script.txt", "--out", "shots"},
-      "ASAN_OPTIONS=detect_leaks=0 timeout 200 xvfb-run -a -s '-screen 0 1300x2000x24'");
-  ASSERT_EQ(said.status, 0) << said.err;
-  const Result<Level> level = load_level(folder / "small.glb");
-  ASSERT_TRUE(level.ok()) << level.error().message();
-  const Deformable& skin = *level->nodes[0].deformable;
+)",
+                                 1900);
+  ASSERT_TRUE(sheet.deformable);
+  const Deformable& skin = *sheet.deformable;
   EXPECT_DOUBLE_EQ(skin.texture_amplitude, 5e-5);
   EXPECT_DOUBLE_EQ(skin.texture_wavelength, 2e-3);
   EXPECT_EQ(skin.texture_seed, 7.0);

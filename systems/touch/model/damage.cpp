@@ -12,9 +12,9 @@ namespace pliant {
 namespace {
 
 constexpr double kSamePlace = 0.07;  // [1] of the reach: nearer presses deepen the same dent
-constexpr double kAgain = 0.5;      // [1] of the yield force: below it the next yielding is another event
+constexpr double kAgain = 0.5;       // [1] of the yield force: below it the next yielding is another event
 
-void tell(const ContactSearch& search, const Pressing& pressing, FeltKind kind, std::int32_t index, double force) {
+void add_event(const ContactSearch& search, const Pressing& pressing, FeltKind kind, std::int32_t index, double force) {
   std::vector<TouchEvent>& events = search.world.touch->events;
   if (events.size() >= kMostEventsInATick) return;
   const Pose& pose = search.world.registry.get<Pose>(search.object.entity);
@@ -51,8 +51,8 @@ bool breaks(const ContactSearch& search, const Deformable& deformable, Pressing&
       loaded.share * (law.layer_force(damage.broken, depth) - law.layer_force(damage.broken, law.free_depth));
   const double energy = loaded.share * law.layer_energy(damage.broken, depth);
   if (!(layer.force > 0 && force >= layer.force) && !(layer.energy > 0 && energy >= layer.energy)) return false;
-  tell(search, pressing, FeltKind::kBroke, static_cast<std::int32_t>(damage.broken),
-       loaded.share * pressing.stored.force);
+  add_event(search, pressing, FeltKind::kBroke, static_cast<std::int32_t>(damage.broken),
+            loaded.share * pressing.stored.force);
   damage.relaxes = damage.relaxes || damage.broken == 0;
   ++damage.broken;
   remember_hole(search, pressing.source->place.p, std::max(deformable.hole_radius, pressing.source->tip.radius),
@@ -84,7 +84,7 @@ double root_16th(double v) {
   return std::sqrt(std::sqrt(std::sqrt(std::sqrt(v))));
 }
 
-// What is drawn is the deepest one, which needs no sum per vertex: at most a few percent of the depth less.
+// The deepest one is drawn, which needs no sum per vertex: at most a few percent of the depth less.
 void draw_set(const ContactSearch& search, const SourceState& source, const SetDent& dent) {
   const Mesh& mesh = search.mesh;
   ObjectState& object = search.object;
@@ -148,7 +148,7 @@ bool yields(const ContactSearch& search, const Deformable& deformable, Pressing&
     search.world.dropped |= kDroppedSets;
     return false;
   }
-  if (!damage.yields) tell(search, pressing, FeltKind::kYielded, 0, limit);
+  if (!damage.yields) add_event(search, pressing, FeltKind::kYielded, 0, limit);
   damage.yields = true;
   const Raised after = set_under(search.object, pressing.source->place, pressing.source->axis);
   pressing.raised.height += after.height - before.height;

@@ -84,7 +84,7 @@ double knock(ContactEffects& now, const Deformable& deformable, double inward, d
 // 1/2 dk d0 d1, d0 and d1 the depths before and now: with the trapezoids of the force's work it is exact.
 double gained(const Contact& contact, const LoadedContact& loaded, const Pressing& pressing) {
   const double before = pressing.energy_before, now = pressing.stored.energy;
-  if (before == now || !(before > 0.0) || !(contact.share > 0.0)) return 0.0;
+  if (before == now || !(before > 0.0) || !(now > 0.0) || !(contact.share > 0.0)) return 0.0;
   const double was = contact.load / contact.share / std::sqrt(2.0 * before);
   return 0.5 * loaded.load * loaded.load / loaded.share * (1.0 - before / now) * was;
 }
@@ -147,7 +147,7 @@ void feel(World& world, const Deformable& deformable, const Mesh& mesh, ObjectSt
   contact.effects.pressed = true;
   if (object.stiffness_before > 0.0) {
     const double gain = gained(contact, loaded, pressing);
-    for (std::size_t h = 0; h < object.accounts.size() && gain != 0.0; ++h) {
+    for (std::size_t h = 0; h < object.accounts.size() && gain != 0.0 && std::isfinite(gain); ++h) {
       ProbeState& hand = world.touch->probes[h];
       if (hand.entity != contact.probe) continue;
       hand.stiffened += gain;
