@@ -110,7 +110,7 @@ void write_probe(World& world, ProbeState& state, Tick tick) {
   turning.touched = limits.touched * state.lever * state.lever;
   limits.carried = surface_displacement(world, state.entity, tick.elapsed());
   limits.stiffened = state.stiffened * joules_of(world, state);
-  if (!std::isfinite(limits.stiffened)) limits.stiffened = 0.0;  // an account that is no number would allow any work
+  if (!std::isfinite(limits.stiffened)) limits.stiffened = 0.0;  // a NaN in the account would allow any work
   if (state.safety.engaged) state.stiffened_sum += std::max(0.0, limits.stiffened);
   const BesideObserver beside = effects_beside(world, state.entity, state.safety.share);
   limits.weight = beside.force;
