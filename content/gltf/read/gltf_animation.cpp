@@ -48,12 +48,12 @@ class AnimationReader {
     if (other_pointers_ == 0) return;
     std::vector<std::string> keys;
     for (const VaryingKey& each : varying_keys()) keys.emplace_back(each.key);
-    const std::string more =
-        other_pointers_ == 1 ? "" : fmt::format(" and {} more pointers of animations", other_pointers_ - 1);
+    const std::string more = other_pointers_ == 1 ? ""
+                                                  : fmt::format(" and {} more pointer{}", other_pointers_ - 1,
+                                                                other_pointers_ == 2 ? "" : "s");
     level_.notes.push_back(
-        fmt::format("{}{}: not played; of what pointers of animations name, {} of PLIANT_deformable "
-                    "are",
-                    other_, more, listed(keys)));
+        fmt::format("the animation pointer {}{} not played; a pointer may vary {} of PLIANT_deformable", other_,
+                    more + (other_pointers_ == 1 ? " is" : " are"), listed(keys)));
   }
 
  private:
