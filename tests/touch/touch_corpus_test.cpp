@@ -7,9 +7,12 @@
 #include <filesystem>
 #include <random>
 
+#include "content/author/touchable.h"
 #include "content/level_file.h"
 #include "scenes/touch_raw.h"
+#include "systems/touch/collide/collision.h"
 #include "systems/touch/collide/surface_query.h"
+#include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
 namespace {
@@ -219,6 +222,68 @@ TEST_P(CorpusStroke, FeelsWhatAFreshPressFeels) {
   EXPECT_GE(compared, 6 * kStrokes);
 }
 
+// Presses of a point and of spheres on the largest part, straight in and out, deeper than many walls are thick.
+class CorpusPress : public ::testing::TestWithParam<std::string> {};
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(CorpusPress);
+
+TEST_P(CorpusPress, IsLetGoOnItsWayOut) {
+  Result<Level> level = load_level(fs::path(PLIANT_CORPUS_DIR) / GetParam());
+  if (!level) GTEST_SKIP() << level.error().message();
+  std::int32_t largest = -1;
+  std::size_t vertices = 0;
+  for (std::size_t i = 0; i < level->nodes.size(); ++i) {
+    if (level->nodes[i].mesh < 0) continue;
+    std::size_t count = 0;
+    for (const Primitive& each : level->meshes[static_cast<std::size_t>(level->nodes[i].mesh)].primitives)
+      count += each.position.size();
+    if (count > vertices) largest = static_cast<std::int32_t>(i), vertices = count;
+  }
+  ASSERT_TRUE(make_touchable_surface(*level, largest).ok());
+  Stage stage(4000.0);
+  set_up(stage, *level);
+  const auto [surface, deformable, pose] = *stage.world.registry.view<const Deformable, const Pose>().begin();
+  const Mesh& mesh = stage.world.meshes[deformable.mesh];
+  const double size = mesh.box.diagonal(), far = 0.1 * size, depth = 0.03 * size;
+  const std::array radii{0.0, 0.01 * size, 0.03 * size};
+  const dvec3 away = pose.to_world(dvec3(mesh.box.max)) + dvec3(size);
+  std::array<Entity, 3> hands;
+  for (std::size_t i = 0; i < 3; ++i) hands[i] = stage.add_probe(away, radii[i]);
+  stage.prepare();
+  const auto appear = [&](Entity hand, dvec3 x) {  // not moved there, and without earlier contacts
+    for (ObjectState& object : stage.world.touch->objects)
+      for (SourceState& source : object.sources)
+        if (source.tracked) drop_contact(source, stage.world.registry.get<Contact>(source.contact));
+    stage.world.registry.get<Probe>(hand).placed = false;
+    stage.world.dropped = 0;
+    stage.place(hand, x);
+    for (int i = 0; i < 2; ++i) stage.tick();
+  };
+  std::mt19937 random(8);
+  std::normal_distribution<double> g;
+  int presses = 0, held = 0;
+  for (int place = 0; place < 40 * kStrokes; ++place) {
+    const std::uint32_t v = static_cast<std::uint32_t>(random()) % mesh.vertex_count;
+    const dvec3 n = normalize(pose.rotation * dvec3(mesh.normal(v)) + 0.3 * dvec3(g(random), g(random), g(random)));
+    const std::size_t i = static_cast<std::size_t>(place) % 3;
+    const dvec3 p = pose.to_world(dvec3(mesh.position(v))) + radii[i] * n, on = p + (1e-4 * size - radii[i]) * n;
+    appear(hands[i], p + far * n);
+    bool free = (stage.world.dropped & kDroppedInside) == 0 && walls_between(stage, p + far * n, on) == 0 &&
+                walls_between(stage, on, p + far * n) == 0;
+    for (auto [entity, contact] : stage.world.registry.view<const Contact>())
+      free = free && !(contact.probe == hands[i] && contact.height < 0);
+    if (!free) continue;
+    ++presses;
+    constexpr int kSteps = 300;
+    for (int k = 1; k <= 2 * kSteps; ++k) {
+      stage.place(hands[i], p + (far - (far + depth) * (k <= kSteps ? k : 2 * kSteps - k) / kSteps) * n);
+      stage.tick();
+    }
+    held += raw_force(stage, hands[i]) != dvec3(0);
+  }
+  EXPECT_GE(presses, 20 * kStrokes);
+  EXPECT_LE(held, 0.01 * presses) << presses;
+}
+
 std::string name_of(const ::testing::TestParamInfo<std::string>& info) {
   std::string name = fs::path(info.param).stem().string();
   std::replace_if(
@@ -227,6 +292,7 @@ std::string name_of(const ::testing::TestParamInfo<std::string>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Corpus, CorpusTouch, ::testing::ValuesIn(meshes()), name_of);
+INSTANTIATE_TEST_SUITE_P(Corpus, CorpusPress, ::testing::ValuesIn(meshes()), name_of);
 INSTANTIATE_TEST_SUITE_P(Corpus, CorpusStroke,
                          ::testing::Values("meshes-draco/Box_Draco.glb", "meshes-valid/gltf-transform/DenseSphere.glb",
                                            "meshes-valid/spot/spot_triangulated.obj",

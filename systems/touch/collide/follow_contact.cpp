@@ -17,8 +17,57 @@ namespace {
 constexpr double kJump = 10.0;
 // Depth that the gradients do not explain, from which on it was not pushed. [1] of the tip's way
 constexpr double kUnexplained = 0.1;
+// A side turns with the normal by this many radians while its tip moves by its depth. [1]
+constexpr double kTurnsWith = 1.0;
+// A normal farther from the side is the other side's. [rad] 100 degrees
+constexpr double kSlips = 1.7453292519943295;
 // Two feet of a tip closer than this are the same. [1] of the mean edge
 constexpr double kSameFoot = 1e-6;
+
+// Depth of the tip's centre behind the deepest of the surfaces that it is pressed through. [m]
+double depth_of_tip(const ContactSearch& s, const SourceState& source, const Contact& contact) {
+  double depth = -source.place.height;
+  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
+    const SourceState& other = s.object.sources[i];
+    if (!other.tracked || &other == &source) continue;
+    const Contact& its = s.world.registry.get<Contact>(other.contact);
+    if (its.probe == contact.probe && its.tip == contact.tip) depth = std::max(depth, -other.place.height);
+  }
+  return depth;
+}
+
+// Turns the side towards the contact's normal, as far as the tip's way lets it: a tip strokes round a body that is
+// thick against its depth. False: the foot is on the other side of a part that is thin against it.
+bool keeps_side(SourceState& source, double depth, double way) {
+  const dvec3 normal = source.place.normal;
+  const double lag = std::acos(std::clamp(dot(source.side, normal), -1.0, 1.0));
+  if (!(depth > 0) || lag * depth <= kTurnsWith * way) {
+    source.side = normal;
+    return true;
+  }
+  if (lag > kSlips) return false;
+  source.side = normalize(glm::mix(source.side, normal, kTurnsWith * way / (lag * depth)));
+  return true;
+}
+
+// Whether the contact is with the back of a part that its tip is pressed through: in front of it, behind the part.
+bool is_back(const ContactSearch& s, const SourceState& source, const Contact& contact) {
+  for (std::uint32_t i = 0; i < s.object.probe_sources && source.place.height >= 0; ++i) {
+    const SourceState& first = s.object.sources[i];
+    const HeldFoot& held = first.held;
+    if (first.tracked && first.born < source.born && held.tick >= s.tick.index && held.probe == contact.probe &&
+        held.tip == contact.tip && dot(held.normal, source.place.normal) < 0 &&
+        dot(source.place.p - held.p, held.normal) < -s.early())
+      return true;
+  }
+  return false;
+}
+
+// The foot slipped round a rim from p: nothing holds the tip any more, and it comes back through the part.
+void slip(const ContactSearch& s, SourceState& source, Contact& contact, dvec3 p, double height) {
+  source.held = {s.tick.index + 1, contact.probe, contact.tip, p, source.side, source.tip.radius - height, true};
+  drop_contact(source, contact);
+}
 
 // A foot at a seam moves to the other surface, with the contact's whole state, or waits between both.
 enum class AtSeam { kStays, kBetween, kCarried };
@@ -92,7 +141,7 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
   const Foot before = source.place.main();
   const double last = source.place.height;
   if (last < s.early())
-    source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal, false};
+    source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal, 0.0, false};
   const dvec3 step = x - source.x, slope = source.place.gradient, place = source.place.p;
   const TipPlace was{source.x - source.axis.along * source.axis.axis, source.axis.axis};
   Foot foot = follow_foot(s, before, source.x, x);
@@ -100,12 +149,9 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
   contact.previous_height = contact.height;
   const AtSeam at_seam = step_over(s, source, contact, x, foot);
   if (at_seam == AtSeam::kCarried) return;
-  // From behind one wall to the front of another at once: the foot slipped round the rim of a part thinner than the
-  // depth. Nothing holds the tip any more; it comes back through the part.
   if (last < 0 && at_seam == AtSeam::kStays && foot.height > 2 * length(step) + s.early()) {
-    source.held.slipped = true;
     s.world.dropped |= kDroppedRim;
-    return drop_contact(source, contact);
+    return slip(s, source, contact, place, last);  // out of the other side at once
   }
   const bool front = foot.height >= 0;
   // Past the rim of an open surface, or too far away for a meaningful foot.
@@ -115,8 +161,13 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
   if ((beyond && !(front && radius > 0)) ||
       std::abs(foot.height) > static_cast<double>(s.mesh.box.diagonal()) + radius ||
       foot.height > radius * (1 + 2 * kAhead))
-    return drop_contact(source, contact);
+    return beyond && last < 0 ? slip(s, source, contact, place, last) : drop_contact(source, contact);
   put_contact(source, contact, deepest_on_tip(s, tip, radius, foot, source.axis.along));
+  if (!keeps_side(source, depth_of_tip(s, source, contact), length(source.x - x + step))) {
+    s.world.dropped |= kDroppedRim;
+    return slip(s, source, contact, place, last);
+  }
+  if (is_back(s, source, contact)) return drop_contact(source, contact);
   // A depth changes no faster than the tip moves, unless the tracked minimum vanished and the foot moved downhill to
   // another one. The additional depth was not pushed. Over a short way, that is what the gradients do not explain.
   const dvec3 step_there = source.x - was.at(source.axis.along);  // of the same sphere of a capsule

@@ -220,20 +220,18 @@ void find_near(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, d
 }
 
 // Walls that a tip was pressed through before it slipped round a rim stay open for it until it is clear: in front of
-// the nearest wall on the side that it came from, or away from the object.
+// the place where it slipped, on the side that it came from, or away from there.
 void keep_open(const ContactSearch& s, const ProbeTip& tip, const TipPlace& to) {
+  constexpr double kFree = 0.5;  // [1] of the depth at which it slipped
+  constexpr double kAway = 4.0;  // [1] sideways, of the depth at which it slipped, or of the depth now
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
     SourceState& source = s.object.sources[i];
     HeldFoot& held = source.held;
     if (!s.slipped(source) || held.probe != tip.probe || held.tip != tip.index) continue;
-    const dvec3 x = to.at(source.axis.along);
-    const FlatPoint near = closest_flat(s.mesh, x, 2.0 * static_cast<double>(s.mesh.box.diagonal()) + tip.tip.radius);
-    if (!near.valid()) continue;
-    const uvec3 t = s.mesh.triangles[near.triangle];
-    const dvec3 a(s.mesh.position(t.x)),
-        outward = cross(dvec3(s.mesh.position(t.y)) - a, dvec3(s.mesh.position(t.z)) - a);
-    const double away = tip.tip.radius * (1 + kAhead);
-    if (dot(held.normal, outward) < 0 || dot(x - a, outward) <= 0 || near.distance2 <= away * away)
+    const dvec3 way = to.at(source.axis.along) - held.p;
+    const double up = dot(way, held.normal), aside = length(way - up * held.normal);
+    if (up <= std::max(tip.tip.radius * (1 + kAhead), kFree * held.depth) &&
+        aside <= kAway * std::clamp(-up, held.depth, kAway * held.depth))
       held.tick = s.tick.index + 1;
   }
 }
@@ -260,7 +258,7 @@ void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, TipPlace& se
   if (low.x > box.max.x || low.y > box.max.y || low.z > box.max.z || high.x < box.min.x || high.y < box.min.y ||
       high.z < box.min.z)
     return;
-  keep_open(s, tip, to);
+  if (!fresh) keep_open(s, tip, to);
   if (is_beside(s, tip)) return;
   const TipWay way{from, to};
   const int count = intervals(s, tip.tip);

@@ -65,6 +65,7 @@ struct HeldFoot {
   std::uint8_t tip = 0;
   dvec3 p{0};            // [m] object frame
   dvec3 normal{0};       // [1] of the contact
+  double depth = 0.0;    // [m] of the contact
   bool slipped = false;  // its contact slipped round a rim, and its tip is not clear yet
 };
 
@@ -78,6 +79,7 @@ struct SourceState {
   Tip tip;                           // the tip in contact
   AxisPlace axis;                    // of a capsule
   FootBlend place;                   // of the tip's centre
+  dvec3 side{0};                     // [1] from which the tip came, object frame: follows the normal (follow_contact.h)
   HeldFoot held;                     // written where its contact is tracked
   bool active = false;               // the contact dented the surface in the last tick
   FieldSource now, before;           // of this tick and of the last: their difference is the target's rate
