@@ -88,5 +88,90 @@ close
   EXPECT_EQ(skin.friction_viscous, 0.25);
 }
 
+TEST_F(NumbersWindowTest, LayersAndYieldingAreSetAndSaved) {
+  if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
+  const LevelNode sheet = edited(R"(
+await Inspector/Search
+click Scene/sheet/row
+click Tab/Inspector
+set Inspector/Search layers
+click Inspector/deformable/Add
+click Inspector/deformable/Add
+set Inspector/deformable/layers 1 name skin
+set Inspector/deformable/layers 1 thickness 1.5 mm
+set Inspector/deformable/layers 1 stiffness 0.4 N/mm
+set Inspector/deformable/layers 1 force 600 mN
+set Inspector/deformable/layers 1 remains 1.5
+say is out of range
+set Inspector/deformable/layers 1 remains 0.1
+set Inspector/deformable/layers 2 energy 2e-4
+set Inspector/deformable/layers 2 grip 12
+set Inspector/Search hole
+set Inspector/deformable/hole_radius 3 mm
+key Ctrl+S
+hear Saved
+close
+)",
+                                 1300);
+  ASSERT_TRUE(sheet.deformable);
+  const std::vector<Layer> layers(sheet.deformable->layers.begin(), sheet.deformable->layers.end());
+  ASSERT_EQ(layers.size(), 2u);
+  EXPECT_EQ(layers[0].name, "skin");
+  EXPECT_DOUBLE_EQ(layers[0].thickness, 1.5e-3);
+  EXPECT_DOUBLE_EQ(layers[0].stiffness, 400.0);
+  EXPECT_DOUBLE_EQ(layers[0].force, 0.6);
+  EXPECT_DOUBLE_EQ(layers[0].remains, 0.1);
+  EXPECT_DOUBLE_EQ(layers[1].energy, 2e-4);
+  EXPECT_DOUBLE_EQ(layers[1].grip, 12.0);
+  EXPECT_DOUBLE_EQ(sheet.deformable->hole_radius, 3e-3);
+  const LevelNode pressed = edited(R"(
+await Inspector/Search
+click Scene/sheet/row
+click Tab/Inspector
+set Inspector/deformable/yield.force 2
+set Inspector/deformable/yield.hardening 1 N/mm
+key Ctrl+S
+hear Saved
+close
+)",
+                                   1900);
+  ASSERT_TRUE(pressed.deformable);
+  EXPECT_EQ(pressed.deformable->yield_force, 2.0);
+  EXPECT_DOUBLE_EQ(pressed.deformable->yield_hardening, 1000.0);
+}
+
+TEST_F(NumbersWindowTest, AnEffectInSpaceIsAddedSetAndSaved) {
+  if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "xvfb-run is missing; install xvfb and xauth";
+  write_text(folder / "rail.csv", "time_s,x,y,z\n0,-0.05,0,0\n1,0.05,0,0.02\n");
+  edited(R"(
+await Inspector/Search
+click Menu/Add
+click Effect on probes
+expect Scene/effect/row
+click Tab/Inspector
+set Inspector/effect/kind guidance
+set Inspector/effect/path rail.csv
+set Inspector/effect/stiffness 0.15 N/mm
+set Inspector/effect/range 8 mm
+click Inspector/effect/probes finger
+key Ctrl+S
+hear Saved
+close
+)",
+         1500);
+  const Result<Level> level = load_level(folder / "small.glb");
+  ASSERT_TRUE(level.ok()) << level.error().message();
+  ASSERT_EQ(level->nodes.size(), 3u);
+  ASSERT_TRUE(level->nodes[2].effect);
+  const Effect& rail = *level->nodes[2].effect;
+  EXPECT_EQ(rail.kind, EffectKind::kGuidance);
+  EXPECT_EQ(rail.path, "rail.csv");
+  EXPECT_DOUBLE_EQ(rail.stiffness, 150.0);
+  EXPECT_DOUBLE_EQ(rail.range, 8e-3);
+  EXPECT_EQ(rail.probes, std::vector<std::string>{"finger"});
+}
+
 }  // namespace
 }  // namespace pliant::testing
