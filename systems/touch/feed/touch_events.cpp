@@ -16,11 +16,11 @@ void add_event(TouchState& touch, const TouchEvent& event) {
 std::optional<Note> explain_events(const World& world) {
   const std::uint64_t lost = world.touch ? world.touch->events_lost : 0;
   if (lost == 0) return {};
-  return Note{
-      fmt::format("{} events came where a tick had {} already: they are felt, but not told", lost, kMostEventsInATick),
-      "use fewer probes, or wider `spacing` of detents",
-      "dropped.events",
-      {}};
+  return Note{fmt::format("{} events came where a tick had {} already: they are felt, but not recorded", lost,
+                          kMostEventsInATick),
+              "use fewer probes, or wider `spacing` of detents",
+              "dropped.events",
+              {}};
 }
 
 }  // namespace pliant
