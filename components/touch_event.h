@@ -24,7 +24,7 @@ struct TouchEvent {
   double value = 0.0;  // [N]
 };
 
-// Of one tick; more are lost.
+// Of one tick; more are lost, and counted (systems/touch/feed/touch_events.h).
 inline constexpr std::size_t kMostEventsInATick = 64;
 // Those that wait for a journal's owner.
 inline constexpr std::size_t kMostEventsWaiting = 4096;

@@ -13,6 +13,7 @@
 #include "content/keys/unused_keys.h"
 #include "content/level/device_request.h"
 #include "content/level/device_use.h"
+#include "content/level/probe_damage.h"
 #include "content/level/script.h"
 #include "content/level/spawn_soft.h"
 #include "content/level/unfelt_relief.h"
@@ -185,8 +186,8 @@ void find_idle(const Level& level, Findings& findings) {
     std::replace(pointer.begin(), pointer.end(), '.', '/');  // dots in keys are nested objects
     findings.push_back({Severity::kNote, std::move(pointer), key.what, key.cure, "key.unused"});
   }
-  if (const std::optional<Note> relief = unfelt_relief(level))
-    findings.push_back(finding_of(*relief, Severity::kNote, scene_pointer(level)));
+  for (const std::optional<Note>& note : {unfelt_relief(level), undamaged_by_bodies(level)})
+    if (note) findings.push_back(finding_of(*note, Severity::kNote, scene_pointer(level)));
   for (const DeviceFault& idle : find_unmoved_probes(level))
     findings.push_back(finding_of(idle.what, Severity::kNote, pointer_of(level, idle.node)));
 }

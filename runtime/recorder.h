@@ -19,6 +19,8 @@ class Recorder {
   void record(const Row& row) {
     if (!ring_.push(row)) lost_.fetch_add(1, std::memory_order_relaxed);
   }
+  // The same: rows that the writer could not even make.
+  void lose(std::uint64_t rows) { lost_.fetch_add(rows, std::memory_order_relaxed); }
   // Owner: moves the rows recorded since the last call into `rows`.
   void drain(std::vector<Row>& rows) {
     Row row;

@@ -122,12 +122,13 @@ std::int32_t copy_node(Level& level, std::int32_t node, NodesMoved* moved) {
   const std::size_t before = level.nodes.size();
   const std::vector<std::int32_t> all = subtree(level, node);
   std::map<std::int32_t, std::int32_t> copy;  // original -> its copy
-  std::map<std::string, std::string> device;
+  std::map<std::string, std::string> device, probe;
   for (const std::int32_t each : all) {
     LevelNode made = at(level, each);
     made.source = -1;
     made.name = free_name(level, made.name);
     if (made.device) device[at(level, each).name] = made.name;
+    if (made.probe) probe[at(level, each).name] = made.name;
     copy[each] = static_cast<std::int32_t>(level.nodes.size());
     level.nodes.push_back(std::move(made));
   }
@@ -138,6 +139,9 @@ std::int32_t copy_node(Level& level, std::int32_t node, NodesMoved* moved) {
     if (const auto it = device.find(made.probe_device); it != device.end()) made.probe_device = it->second;
     if (made.handle)
       if (const auto it = device.find(made.handle->device); it != device.end()) made.handle->device = it->second;
+    if (made.effect)
+      for (std::string& name : made.effect->probes)
+        if (const auto it = probe.find(name); it != probe.end()) name = it->second;
   }
   if (const std::int32_t parent = at(level, node).parent; parent >= 0) {
     std::vector<std::int32_t>& beside = at(level, parent).children;
@@ -151,21 +155,32 @@ std::int32_t copy_node(Level& level, std::int32_t node, NodesMoved* moved) {
 NodesMoved remove_node(Level& level, std::int32_t node) {
   const std::vector<std::int32_t> all = subtree(level, node);
   std::set<std::int32_t> meshes;
-  std::set<std::string> devices;
+  std::set<std::string> devices, probes;
   for (const std::int32_t each : all) {
     meshes.insert(at(level, each).mesh);
     if (at(level, each).device) devices.insert(at(level, each).name);
+    if (at(level, each).probe) probes.insert(at(level, each).name);
   }
   NodesMoved moved = put_in_order(level, {all.begin(), all.end()});
   drop_meshes(level, meshes);
   // A node that refers to a removed device refers to none afterwards.
-  for (const LevelNode& left : level.nodes)
+  for (const LevelNode& left : level.nodes) {
     if (left.device) devices.erase(left.name);
+    if (left.probe) probes.erase(left.name);
+  }
   for (LevelNode& left : level.nodes) {
     if (devices.count(left.probe_device)) left.probe_device.clear();
     if (left.handle && devices.count(left.handle->device)) left.handle->device.clear();
+    if (left.effect)
+      for (const std::string& name : probes) forget_probe(*left.effect, name);
   }
   return moved;
+}
+
+void forget_probe(Effect& effect, const std::string& probe) {
+  std::vector<std::string>& names = effect.probes;
+  if (std::any_of(names.begin(), names.end(), [&](const std::string& name) { return name != probe; }))
+    std::erase(names, probe);
 }
 
 Result<NodesMoved> move_node(Level& level, std::int32_t node, std::int32_t parent, std::size_t place) {
@@ -219,12 +234,15 @@ Status rename_node(Level& level, std::int32_t node, const std::string& name) {
   if (name.empty()) return Error{at(level, node).name, "needs a name of one letter at least"};
   const std::string old = at(level, node).name;
   at(level, node).name = name;
-  if (!at(level, node).device) return Done{};
-  for (const LevelNode& each : level.nodes)
-    if (each.device && each.name == old) return Done{};
+  bool device = at(level, node).device.has_value(), probe = at(level, node).probe.has_value();
+  for (const LevelNode& each : level.nodes) {
+    device = device && !(each.device && each.name == old);
+    probe = probe && !(each.probe && each.name == old);
+  }
   for (LevelNode& each : level.nodes) {
-    if (each.probe_device == old) each.probe_device = name;
-    if (each.handle && each.handle->device == old) each.handle->device = name;
+    if (device && each.probe_device == old) each.probe_device = name;
+    if (device && each.handle && each.handle->device == old) each.handle->device = name;
+    if (probe && each.effect) std::replace(each.effect->probes.begin(), each.effect->probes.end(), old, name);
   }
   return Done{};
 }

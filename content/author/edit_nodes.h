@@ -21,8 +21,8 @@ using NodesMoved = std::vector<std::int32_t>;
 // Adds the last child of `parent`, or the last root of the scene (kNoLevelNode). Makes the name unique. Returns its
 // number.
 std::int32_t add_node(Level& level, LevelNode node, std::int32_t parent = kNoLevelNode, NodesMoved* moved = nullptr);
-// Copies a node with its subtree; the copy is its sibling. Meshes are shared; names are made unique. If the device of a
-// copied probe or handle is copied too, the copy refers to the copied device. Returns the number of the copy.
+// Copies a node with its subtree; the copy is its sibling. Meshes are shared; names are made unique. References to a
+// device or probe that is copied too go to its copy. Returns the number of the copy.
 std::int32_t copy_node(Level& level, std::int32_t node, NodesMoved* moved = nullptr);
 // Removes the subtree, meshes that no other node uses, and animation channels of removed nodes.
 NodesMoved remove_node(Level& level, std::int32_t node);
@@ -30,8 +30,10 @@ NodesMoved remove_node(Level& level, std::int32_t node);
 // preserved as far as translation, rotation and scale can represent it. Error: the parent is the node itself or below
 // it.
 Result<NodesMoved> move_node(Level& level, std::int32_t node, std::int32_t parent, std::size_t place);
-// Probes and handles that refer to this node's device follow, unless another node has the name. Error: the name is
-// empty.
+// References to this node's device or probe follow, unless another one has the name. Error: the name is empty.
 Status rename_node(Level& level, std::int32_t node, const std::string& name);
+// Takes a probe that is gone off the list of those that feel an effect. The last name stays, and is an error of the
+// level: without it every probe would feel the effect.
+void forget_probe(Effect& effect, const std::string& probe);
 
 }  // namespace pliant

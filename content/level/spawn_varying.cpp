@@ -10,12 +10,6 @@
 namespace pliant {
 namespace {
 
-// Whether the motion of the free surface depends on this key.
-bool moves_surface(const Deformable& deformable, const std::string& key) {
-  if (key == "damping_ratio") return true;
-  return key == "stiffness" && row_of(deformable.spring).step != SpringStep::kExact;
-}
-
 bool is_painted(const Mesh& mesh) {
   return !mesh.stiffness_factor.empty() || !mesh.damping_factor.empty() || !mesh.relaxation_factor.empty();
 }
@@ -23,7 +17,10 @@ bool is_painted(const Mesh& mesh) {
 Status check_key(const SpawnState& state, std::size_t n, const Deformable& deformable, const std::string& key) {
   if (key == "stiffness" && deformable.young > 0.0)
     return state.at(n, "has an animated `stiffness` and `young`, from which it follows", "remove one of them");
-  if (moves_surface(deformable, key) && is_painted(state.world.meshes[deformable.mesh]))
+  const VaryingKey& its = *find_varying_key(key);
+  const bool moves = std::any_of(its.members.begin(), its.members.end(),
+                                 [&](const auto member) { return moves_field(deformable, member); });
+  if (moves && is_painted(state.world.meshes[deformable.mesh]))
     return state.at(n,
                     fmt::format("has an animated `{}`, which is painted on this surface and read when it opens", key),
                     "remove the paint or the channel");

@@ -19,6 +19,7 @@
 #include "editor/ui/host.h"
 #include "editor/ui/script.h"
 #include "editor/viewport/crease_lines.h"
+#include "editor/viewport/guide_lines.h"
 #include "editor/viewport/stage.h"
 #include "editor/viewport/view_bar.h"
 
@@ -140,6 +141,7 @@ class App {
   std::optional<dvec2> asked_;
   ViewBar view_bar_;
   CreaseLines creases_;
+  GuideLines guides_;
   std::pair<int, int> viewport_size_now() const;  // [pixel] of a picture
   std::pair<int, int> ordered_size_{0, 0};
   SolidOrder ordered_;           // of the last ordered picture; its state is not kept

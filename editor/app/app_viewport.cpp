@@ -171,6 +171,8 @@ void App::order_picture() {
     creases_.update(editor);
     solid.creases = creases_.known();
   }
+  guides_.update(editor);
+  solid.guides = guides_.known();
   solid.above = as_vec(p.raised);
   solid.below = as_vec(p.window);
   solid.grid = as_vec(p.text, 0.16f);

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "content/author/edit_nodes.h"
 #include "editor/document/edit_parts.h"
 
 namespace pliant {
@@ -28,7 +29,10 @@ void rename_references(State& state, const std::string from, const std::string t
     auto changed = std::make_shared<DocumentNode>(*each);
     if (probe) changed->node.probe_device = to;
     if (handle) changed->node.handle->device = to;
-    if (felt) std::replace(changed->node.effect->probes.begin(), changed->node.effect->probes.end(), from, to);
+    if (felt && to.empty())
+      forget_probe(*changed->node.effect, from);
+    else if (felt)
+      std::replace(changed->node.effect->probes.begin(), changed->node.effect->probes.end(), from, to);
     each = std::move(changed);
   }
 }

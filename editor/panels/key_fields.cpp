@@ -68,14 +68,17 @@ bool node_field(Editor& editor, const Key& key, Json& value) {
   return true;
 }
 
-// One box per probe; none is ticked: all of them.
+// One box per probe; none is ticked: all of them. Names without a probe, which are errors, can be unticked.
 bool names_field(Editor& editor, const Key& key, Json& value) {
   std::vector<std::string> names =
       value.is_array() ? value.get<std::vector<std::string>>() : std::vector<std::string>();
+  std::vector<std::string> shown;
+  for (const auto& each : editor.state().nodes)
+    if (each->node.probe) shown.push_back(each->node.name);
+  for (const std::string& name : names)
+    if (std::find(shown.begin(), shown.end(), name) == shown.end()) shown.push_back(name);
   bool changed = false;
-  for (const auto& each : editor.state().nodes) {
-    if (!each->node.probe) continue;
-    const std::string& name = each->node.name;
+  for (const std::string& name : shown) {
     bool on = std::find(names.begin(), names.end(), name) != names.end();
     ImGui::PushID(name.c_str());
     if (ImGui::Checkbox(name.c_str(), &on)) {

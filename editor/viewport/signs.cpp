@@ -135,8 +135,23 @@ void draw_device(SignPen& pen, dvec3 at, const dmat3& turn, double small) {
   pen.line(at + 0.8 * x + 0.5 * y, at + 1.2 * x - 0.3 * y);
 }
 
-// Where an effect acts, and what it pulls to.
-void draw_effect(SignPen& pen, const Effect& effect, dvec3 at, const dmat3& turn, double small) {
+// A rail, with rings of its range at its ends and in its middle.
+void draw_guide(SignPen& pen, const std::vector<vec3>& points, double range, dvec3 at, const dmat3& turn) {
+  const auto place = [&](std::size_t i) { return at + turn * dvec3(points[i]); };
+  for (std::size_t i = 1; i < points.size(); ++i) pen.line(place(i - 1), place(i));
+  if (points.size() < 2) return;
+  for (const std::size_t i : {std::size_t{1}, points.size() / 2, points.size() - 1}) {
+    const dvec3 along = place(i) - place(i - 1);
+    if (!(length(along) > 0.0)) continue;
+    dvec3 side = cross(along, turn[std::abs(dot(along, turn[1])) < 0.9 * length(along) ? 1 : 0]);
+    side = glm::normalize(side);
+    pen.arc(i == 1 ? place(0) : place(i), range * side, range * cross(glm::normalize(along), side));
+  }
+}
+
+// Where an effect acts, and what it pulls to. `guide`: of the kind guidance; null: unknown.
+void draw_effect(SignPen& pen, const Effect& effect, const std::vector<vec3>* guide, dvec3 at, const dmat3& turn,
+                 double small) {
   dmat4 frame(turn);
   frame[3] = glm::dvec4(at, 1.0);
   const auto square = [&](double x, double z) { pen.box(frame, {vec3(dvec3(-x, 0, -z)), vec3(dvec3(x, 0, z))}); };
@@ -154,6 +169,7 @@ void draw_effect(SignPen& pen, const Effect& effect, dvec3 at, const dmat3& turn
     if (!plane) pen.sphere(at, turn, effect.range);
     if (end != at) pen.sphere(end, turn, effect.range);
   }
+  if (effect.kind == EffectKind::kGuidance && guide) draw_guide(pen, *guide, effect.range, at, turn);
   if (effect.kind == EffectKind::kGravity) {
     const double size = length(effect.force);
     if (size > 0.0) pen.line(at, at + 3.0 * small / size * (turn * effect.force));
@@ -184,7 +200,10 @@ void add_signs(const SolidOrder& order, const std::vector<dmat4>& frames, const 
         SignPen of_probe(lines, selected[i] ? colors.selected : vec4(glm::max(own, vec3(0.3f)), 1.0f));
         draw_probe(of_probe, *node.probe, at, turn, small);
       }
-      if (node.effect) draw_effect(pen, *node.effect, at, turn, small);
+      if (node.effect) {
+        const auto guide = order.guides.find(node.effect->path);
+        draw_effect(pen, *node.effect, guide == order.guides.end() ? nullptr : guide->second.get(), at, turn, small);
+      }
       if (node.light) draw_light(pen, *node.light, at, turn, small);
       if (node.camera) draw_camera(pen, *node.camera, at, turn, small);
       if (node.device && !node.probe) draw_device(pen, at, turn, small);

@@ -1,4 +1,5 @@
-// Symbols for nodes without a surface: probes, lights, cameras, haptic devices, effects; and boxes for pins and handles.
+// Symbols for nodes without a surface: probes, lights, cameras, haptic devices, effects; and boxes for pins and
+// handles.
 #pragma once
 
 #include <vector>

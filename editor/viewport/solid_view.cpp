@@ -25,8 +25,8 @@ bool same_scene(const SolidOrder& a, const SolidOrder& b) {
                       o.axis[0], o.axis[1], o.axis[2], o.sign, o.selected_color);
   };
   return view(a) == view(b) && a.settings == b.settings && a.selected == b.selected && a.lines == b.lines &&
-         a.creases == b.creases && a.state.nodes == b.state.nodes && a.state.meshes == b.state.meshes &&
-         a.state.rest == b.state.rest && a.state.paint == b.state.paint;
+         a.creases == b.creases && a.guides == b.guides && a.state.nodes == b.state.nodes &&
+         a.state.meshes == b.state.meshes && a.state.rest == b.state.rest && a.state.paint == b.state.paint;
 }
 
 mat4 clip_from_world(const Viewpoint& view, double orthographic, double aspect, const Box& box) {

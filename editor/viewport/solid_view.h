@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <string>
 
 #include "editor/viewport/frames.h"
 #include "editor/viewport/view_settings.h"
@@ -31,6 +32,8 @@ struct SolidOrder {
   std::vector<ViewLine> lines;
   // [m] mesh frame, pairs of ends; null or absent: unknown yet.
   std::map<const DocumentMesh*, std::shared_ptr<const std::vector<vec3>>> creases;
+  // [m] effect's frame: corners of the path that it guides along, by file; null or absent: unknown yet.
+  std::map<std::string, std::shared_ptr<const std::vector<vec3>>> guides;
   vec4 above{0}, below{0}, grid{0};          // colours of the background and grid, encoded
   vec4 selected_color{0}, hovered_color{0};  // encoded
   vec4 axis[3]{}, sign{0};                   // of the grid's axes; of signs of nodes, encoded

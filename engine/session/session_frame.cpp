@@ -5,6 +5,7 @@
 #include "engine/run/limits.h"
 #include "engine/session/session_run.h"
 #include "systems/soft/soft_state.h"
+#include "systems/touch/feed/touch_events.h"
 
 namespace pliant {
 namespace {
@@ -40,6 +41,7 @@ Result<std::vector<Note>> Session::findings() const {
   const SessionRun& p = *run_;
   if (Status s = p.stand_still("Session::findings"); !s) return s.error();
   std::vector<Note> notes = explain_dropped(p.world.dropped | (p.world.soft ? p.world.soft->dropped : 0));
+  if (std::optional<Note> events = explain_events(p.world)) notes.push_back(*std::move(events));
   for (const SessionEffector& effector : p.effectors) {
     for (Note& note : explain_limits(p.world, effector.entity, effector.name)) notes.push_back(std::move(note));
     if (std::optional<Note> late = effector.link.late_note(effector.name)) notes.push_back(std::move(*late));

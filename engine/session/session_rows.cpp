@@ -63,8 +63,10 @@ void SessionRun::after(Tick tick) {
                       [&](const Contact& contact) { add_contact(world, object_entities, contact, row); });
     if (keeps > 0) kept[i]->record(row);
   }
-  if (!restoring)
+  if (!restoring) {
     for (const TouchEvent& event : world.touch->events) events->record(event);
+    events->lose(world.touch->events_over);
+  }
   after_pause = false;
   rows.publish();
   shown = true;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "components/soft_body.h"
+#include "content/level/probe_damage.h"
 #include "engine/choice/model_choice.h"
 #include "engine/run/driver_limits.h"
 #include "engine/run/sources.h"
@@ -121,6 +122,7 @@ Status SessionRun::spawn_world() {
     chosen = true;
   }
   notes = scene.level().notes;
+  if (const std::optional<Note> note = undamaged_by_bodies(scene.level())) notes.push_back(note->message());
   begin_part(0.4, 0.7);
   auto spawned = spawn_level(scene.level(), &notes);
   if (!spawned) return spawned.error();

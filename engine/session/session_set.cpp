@@ -417,7 +417,7 @@ Result<double> Session::get(const std::string& object, const std::string& key) c
   LevelNode now = named->node;
   const auto entity = run_->find_object(object);
   const Varying* const varying = entity ? run_->world.registry.find<Varying>(*entity) : nullptr;
-  if (varying && now.deformable) vary(*varying, run_->time, *now.deformable);
+  if (varying && now.deformable) vary(*varying, time(), *now.deformable);
   const Json value = found->key->get(&now);
   if (!value.is_number()) return Error{"`" + object + "`: " + key, "is no single number"};
   return value.get<double>();

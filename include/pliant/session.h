@@ -269,7 +269,8 @@ class Session {
   // Takes the buffered readings, oldest first; returns how many were lost since the last call.
   Result<std::uint64_t> take_readings(const std::string& effector, std::vector<Reading>& out);
 
-  // Takes the events since the last call, oldest first; returns how many were lost: at most 4,096 wait.
+  // Takes the events since the last call, oldest first; returns how many were lost: at most 4,096 wait,
+  // and 64 come in a tick.
   std::uint64_t take_events(std::vector<FeltEvent>& out);
 
  private:

@@ -18,6 +18,7 @@
 #include "systems/device/hands.h"
 #include "systems/hash_state.h"
 #include "systems/soft/soft_state.h"
+#include "systems/touch/feed/touch_events.h"
 
 namespace pliant {
 namespace {
@@ -278,6 +279,7 @@ void LevelRun::add_findings(RunFigures& figures) {
     if (lost > 0)
       notes.push_back({fmt::format("{} rows of {} were lost because the disk was too slow", lost, file),
                        "use a faster disk, a lower --rate or fewer pictures", "run.rows_lost", file});
+  if (std::optional<Note> events = explain_events(world_)) notes.push_back(*std::move(events));
   for (const Note& found : notes) {
     note(found.message());
     figures.notes.push_back(found);

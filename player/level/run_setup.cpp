@@ -10,6 +10,7 @@
 #include "content/keys/enum_words.h"
 #include "content/keys/extension_table.h"
 #include "content/keys/unused_keys.h"
+#include "content/level/probe_damage.h"
 #include "content/level/spawn_soft.h"
 #include "content/level/unfelt_relief.h"
 #include "content/level/unit.h"
@@ -320,7 +321,8 @@ Outcome make_world(const RunOptions& options, bool windowed, Level& level, std::
   run.world = std::move(spawned).value();
   for (const std::string& sentence : notes) say(run, Note{sentence, {}, "level.note", {}});
   for (const Note& unused : unused_key_notes(level)) say(run, unused);
-  if (const std::optional<Note> relief = unfelt_relief(level)) say(run, *relief);
+  for (const std::optional<Note>& note : {unfelt_relief(level), undamaged_by_bodies(level)})
+    if (note) say(run, *note);
   if (const Status status = apply_sources(run.world, sources); !status) return failed(status.error());
   if (windowed) repeat_scripts(run.world);
   run.world.field_place = choose_field(options, windowed, run.world);

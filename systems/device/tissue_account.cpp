@@ -1,6 +1,8 @@
 #include "systems/device/tissue_account.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include "systems/device/devices.h"
 #include "systems/touch/prepare/touch_state.h"
@@ -8,29 +10,32 @@
 namespace pliant {
 namespace {
 
+// A hand in this tick.
+struct Moving {
+  Entity probe;
+  dvec3 way;  // [m] over what it touches
+};
+using Hands = std::span<const Moving>;
+
 // Adds the work of this tick to what each hand has given to the object, and sets what its contacts store.
-void update(const World& world, const TouchState& touch, ObjectState& object, Tick tick) {
-  const Registry& registry = world.registry;
+void update(const Registry& registry, ObjectState& object, Hands hands) {
   std::array<dvec3, kMaxContactsPerObject> force;
   for (TissueAccount& account : object.accounts) account.stored = 0.0;
-  const std::size_t hands = std::min(object.accounts.size(), force.size());
-  std::fill_n(force.begin(), hands, dvec3(0));
+  std::fill_n(force.begin(), hands.size(), dvec3(0));
   for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
     if (!object.sources[i].tracked) continue;
     const Contact& contact = registry.get<Contact>(object.sources[i].contact);
-    for (std::size_t h = 0; h < hands; ++h) {
-      if (touch.probes[h].entity != contact.probe) continue;
-      force[h] += contact.force;
-      // Of U = e.l - 1/2 l.A l with A l = e: each contact's part is 1/2 e l.
-      if (contact.share > 0) object.accounts[h].stored += 0.5 * contact.load * contact.load / contact.share;
-    }
+    const auto hand =
+        std::find_if(hands.begin(), hands.end(), [&](const Moving& h) { return h.probe == contact.probe; });
+    if (hand == hands.end()) continue;
+    const auto h = static_cast<std::size_t>(hand - hands.begin());
+    force[h] += contact.force;
+    // Of U = e.l - 1/2 l.A l with A l = e: each contact's part is 1/2 e l.
+    if (contact.share > 0) object.accounts[h].stored += 0.5 * contact.load * contact.load / contact.share;
   }
-  for (std::size_t h = 0; h < hands; ++h) {
+  for (std::size_t h = 0; h < hands.size(); ++h) {
     TissueAccount& account = object.accounts[h];
-    const Probe& probe = registry.get<Probe>(touch.probes[h].entity);
-    const dvec3 moved =
-        probe.position - probe.previous - surface_displacement(world, touch.probes[h].entity, tick.elapsed());
-    account.given -= 0.5 * dot(force[h] + account.force, moved);
+    account.given -= 0.5 * dot(force[h] + account.force, hands[h].way);
     account.force = force[h];
   }
 }
@@ -53,7 +58,13 @@ void share_accounts(World& world, Tick tick) {
   TouchState& touch = *world.touch;
   const std::size_t hands = touch.probes.size();
   if (hands < 2 || hands > kMaxContactsPerObject) return;
-  for (const std::uint32_t slot : touch.awake) update(world, touch, touch.objects[slot], tick);
+  std::array<Moving, kMaxContactsPerObject> moving;
+  for (std::size_t h = 0; h < hands; ++h) {
+    const Entity entity = touch.probes[h].entity;
+    const Probe& probe = world.registry.get<Probe>(entity);
+    moving[h] = {entity, probe.position - probe.previous - surface_displacement(world, entity, tick.elapsed())};
+  }
+  for (const std::uint32_t slot : touch.awake) update(world.registry, touch.objects[slot], {moving.data(), hands});
   for (const std::uint32_t slot : touch.awake) {
     ObjectState& object = touch.objects[slot];
     for (std::size_t to = 0; to < hands; ++to) {

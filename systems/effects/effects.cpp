@@ -8,6 +8,7 @@
 
 #include "components/probe_shape.h"
 #include "systems/effects/felt_effects.h"
+#include "systems/touch/feed/touch_events.h"
 #include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
@@ -126,9 +127,8 @@ void tell_detents(World& world, EffectPair& pair, Tick tick) {
   const bool rested = pair.resting && !probe.fresh;
   pair.resting = region_weight(effect, x).value > 0.0;
   const std::int32_t before = std::exchange(pair.detent, nearest_detent(effect, x));
-  std::vector<TouchEvent>& events = world.touch->events;
-  if (rested && pair.resting && before != pair.detent && events.size() < kMostEventsInATick)
-    events.push_back({FeltKind::kCrossed, pair.detent, tick.index, tick.time, pair.probe, pair.effect, at, 0.0});
+  if (rested && pair.resting && before != pair.detent)
+    add_event(*world.touch, {FeltKind::kCrossed, pair.detent, tick.index, tick.time, pair.probe, pair.effect, at, 0.0});
 }
 
 // Without its negative eigenvalues: between two ticks a force that falls with the way is kept as it is.

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "components/soft_body.h"
+#include "components/varying.h"
 #include "runtime/assert.h"
 #include "systems/touch/model/field.h"
 #include "systems/visual/frame.h"
@@ -181,9 +182,10 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
   if (item.gives_way && deformable->field.valid() && world.fields[deformable->field].stream.size() == padded)
     stream = world.fields[deformable->field].stream;
   item.stream = StreamCopies(stream);
-  if (item.gives_way && world.field_place == FieldPlace::kGpu) {
-    item.on_gpu = has_closed_form(*deformable, *touch);
-    item.replayed = !item.on_gpu && gpu_knows(*deformable);
+  if (item.gives_way) {
+    const FieldOn on = field_on(world, entity);
+    item.on_gpu = on == FieldOn::kGpuSources;
+    item.replayed = on == FieldOn::kGpuSteps;
     if (item.on_gpu) item.field = FieldOnGpu(*touch);
     if (item.replayed) item.replay = FieldReplay(*touch, *deformable, 1 / world.simulation.touch_rate);
   }

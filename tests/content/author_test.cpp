@@ -307,5 +307,32 @@ TEST(EditNodes, ACopyGoesByItsOwnDeviceAndARemovedDeviceIsForgotten) {
   EXPECT_TRUE(check_references(level).ok());
 }
 
+TEST(EditNodes, AnEffectNamesTheProbesThatItMeans) {
+  Level level = ball();
+  ASSERT_TRUE(add_probe(level, 0).ok());
+  LevelNode magnet;
+  magnet.name = "magnet";
+  magnet.effect.emplace().probes = {"probe"};
+  add_node(level, magnet, named(level, "probe"));
+  const auto names = [&](const char* effect) { return at(level, named(level, effect)).effect->probes; };
+  using Names = std::vector<std::string>;
+  copy_node(level, named(level, "probe"));
+  EXPECT_EQ(names("magnet"), Names{"probe"});
+  EXPECT_EQ(names("magnet_2"), Names{"probe_2"}) << "a copy is felt by its own";
+  ASSERT_TRUE(rename_node(level, named(level, "probe"), "thumb").ok());
+  EXPECT_EQ(names("magnet"), Names{"thumb"});
+  LevelNode wall = magnet;
+  wall.name = "wall";
+  wall.effect->probes = {"thumb", "probe_2"};
+  add_node(level, wall);
+  EXPECT_TRUE(check_references(level).ok());
+  remove_node(level, named(level, "thumb"));
+  EXPECT_EQ(names("wall"), Names{"probe_2"});
+  EXPECT_TRUE(check_references(level).ok());
+  remove_node(level, named(level, "probe_2"));
+  EXPECT_EQ(names("wall"), Names{"probe_2"}) << "with no name every probe would feel it";
+  EXPECT_FALSE(check_references(level).ok());
+}
+
 }  // namespace
 }  // namespace pliant::test

@@ -317,6 +317,25 @@ TEST(Document, ReferencesFollowANameAndCopiesReferToTheirOwn) {
   EXPECT_EQ(document.state().find(copies[0])->node.probe_device, "thumb 2");
 }
 
+TEST(Document, ADeletedProbeLeavesTheListsOfEffectsButNotAsTheLast) {
+  const TemporaryFolder folder;
+  Document document = opened(folder.path);
+  const NodeId finger = id_of(document, "finger");
+  std::vector<NodeId> copies;
+  const NodeId ids[] = {finger};
+  ASSERT_TRUE(document.change("copy", duplicated(document.state(), ids, document.next_id(), &copies)).ok());
+  const NodeId magnet = document.next_id()++;
+  LevelNode node;
+  node.name = "magnet";
+  node.effect.emplace().probes = {"finger", "finger 2"};
+  ASSERT_TRUE(document.change("add", with_node(document.state(), magnet, kNoNode, node)).ok());
+  using Names = std::vector<std::string>;
+  ASSERT_TRUE(document.change("delete", without(document.state(), ids)).ok());
+  EXPECT_EQ(document.state().find(magnet)->node.effect->probes, Names{"finger 2"});
+  ASSERT_TRUE(document.change("delete", without(document.state(), copies)).ok());
+  EXPECT_EQ(document.state().find(magnet)->node.effect->probes, Names{"finger 2"});
+}
+
 TEST(Document, MovingInTheTreeKeepsThePlaceInTheWorld) {
   const TemporaryFolder folder;
   Document document = opened(folder.path);

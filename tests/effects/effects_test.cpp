@@ -11,6 +11,7 @@
 #include "systems/device/device_model.h"
 #include "systems/device/devices.h"
 #include "systems/effects/felt_effects.h"
+#include "systems/touch/feed/touch_events.h"
 #include "systems/touch/prepare/touch_state.h"
 
 namespace pliant {
@@ -320,6 +321,25 @@ TEST(Detents, EveryCrossingIsAnEventWithItsTimeAndPlace) {
   events.clear();
   room.wait(0.1);
   EXPECT_TRUE(events.empty());
+}
+
+TEST(Detents, MoreEventsThanATickHoldsAreCounted) {
+  Room room;
+  room.add_effect(EffectKind::kDetents, everywhere);
+  std::vector<Entity> probes;
+  for (std::size_t i = 0; i < kMostEventsInATick + 6; ++i) probes.push_back(room.add_probe({0, 0, 0}));
+  room.ready();
+  room.tick();
+  EXPECT_FALSE(explain_events(room.world));
+  const double spacing = EffectParameters().spacing;
+  for (const Entity probe : probes) room.place(probe, {0, spacing, 0});
+  room.tick();
+  EXPECT_EQ(room.world.touch->events.size(), kMostEventsInATick);
+  room.tick();
+  EXPECT_TRUE(room.world.touch->events.empty());
+  const std::optional<Note> note = explain_events(room.world);
+  ASSERT_TRUE(note);
+  EXPECT_EQ(note->what.find("6 events came"), 0u) << note->what;
 }
 
 TEST(Detents, ATurnIsCountedAround) {

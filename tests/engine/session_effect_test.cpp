@@ -50,6 +50,29 @@ TEST(SessionEffect, ANameThatIsNoProbeIsOneSentence) {
               HasSubstr("names 'lefft', which is no node with a PLIANT_probe; did you mean"));
 }
 
+TEST(SessionEffect, EventsThatATickHasNoRoomForCountAsLost) {
+  Scene scene("comb");
+  scene.add_effect("comb", {.kind = EffectKind::kDetents, .region = EffectRegion::kEverywhere});
+  constexpr int kProbes = 70;
+  const auto name = [](int i) { return "finger " + std::to_string(i); };
+  for (int i = 0; i < kProbes; ++i) scene.add_probe(name(i));
+  Session session = opened(scene);
+  std::vector<FeltEvent> events;
+  for (int round = 0; round < 2; ++round) {
+    for (const double y : {0.0, EffectParameters().spacing}) {
+      for (int i = 0; i < kProbes; ++i) ASSERT_TRUE(session.move(name(i), {0, y, 0}));
+      ASSERT_TRUE(session.step());
+    }
+    EXPECT_EQ(session.take_events(events), 6u);
+    EXPECT_EQ(events.size(), 64u);
+    const Result<std::vector<Note>> findings = session.findings();
+    ASSERT_TRUE(findings);
+    EXPECT_TRUE(
+        std::any_of(findings->begin(), findings->end(), [](const Note& n) { return n.code == "dropped.events"; }));
+    ASSERT_TRUE(session.restart());
+  }
+}
+
 TEST(SessionEffect, ChangesBetweenTicksAndStaysOverARestart) {
   Session session = opened(two_hands({.stiffness = 200.0}));
   rest(session, {0.005, 0, 0});

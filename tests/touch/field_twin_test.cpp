@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
+#include "components/varying.h"
 #include "scenes/scenes.h"
 #include "scenes/touch_laws.h"
 #include "systems/touch/feed/publish.h"
@@ -87,6 +89,42 @@ TEST(FieldTwins, TheCardsListEmptiesWhenEverythingHasComeToRest) {
   gpu.stage.wait(1.0);
   EXPECT_TRUE(gpu.stage.world.touch->objects[0].terms.empty());
   EXPECT_TRUE(gpu.stage.world.touch->objects[0].releases.empty());
+}
+
+// The motion of a dent that was left is that of its time: a list of sources, and a copy that the GPU steps, know one.
+TEST(FieldTwins, AgreeOnASurfaceWhoseDampingVaries) {
+  for (const Response response : {Response::kFollow, Response::kLag}) {
+    Deformable d;
+    d.reach = 0.03;
+    d.response = response;
+    const auto scene = [&](FieldPlace place) {
+      auto twin = std::make_unique<TwinScene>(d, place);
+      Varying varying;
+      Track track;
+      track.times = {0.0, 0.3, 0.5};
+      track.length = 0.5;
+      for (const double zeta : {1.0, 1.0, 8.0}) track.values.emplace_back(zeta, 0.0, 0.0, 0.0);
+      varying.tracks.push_back({&DeformableParameters::damping_ratio, DeformableRange::kDampingRatio, track});
+      varying.repeats = false;
+      twin->stage.world.registry.add(twin->surface, std::move(varying));
+      twin->stage.prepare();
+      play(twin->stage, twin->a, twin->b, 440);
+      return twin;
+    };
+    const auto cpu = scene(FieldPlace::kProcessor), gpu = scene(FieldPlace::kGpu);
+    const Mesh& mesh = cpu->stage.mesh(cpu->surface);
+    double largest = 0.0, off = 0.0;
+    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+      const auto height = [&](TwinScene& twin) {
+        return surface_at(twin.stage.world.touch->objects[0], mesh, twin.stage.field(twin.surface), v).height;
+      };
+      largest = std::max(largest, std::abs(height(*cpu)));
+      off = std::max(off, std::abs(height(*cpu) - height(*gpu)));
+    }
+    EXPECT_GT(largest, 1e-4);
+    EXPECT_EQ(off, 0.0) << int(response);
+    EXPECT_FALSE(gpu->stage.world.touch->objects[0].feed_writer.feed()) << "the GPU has no copy";
+  }
 }
 
 // Without a closed form the CPU keeps the field and feeds the inputs to the GPU. Once the feed is full (no reader),

@@ -32,6 +32,18 @@ TipPlace to_local(const Pose& pose, const TipPlace& place) {
   return {pose.to_local(place.end), glm::conjugate(pose.rotation) * place.axis};
 }
 
+// In the order of objects and their sources.
+void list_tracked(const Registry& registry, TouchState& touch) {
+  touch.tracked.clear();
+  for (const std::uint32_t slot : touch.awake) {
+    const ObjectState& object = touch.objects[slot];
+    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
+      const SourceState& source = object.sources[i];
+      if (source.tracked) touch.tracked.push_back({registry.get<Contact>(source.contact).probe, source.contact});
+    }
+  }
+}
+
 }  // namespace
 
 void collision(World& world, Tick tick) {
@@ -77,6 +89,7 @@ void collision(World& world, Tick tick) {
       });
     }
   }
+  list_tracked(registry, touch);
 }
 
 }  // namespace pliant

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "systems/touch/feed/touch_events.h"
 #include "systems/touch/model/dent.h"
 #include "systems/touch/model/friction.h"
 #include "systems/touch/model/stored_contact.h"
@@ -14,12 +15,10 @@ namespace {
 constexpr double kSamePlace = 0.07;  // [1] of the reach: nearer presses deepen the same dent
 constexpr double kAgain = 0.5;       // [1] of the yield force: below it the next yielding is another event
 
-void add_event(const ContactSearch& search, const Pressing& pressing, FeltKind kind, std::int32_t index, double force) {
-  std::vector<TouchEvent>& events = search.world.touch->events;
-  if (events.size() >= kMostEventsInATick) return;
+void tell(const ContactSearch& search, const Pressing& pressing, FeltKind kind, std::int32_t index, double force) {
   const Pose& pose = search.world.registry.get<Pose>(search.object.entity);
-  events.push_back({kind, index, search.tick.index, search.tick.time, pressing.contact->probe, search.object.entity,
-                    pose.to_world(pressing.source->place.p), force});
+  add_event(*search.world.touch, {kind, index, search.tick.index, search.tick.time, pressing.contact->probe,
+                                  search.object.entity, pose.to_world(pressing.source->place.p), force});
 }
 
 void remember_hole(const ContactSearch& search, dvec3 p, double radius, std::uint32_t broken) {
@@ -51,8 +50,8 @@ bool breaks(const ContactSearch& search, const Deformable& deformable, Pressing&
       loaded.share * (law.layer_force(damage.broken, depth) - law.layer_force(damage.broken, law.free_depth));
   const double energy = loaded.share * law.layer_energy(damage.broken, depth);
   if (!(layer.force > 0 && force >= layer.force) && !(layer.energy > 0 && energy >= layer.energy)) return false;
-  add_event(search, pressing, FeltKind::kBroke, static_cast<std::int32_t>(damage.broken),
-            loaded.share * pressing.stored.force);
+  tell(search, pressing, FeltKind::kBroke, static_cast<std::int32_t>(damage.broken),
+       loaded.share * pressing.stored.force);
   damage.relaxes = damage.relaxes || damage.broken == 0;
   ++damage.broken;
   remember_hole(search, pressing.source->place.p, std::max(deformable.hole_radius, pressing.source->tip.radius),
@@ -148,7 +147,7 @@ bool yields(const ContactSearch& search, const Deformable& deformable, Pressing&
     search.world.dropped |= kDroppedSets;
     return false;
   }
-  if (!damage.yields) add_event(search, pressing, FeltKind::kYielded, 0, limit);
+  if (!damage.yields) tell(search, pressing, FeltKind::kYielded, 0, limit);
   damage.yields = true;
   const Raised after = set_under(search.object, pressing.source->place, pressing.source->axis);
   pressing.raised.height += after.height - before.height;

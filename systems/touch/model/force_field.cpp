@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "systems/touch/collide/surface_distance.h"
 #include "systems/touch/model/amplitude.h"
@@ -14,6 +15,7 @@
 #include "systems/touch/model/dent.h"
 #include "systems/touch/model/field.h"
 #include "systems/touch/model/field_kernels.h"
+#include "systems/touch/model/pressing.h"
 #include "systems/touch/model/seam_dents.h"
 
 namespace pliant {
@@ -56,17 +58,34 @@ struct Active {
   Contact* contact;
 };
 
+// The dent of a contact with amplitude 1.
+struct UnitDent {
+  FieldSource source;
+  float reach;  // [m] and a little more; infinite with offsets
+  bool ends;    // at the reach; else by its offsets
+};
+UnitDent unit_dent(const SourceState& of) {
+  UnitDent out{of.now, std::numeric_limits<float>::infinity(), of.offset.empty()};
+  out.source.amplitude = 1.0f;
+  if (out.ends) out.reach = 1.001f / std::sqrt(of.now.inv_reach2);
+  return out;
+}
+float size2(vec3 v) {
+  return dot(v, v);
+}
+
 // Amplitudes of all contacts that dent one object.
 void solve(std::span<const Active> active, const Deformable& deformable, const Mesh& mesh, const HeightField& field,
            const ObjectState& object, Tick tick) {
   const std::size_t n = active.size();
   std::array<double, kMaxContactsPerObject * kMaxContactsPerObject> A;
   std::array<double, kMaxContactsPerObject> d, alpha;
+  Room<UnitDent, kMaxContactsPerObject> unit;
+  for (std::size_t j = 0; j < n; ++j) unit.all[j] = unit_dent(*active[j].source);
   for (std::size_t i = 0; i < n; ++i) {
     const Contact& contact = *active[i].contact;
     const uvec3 corner = mesh.triangles[contact.triangle];
     double residual = 0.0;
-    for (std::size_t j = 0; j < n; ++j) A[i * n + j] = 0.0;
     for (int b = 0; b < 3; ++b) {
       const double weight = contact.barycentric[b];
       if (deformable.response == Response::kFollow) {
@@ -74,13 +93,19 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
         residual += weight * echoed_at(object, mesh, corner[b]);
         if (!field.set.empty()) residual += weight * static_cast<double>(field.set[corner[b]].w);
       }
-      for (std::size_t j = 0; j < n; ++j) {
-        FieldSource unit = active[j].source->now;
-        const vec3 apart = mesh.position(corner[b]) - unit.center;
-        if (active[j].source->offset.empty() && dot(apart, apart) * unit.inv_reach2 >= 1.0f) continue;
-        unit.amplitude = 1.0f;
-        A[i * n + j] -= weight * source_at(*active[j].source, unit, mesh, corner[b]).w;
-      }
+    }
+    const vec3 p0 = mesh.position(corner.x);
+    const float width = std::sqrt(std::max(size2(mesh.position(corner.y) - p0), size2(mesh.position(corner.z) - p0)));
+    for (std::size_t j = 0; j < n; ++j) {
+      double sum = 0.0;
+      const float beyond = unit.all[j].reach + width;
+      if (!(size2(p0 - unit.all[j].source.center) > beyond * beyond))  // else no corner is within reach
+        for (int b = 0; b < 3; ++b) {
+          const vec3 apart = mesh.position(corner[b]) - unit.all[j].source.center;
+          if (unit.all[j].ends && dot(apart, apart) * unit.all[j].source.inv_reach2 >= 1.0f) continue;
+          sum -= contact.barycentric[b] * source_at(*active[j].source, unit.all[j].source, mesh, corner[b]).w;
+        }
+      A[i * n + j] = sum;
     }
     A[i * n + i] = std::max(A[i * n + i], 0.1);  // a reach with hardly a vertex must not make the amplitude diverge
     // A bulge raised by earlier presses adds to the depth to be pressed down, up to a limit: otherwise rims on a slowly

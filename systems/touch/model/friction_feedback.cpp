@@ -276,6 +276,7 @@ void friction_feedback(World& world, Tick tick) {
   for (auto [entity, probe] : registry.view<Probe>()) probe.force = probe.torque = dvec3(0);
   for (ProbeState& hand : world.touch->probes) hand.stiffened = 0.0;
   world.touch->events.clear();
+  world.touch->events_over = 0;
   for (const std::uint32_t slot : world.touch->awake) {
     ObjectState& object = world.touch->objects[slot];
     const Deformable& deformable = registry.get<Deformable>(object.entity);

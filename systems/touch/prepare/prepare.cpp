@@ -8,6 +8,7 @@
 
 #include "components/probe_shape.h"
 #include "components/soft_body.h"
+#include "components/varying.h"
 #include "runtime/long_work.h"
 #include "systems/touch/collide/arc_reach.h"
 #include "systems/touch/collide/seams.h"
@@ -211,7 +212,8 @@ ObjectState make_object(World& world, Entity entity, const Pose& pose, double dt
   HeightField& field = world.fields[deformable.field];
   ObjectState object;
   object.entity = entity;
-  object.on_gpu = world.field_place == FieldPlace::kGpu && has_closed_form(deformable, mesh);
+  const FieldOn on = field_on(world, entity);
+  object.on_gpu = on == FieldOn::kGpuSources;
   if (object.on_gpu) {
     field = {};
     object.releases.reserve(kMaxReleases);
@@ -237,7 +239,7 @@ ObjectState make_object(World& world, Entity entity, const Pose& pose, double dt
     object.sets.reserve(kMostSets);
     object.set_zones.reserve(mesh.zone_count());
   }
-  if (world.field_place == FieldPlace::kGpu && !object.on_gpu && gpu_knows(deformable))
+  if (on == FieldOn::kGpuSteps)
     object.feed_writer =
         FeedWriter(mesh.zone_count(), kMaxContactsPerObject, deformable.distance == Distance::kSurface);
   for (std::uint32_t zone = 0; zone < field.zone_state.size(); ++zone) {  // zones not at rest must be published again
@@ -364,6 +366,9 @@ Status prepare_touch(World& world) {
     list_creases(world.meshes[registry.get<Deformable>(object.entity).mesh], object);
   for (ObjectState& object : touch->objects) prepare_distance(world, *touch, object);
   make_sources(world, *touch, tips.contacts);
+  std::size_t most = 0;
+  for (const ObjectState& object : touch->objects) most += object.probe_sources;
+  touch->tracked.reserve(most);
   if (something_presses(registry)) make_presses(world, *touch);
   for (ObjectState& object : touch->objects) make_echoes(world, object);
   snapshot.probes.resize(touch->probes.size());

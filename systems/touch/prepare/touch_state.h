@@ -236,6 +236,11 @@ struct ProbeState {
   double stiffened_sum = 0.0;   // [J] of the hand: the sum of what it gained so far and may get back
 };
 
+// A contact of a probe that this tick has.
+struct TrackedContact {
+  Entity probe, contact;  // has a Contact
+};
+
 struct TouchState {
   std::vector<ObjectState> objects;
   BoxTree object_boxes;  // world boxes of the objects over the tick, with room for curved patches
@@ -249,8 +254,10 @@ struct TouchState {
   std::vector<MovingNode> moving;                  // every node under a prescribed motion that carries something
   std::unique_ptr<TripleBuffer<Presses>> presses;  // soft clock -> touch clock; null if nothing can press
   std::vector<LoadedContact> loaded;               // of the current object; size kMaxContactsPerObject
-  std::vector<TouchEvent> events;                  // of this tick; capacity kMostEventsInATick
+  std::vector<TouchEvent> events;                  // of this tick; capacity kMostEventsInATick (feed/touch_events.h)
   double pressed_at = 0.0;                         // [s] arrival of the newest presses
+  std::uint64_t events_over = 0, events_lost = 0;  // of this tick, of all: `events` was full
+  std::vector<TrackedContact> tracked;             // by object; of collision; some may have ended since. Capacity: all
 };
 
 }  // namespace pliant
