@@ -112,6 +112,10 @@ const UnusedRow kRows[] = {
      {"is of a real device's workspace, which only the `driver` `external` has: a path is in metres of the world",
       "write the path as large as it shall be, or remove the key"}},
     {"soft_body",
+     "stiffening",
+     [](const LevelNode& n) { return n.soft_body->law != TissueLaw::kFung; },
+     {"is of the `law` `fung`", "set `law` to `fung`, or remove the key"}},
+    {"soft_body",
      "cell",
      [](const LevelNode& n) { return !n.soft_body->mesh.empty(); },
      {"is not needed where `mesh` gives the tetrahedra", "remove one of them"}},
@@ -127,6 +131,14 @@ const UnusedRow kRows[] = {
      "under_gravity",
      [](const LevelNode& n) { return n.handle.has_value(); },
      {"is of bodies that are pinned, and a tool always begins as it rests in the hand", "remove the key"}},
+    {"soft_body",
+     "velocity",
+     [](const LevelNode& n) { return n.handle.has_value(); },
+     {"is of bodies without a handle: a tool moves with its device", "remove the key"}},
+    {"rigid_body",
+     "velocity",
+     [](const LevelNode& n) { return n.handle.has_value() || n.rigid_body->fixed; },
+     {"is of bodies that move without a handle", "remove the key"}},
     {"handle",
      "box",
      [](const LevelNode& n) { return n.rigid_body && !n.soft_body; },
@@ -215,7 +227,7 @@ void find_in_scene(const Level& level, std::vector<UnusedKey>& found) {
   const bool bare = !level.environment || level.environment->panorama.empty();
   for (const char* key : {"intensity", "rotation"})
     add("environment", key, bare, "is of the `panorama`, and there is none", "name one, or remove the key");
-  for (const char* key : {"soft_step", "gravity"})
+  for (const char* key : {"soft_step", "gravity", "integrator"})
     add("simulation", key, !has_bodies, "is for soft and rigid bodies, and the scene has none", "remove it");
 }
 

@@ -5,6 +5,7 @@
 
 #include "runtime/assert.h"
 #include "runtime/long_work.h"
+#include "systems/soft/body/tissue_material.h"
 #include "systems/soft/local/smearing_surface.h"
 #include "systems/soft/local/tip_law.h"
 
@@ -15,14 +16,6 @@ namespace {
 constexpr double kSettleStep = 0.1;  // [s]
 constexpr int kSettleSteps = 40;
 constexpr double kSettled = 1e-9;  // [1] of the body's size
-
-TissueMaterial material_of(const SoftBody& body) {
-  return {.young = body.young,
-          .poisson = body.poisson,
-          .density = body.density,
-          .alpha = body.rayleigh[0],
-          .beta = body.rayleigh[1]};
-}
 
 bool has_handle_nodes(const TetMesh& tets, const Handle6* handle) {
   return handle != nullptr && tets.handle_count > 0;
@@ -143,9 +136,13 @@ void SoftBodyState::separate_tissue(double T) {
       (solver_.reduced_right() - coupling_step_.right - (handle_mass_ + tissue_matrix_) * start_) / T - handle_load_;
 }
 
-void SoftBodyState::set_elasticity(double young, double poisson, RayleighDamping damping) {
-  damping_ = damping;
-  tissue_.set_elasticity(young, poisson, damping.alpha, damping.beta);
+void SoftBodyState::start_with(dvec3 velocity) {
+  for (std::uint32_t i = 0; i < tissue_.moving(); ++i) tissue_.velocity()[i] = velocity;
+}
+
+void SoftBodyState::set_material(const TissueMaterial& material) {
+  damping_ = {material.alpha, material.beta};
+  tissue_.set_material(material);
   if (tie_) tie_->set_material(tissue_.material());
   if (smearing_) smear();
 }

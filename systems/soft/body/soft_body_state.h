@@ -43,7 +43,8 @@ class SoftBodyState final : public ToolBody {
   RayleighDamping damping() const override { return damping_; }
   Vector starting_velocity() const override;
   void halt() override;
-  void set_elasticity(double young, double poisson, RayleighDamping damping) override;
+  void set_material(const TissueMaterial& material) override;
+  void start_with(dvec3 velocity) override;
   void show(SoftObjectSnapshot& out) const override;
   std::size_t part_count() const { return tets_.parts.size(); }
   void show_part(std::size_t part, SoftObjectSnapshot& out) const;
