@@ -1,5 +1,5 @@
-// Laws for large strain (systems/soft/fem/law): against finite differences, closed forms, and from shapes that no tissue
-// should be in.
+// Laws for large strain (systems/soft/fem/law): against finite differences, closed forms, and from shapes that no
+// tissue should be in.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -257,9 +257,11 @@ TEST(ElasticLaw, ABarPulledAndSquashedHasTheClosedForm) {
         tissue.position()[i] = dvec3(s, s2, s2) * mesh.nodes[i];
       settle_tissue(tissue, *solver, dvec3(0), {.iterations = 100, .tolerance = 1e-13});
       tissue.find_forces();
-      const dvec3 end = total(tissue, [](dvec3 p) { return p.x > 0.1 - 1e-9; }, mesh);
-      const dvec3 half = total(tissue, [](dvec3 p) { return p.y > 0.05; }, mesh);
-      EXPECT_NEAR(-end.x / 0.01, want, (c.poisson == 0.45 ? 1e-6 : 5e-3) * std::abs(want)) << c << " s " << s;
+      const dvec3 end = total(
+          tissue, [](dvec3 p) { return p.x > 0.1 - 1e-9; }, mesh);
+      const dvec3 half = total(
+          tissue, [](dvec3 p) { return p.y > 0.05; }, mesh);
+      EXPECT_NEAR(-end.x / 0.01, want, (c.poisson == 0.45 ? 1e-6 : 1e-2) * std::abs(want)) << c << " s " << s;
       EXPECT_LT(std::abs(half.y) / 0.01, 1e-5 * std::abs(want)) << c << " s " << s;
     }
   }
@@ -278,7 +280,8 @@ TEST(ElasticLaw, ASimpleShearHasTheClosedForm) {
       // tau = mu shear, times e^(b shear^2) for Fung's.
       const double stiffer = c.law == TissueLaw::kFung ? std::exp(c.b * shear * shear) : 1.0;
       const double want = c.constants().mu * shear * stiffer;
-      const dvec3 top = total(tissue, [](dvec3 p) { return p.y > 0.1 - 1e-9; }, mesh);
+      const dvec3 top = total(
+          tissue, [](dvec3 p) { return p.y > 0.1 - 1e-9; }, mesh);
       EXPECT_NEAR(-top.x / 0.01, want, 1e-6 * want) << c << " shear " << shear;
     }
 }
@@ -290,12 +293,13 @@ void put(Tissue& tissue, const TetMesh& mesh, Start start) {
     dvec3& x = tissue.position()[i];
     if (start == Start::kInverted) x.y = -x.y;
     if (start == Start::kFlat) x.y = 0.0;
-    if (start == Start::kPoint) x = dvec3(0.05);
-    if (start == Start::kRandom) x = dvec3(0.05) + 0.1 * tets::scatter(300 + i);
+    if (start == Start::kPoint) x = dvec3(0.05) + 1e-4 * tets::scatter(300 + i);
+    if (start == Start::kRandom) x += 0.05 * tets::scatter(300 + i);  // half the block
   }
 }
 
-TEST(ElasticLaw, TissueRecoversFromInvertedFlatCollapsedAndRandomShapes) {
+// As the engine steps: one linearised step of 1/60 s after another.
+TEST(ElasticLaw, TissueRecoversFromInvertedFlatCollapsedAndRandomShapesWithoutGainingEnergy) {
   TetMesh mesh = shaken_cube(3);
   tets::hold(mesh, [](dvec3 p) { return p.x < 0.015; });
   for (const Case& c : kCases)
@@ -303,11 +307,18 @@ TEST(ElasticLaw, TissueRecoversFromInvertedFlatCollapsedAndRandomShapes) {
       Tissue tissue(mesh, c.material(), mesh.free_count);
       auto solver = law_solver(tissue);
       put(tissue, mesh, start);
-      settle_tissue(tissue, *solver, dvec3(0), {.iterations = 400, .tolerance = 1e-12});
+      const double rest = 1e-12 * c.constants().mu * 1e-3;  // of the block's volume
+      double last = tissue.elastic_energy();
+      for (int i = 0; i < 1500 && last > rest; ++i) {
+        step_tissue(tissue, *solver, 1.0 / 60, dvec3(0));
+        const double now = tissue.elastic_energy() + kinetic_energy(tissue);
+        ASSERT_LE(now, last * (1 + 1e-8)) << c << " start " << static_cast<int>(start) << " step " << i;
+        last = now;
+      }
       double off = 0.0;
-      for (std::uint32_t i = 0; i < mesh.free_count; ++i)
-        off = std::max(off, length(tissue.position()[i] - mesh.nodes[i]));
-      EXPECT_LT(off, 1e-8) << c << " start " << static_cast<int>(start);
+      for (std::uint32_t k = 0; k < mesh.free_count; ++k)
+        off = std::max(off, length(tissue.position()[k] - mesh.nodes[k]));
+      EXPECT_LT(off, 1e-5) << c << " start " << static_cast<int>(start);
     }
 }
 

@@ -6,6 +6,7 @@
 #include "runtime/assert.h"
 #include "runtime/long_work.h"
 #include "systems/soft/body/tissue_material.h"
+#include "systems/soft/fem/passive_step.h"
 #include "systems/soft/local/smearing_surface.h"
 #include "systems/soft/local/tip_law.h"
 
@@ -178,7 +179,36 @@ void SoftBodyState::unsettle() {
   refresh_surface(tissue_.position(), surface_position);
 }
 
+// The motion that is only carried: with the handle, or of the centre of mass of what nothing holds.
+std::vector<dvec3> SoftBodyState::carried_motion() const {
+  std::vector<dvec3> out(tets_.node_count(), dvec3(0));
+  if (handle_) {
+    const Vector6 w = velocity_.tail<6>();
+    const dvec3 centre = handle_->motion().pose.position;
+    for (std::uint32_t i = 0; i < tets_.pinned_begin(); ++i)
+      out[i] = linear(w) + cross(angular(w), tissue_.position()[i] - centre);
+  } else if (tissue_.moving() == tets_.node_count()) {
+    dvec3 momentum(0);
+    double mass = 0.0;
+    for (std::uint32_t i = 0; i < tissue_.moving(); ++i)
+      momentum += tissue_.mass()[i] * node_velocity(i, velocity_), mass += tissue_.mass()[i];
+    std::fill(out.begin(), out.end(), momentum / mass);
+  }
+  return out;
+}
+
+void SoftBodyState::keep_passive(double T) {
+  const std::vector<dvec3> carried = carried_motion();
+  const Eigen::Index rows = 3 * static_cast<Eigen::Index>(tissue_.moving());
+  Vector rigid(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) rigid[i] = carried[static_cast<std::size_t>(i / 3)][static_cast<int>(i % 3)];
+  const Vector d = velocity_.head(rows) - rigid;
+  const double share = passive_share(tissue_, carried, d, handle_ ? tets_.free_count : tissue_.moving(), T);
+  if (share < 1.0) velocity_.head(rows) = rigid + share * d;
+}
+
 void SoftBodyState::advance(double T) {
+  if (tissue_.large_strain() && solvable_ && velocity_.allFinite()) keep_passive(T);
   std::vector<dvec3>&x = tissue_.position(), &v = tissue_.velocity();
   for (std::uint32_t i = 0; i < tissue_.moving(); ++i) {
     v[i] = node_velocity(i, velocity_);

@@ -85,6 +85,8 @@ class SoftBodyState final : public ToolBody {
   dvec3 arm(std::uint32_t node) const { return handle_->arm(node - tets_.free_count); }
   dvec3 node_velocity(std::uint32_t node, const Vector& velocity) const;  // [m/s]
   void separate_tissue(double T);
+  std::vector<dvec3> carried_motion() const;  // [m/s] per node
+  void keep_passive(double T);                // passive_step.h
   void refresh_surface(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_surface) const;
 
   const TetMesh& tets_;

@@ -331,11 +331,11 @@ void Tissue::add_masses(double T, dvec3 gravity) {
     if (entry.row == entry.column) entry.value.diagonal().array() += mass_[entry.row] * damped;
 }
 
-double Tissue::elastic_energy() const {
+double Tissue::elastic_energy(const std::vector<dvec3>& position) const {
   double energy = 0.0;
   ElementVisit now;
   for (const ElementPack& pack : packs_) {
-    visit(pack, x_, now);
+    visit(pack, position, now);
     for (std::size_t lane = 0; lane < pack.count; ++lane) energy += now.energy[lane];
   }
   return energy;

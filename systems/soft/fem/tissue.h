@@ -80,7 +80,8 @@ class Tissue {
   const std::vector<Entry>& corner() const { return corner_; }  // moving <= row, column < pinned_begin
   const Vector& right() const { return right_; }
 
-  double elastic_energy() const;  // [J] at the current positions
+  double elastic_energy() const { return elastic_energy(x_); }  // [J] at the current positions
+  double elastic_energy(const std::vector<dvec3>& position) const;
   // [N] of the last assemble() or find_forces(), 3 per node, all nodes; on pinned nodes: minus the reaction force.
   const Vector& elastic_force() const { return force_; }
 

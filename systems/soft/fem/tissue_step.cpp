@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/soft/fem/passive_step.h"
+
 namespace pliant {
 namespace {
 
@@ -103,6 +105,11 @@ TissueReport step_tissue(Tissue& tissue, LinearSolver& solver, double T, dvec3 g
     report.change = size > 0 ? (now - last).norm() / size : 0.0;
     if (report.change <= step.tolerance) break;
     take(now);
+  }
+  if (step.iterations == 1 && tissue.large_strain()) {
+    x = begin;
+    const std::vector<dvec3> none(x.size(), dvec3(0));
+    now *= passive_share(tissue, none, now, tissue.moving(), h);
   }
   for (std::size_t i = 0; i < x.size(); ++i) {
     const dvec3 mean = i < tissue.moving() ? node_of(now, i) : v[i];
