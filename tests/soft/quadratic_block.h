@@ -32,12 +32,20 @@ class QuadraticBlock {
     x_ = rest_;
   }
 
-  // [N] on the far plate when it is moved by `way`, in `steps` steps from rest; empty if Newton fails.
-  std::optional<dvec3> press(dvec3 way, int steps) {
+  // [N] on the far plate when it is moved by `way` from rest, in steps of a twelfth or less; empty if Newton fails.
+  std::optional<dvec3> press(dvec3 way) {
     x_ = rest_;
-    for (int i = 0; i < steps; ++i) {
-      for (std::size_t k = 0; k < x_.size(); ++k) x_[k] += rest_[k].x / size_ * way / double(steps);
-      if (!settle()) return std::nullopt;
+    double done = 0.0, step = 1.0 / 12;
+    while (done < 1.0 - 1e-9) {
+      const std::vector<dvec3> before = x_;
+      step = std::min(step, 1.0 - done);
+      for (std::size_t k = 0; k < x_.size(); ++k) x_[k] += step * rest_[k].x / size_ * way;
+      if (settle()) {
+        done += step;
+        continue;
+      }
+      x_ = before, step *= 0.5;
+      if (step < 1e-3) return std::nullopt;
     }
     dvec3 plate(0);
     for (std::size_t k = 0; k < x_.size(); ++k)
@@ -49,7 +57,7 @@ class QuadraticBlock {
   static constexpr std::size_t kEdge[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
   bool settle() {
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 12; ++i) {
       const Eigen::VectorXd f = assemble();
       double size = 0.0;
       for (const dvec3 g : force_) size = std::max(size, length(g));
