@@ -68,16 +68,6 @@ constexpr const char* word_of(UnderGravity shape) {
   return nullptr;
 }
 
-constexpr const char* word_of(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::kEuler:
-      return "euler";
-    case Integrator::kBdf2:
-      return "bdf2";
-  }
-  return nullptr;
-}
-
 constexpr const char* word_of(TissueLaw law) {
   switch (law) {
     case TissueLaw::kCorotational:

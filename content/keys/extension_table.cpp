@@ -633,9 +633,6 @@ std::vector<Key> simulation_keys() {
   keys.push_back(
       number("touch_rate", "Hz", {kTouchRateRange, {100.0, 1e4}}, s(&S::touch_rate), "rate of the touch clock"));
   keys.push_back(number("soft_step", "s", {kSoftStepRange, {5e-4, 0.05}}, s(&S::soft_step), "step of the soft clock"));
-  keys.push_back(choice("integrator", s(&S::integrator),
-                        "how bodies that touch nothing are stepped: `euler`, first order, a swing dies within seconds; "
-                        "`bdf2`, second order"));
   keys.push_back(vector("gravity", "m/s2", {kGravityRange, {-30.0, 30.0}}, s(&S::gravity),
                         "acceleration of gravity; one number points down (-Y)"));
   return keys;

@@ -227,7 +227,7 @@ void find_in_scene(const Level& level, std::vector<UnusedKey>& found) {
   const bool bare = !level.environment || level.environment->panorama.empty();
   for (const char* key : {"intensity", "rotation"})
     add("environment", key, bare, "is of the `panorama`, and there is none", "name one, or remove the key");
-  for (const char* key : {"soft_step", "gravity", "integrator"})
+  for (const char* key : {"soft_step", "gravity"})
     add("simulation", key, !has_bodies, "is for soft and rigid bodies, and the scene has none", "remove it");
 }
 

@@ -15,18 +15,11 @@
 
 namespace pliant {
 
-// How the soft clock steps bodies that touch nothing; what touches steps by Euler.
-enum class Integrator : std::uint8_t {
-  kEuler,  // implicit, first order: a swing dies within seconds
-  kBdf2,   // second order: a swing stays
-};
-
 // Keys of PLIANT_simulation.
 struct Simulation {
   double touch_rate = 1000.0;     // [Hz]
   double soft_step = 1.0 / 60.0;  // [s]
-  Integrator integrator = Integrator::kEuler;
-  dvec3 gravity{0, -9.81, 0};  // [m/s2]
+  dvec3 gravity{0, -9.81, 0};     // [m/s2]
 };
 
 // Values after the last of SpringLaw, Shape and SolverKind are those that have no enumerator, and registered ones
