@@ -49,13 +49,13 @@ double error_of(TissueLaw law, double poisson, int twin_cells, const Load& load)
   return off;
 }
 
-const Load kHalf{"squash 50 %", {-0.05, 0, 0}, 0};
+const Load kSquashToHalf{"squash 50 %", {-0.05, 0, 0}, 0};
 
 TEST(LargeStrain, ABondedBlockBearsWhatItsQuadraticTwinBears) {
-  for (const Load& load : {Load{"squash 25 %", {-0.025, 0, 0}, 0}, kHalf, Load{"pull 50 %", {0.05, 0, 0}, 0},
+  for (const Load& load : {Load{"squash 25 %", {-0.025, 0, 0}, 0}, kSquashToHalf, Load{"pull 50 %", {0.05, 0, 0}, 0},
                            Load{"shear 100 %", {0, 0.1, 0}, 1}})
     EXPECT_LT(std::abs(error_of(TissueLaw::kNeoHookean, 0.4, 3, load)), 0.05) << load.name;
-  EXPECT_LT(std::abs(error_of(TissueLaw::kFung, 0.4, 3, kHalf)), 0.05);
+  EXPECT_LT(std::abs(error_of(TissueLaw::kFung, 0.4, 3, kSquashToHalf)), 0.05);
 }
 
 // Linear tetrahedra lock there, whatever their law: the finer, the less.
