@@ -38,11 +38,13 @@ struct RigidBody : RigidBodyParameters {
 struct SoftBodyRange {
   static constexpr Range kYoung{0.0, 1e12, true};   // [Pa]
   static constexpr Range kPoisson{0.0, 0.499};      // [1]
+  static constexpr Range kStiffening{0.0, 100.0};   // [1]
   static constexpr Range kDensity{0.0, 1e6, true};  // [kg/m3]
   static constexpr Range kCell{0.0, 1e3};           // [m]
   static constexpr Range kThickness{0.0, 1e3};      // [m]
   static constexpr Range kMass{0.0, 1e9};           // [kg] of a rigid body
 };
+inline constexpr Range kVelocityRange{-1e3, 1e3};   // [m/s] of a body at the beginning
 inline constexpr Range kPairRange{0.0, 1e9};        // of springs and dampers of couplings, and of Rayleigh damping
 inline constexpr Range kSaturationRange{0.0, 1e4};  // [N], [N m] of a coupling
 

@@ -68,6 +68,18 @@ constexpr const char* word_of(UnderGravity shape) {
   return nullptr;
 }
 
+constexpr const char* word_of(TissueLaw law) {
+  switch (law) {
+    case TissueLaw::kCorotational:
+      return "corotational";
+    case TissueLaw::kNeoHookean:
+      return "neo_hookean";
+    case TissueLaw::kFung:
+      return "fung";
+  }
+  return nullptr;
+}
+
 constexpr const char* word_of(SoftContact contact) {
   switch (contact) {
     case SoftContact::kLattice:

@@ -126,6 +126,23 @@ Key double_box(std::string name, DBox Effect::*member, std::string doc) {
       });
 }
 
+// One number points down.
+template <class Access>
+Key vector(std::string name, std::string unit, Ranges ranges, Access access, std::string doc) {
+  Key out = key(
+      std::move(name), std::move(unit), KeyType::kVector, std::move(doc), access,
+      [](dvec3 v) {
+        return Json::array({v.x, v.y, v.z});
+      },
+      [](const Json& json) {
+        return json.is_number() ? dvec3(0.0, -json.get<double>(), 0.0)
+                                : dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
+      });
+  out.range = ranges.hard;
+  out.usual = ranges.usual;
+  return out;
+}
+
 // Keys of an item of `layers`; their owner is a Layer.
 std::vector<Key> layer_keys() {
   using R = DeformableRange;
@@ -449,10 +466,17 @@ std::vector<Key> soft_body_keys() {
   using S = SoftBody;
   const auto s = [](auto member) { return at(&LevelNode::soft_body, member); };
   std::vector<Key> keys;
-  keys.push_back(number("young", "Pa", {SoftBodyRange::kYoung, {50.0, 1e9}}, s(&S::young), "Young's modulus"));
+  keys.push_back(
+      choice("law", s(&S::law),
+             "elasticity: `corotational`, linear in the strain, cheap; `neo_hookean`, right at large strain; "
+             "`fung`, stiffens exponentially"));
+  keys.push_back(
+      number("young", "Pa", {SoftBodyRange::kYoung, {50.0, 1e9}}, s(&S::young), "Young's modulus at small strain"));
   keys.push_back(number(
       "poisson", "1", SoftBodyRange::kPoisson, s(&S::poisson),
       fmt::format("Poisson's ratio; from {} on the tetrahedra lock: tissue is over 10 % too stiff", kLockingPoisson)));
+  keys.push_back(number("stiffening", "1", {SoftBodyRange::kStiffening, {0.1, 20.0}}, s(&S::stiffening),
+                        "exponent b of the law `fung`, whose shear stress grows with exp(b (I1 - 3))"));
   keys.push_back(number("density", "kg/m3", {SoftBodyRange::kDensity, {10.0, 25e3}}, s(&S::density), "density"));
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
   keys.push_back(number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell),
@@ -485,6 +509,8 @@ std::vector<Key> soft_body_keys() {
       choice("contact", s(&S::contact),
              "what a contact acts on: `lattice`, the nodes beside it, too stiff where it is small against the cells; "
              "`split`, the lattice with its force smeared and an analytic dent in series"));
+  keys.push_back(vector("velocity", "m/s", {kVelocityRange, {-10.0, 10.0}}, s(&S::velocity),
+                        "at the beginning, in the world; not of a tool; one number points down (-Y)"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, s(&S::error),
                         "error budget: takes the cheapest unstated cell, soft step, solver and, of a tool, force whose "
                         "measured error is within it; 0: none"));
@@ -524,6 +550,8 @@ std::vector<Key> rigid_body_keys() {
       number("friction_static", "1", kFrictionRange, r(&R::friction_static), "coefficient of static friction"));
   keys.push_back(
       number("friction_sliding", "1", kFrictionRange, r(&R::friction_sliding), "coefficient of sliding friction"));
+  keys.push_back(vector("velocity", "m/s", {kVelocityRange, {-10.0, 10.0}}, r(&R::velocity),
+                        "at the beginning, in the world; not of a tool; one number points down (-Y)"));
   keys.push_back(flag("fixed", r(&R::fixed), "does not move"));
   return keys;
 }
@@ -562,18 +590,8 @@ std::vector<Key> effect_keys() {
                         "depth below the region's border over which the effect comes in, at most to its middle; around "
                         "the axis of detents the radius within which they fade"));
   keys.push_back(number("damping", "N s/m", {R::kDamping, {0.1, 20.0}}, e(&E::damping), "drag per speed"));
-  Key force = key(
-      "force", "N", KeyType::kVector, "constant force in the node's frame; one number points down (-Y)", e(&E::force),
-      [](dvec3 f) {
-        return Json::array({f.x, f.y, f.z});
-      },
-      [](const Json& json) {
-        return json.is_number() ? dvec3(0.0, -json.get<double>(), 0.0)
-                                : dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
-      });
-  force.range = R::kForce;
-  force.usual = {-20.0, 20.0};
-  keys.push_back(force);
+  keys.push_back(vector("force", "N", {R::kForce, {-20.0, 20.0}}, e(&E::force),
+                        "constant force in the node's frame; one number points down (-Y)"));
   keys.push_back(
       choice("target", e(&E::target), "what attracts: the node, a segment from it along its +Y, or its XZ plane"));
   keys.push_back(number("length", "m", {R::kLength, {1e-3, 1.0}}, e(&E::length), "length of the segment"));
@@ -615,18 +633,8 @@ std::vector<Key> simulation_keys() {
   keys.push_back(
       number("touch_rate", "Hz", {kTouchRateRange, {100.0, 1e4}}, s(&S::touch_rate), "rate of the touch clock"));
   keys.push_back(number("soft_step", "s", {kSoftStepRange, {5e-4, 0.05}}, s(&S::soft_step), "step of the soft clock"));
-  Key gravity = key(
-      "gravity", "m/s2", KeyType::kVector, "acceleration of gravity; one number points down (-Y)", s(&S::gravity),
-      [](dvec3 g) {
-        return Json::array({g.x, g.y, g.z});
-      },
-      [](const Json& json) {
-        return json.is_number() ? dvec3(0.0, -json.get<double>(), 0.0)
-                                : dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
-      });
-  gravity.range = kGravityRange;
-  gravity.usual = {-30.0, 30.0};
-  keys.push_back(gravity);
+  keys.push_back(vector("gravity", "m/s2", {kGravityRange, {-30.0, 30.0}}, s(&S::gravity),
+                        "acceleration of gravity; one number points down (-Y)"));
   return keys;
 }
 

@@ -7,6 +7,7 @@
 #include "content/tets/tet_embed.h"
 #include "content/tets/tet_order.h"
 #include "runtime/clock.h"
+#include "systems/soft/body/tissue_material.h"
 
 namespace pliant {
 namespace {
@@ -97,12 +98,9 @@ Result<Lattice> make_lattice(Level& alone, std::size_t node, double cell, Patche
 }
 
 TissueMaterial material_of(const SoftBody& body, Strain strain) {
-  return {.young = body.young,
-          .poisson = body.poisson,
-          .density = body.density,
-          .alpha = body.rayleigh[0],
-          .beta = body.rayleigh[1],
-          .strain = strain};
+  TissueMaterial material = material_of(body);
+  material.strain = strain;
+  return material;
 }
 
 std::vector<dvec3> patch_load(const Patches& patches, const TetMesh& tets, std::uint32_t vertex) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "components/soft_body.h"
 #include "content/keys/extension_table.h"
 
 namespace pliant {
@@ -45,6 +46,14 @@ void add_animation(Hash& hash, const LevelAnimation& animation) {
   }
 }
 
+// Keeps the hash of scenes older than these keys.
+bool is_newer_default(const Extension& extension, const Key& key, const Json& value) {
+  return (key.name == "under_gravity" && value == "falls") || (key.name == "contact" && value == "lattice") ||
+         (key.name == "law" && value == "corotational") ||
+         (key.name == "velocity" && value == Json::array({0.0, 0.0, 0.0})) ||
+         (extension.name == "soft_body" && key.name == "stiffening" && value == SoftBodyParameters{}.stiffening);
+}
+
 // A probe added for a window's mouse has a special colour; a replay of it does not.
 bool is_not_felt(const Extension& extension, const Key& key) {
   return (extension.name == "probe" && key.name == "color") || key.name == "error" || key.name == "carries";
@@ -56,8 +65,7 @@ void add_keys(Hash& hash, const Extension& extension, const void* owner, const f
   for (const Key& key : extension.keys) {
     if (key.alias || is_not_felt(extension, key)) continue;
     const Json value = key.get(owner);
-    // Keeps the hash of scenes older than these keys.
-    if ((key.name == "under_gravity" && value == "falls") || (key.name == "contact" && value == "lattice")) continue;
+    if (is_newer_default(extension, key, value)) continue;
     add_text(hash, value.dump(-1, ' ', false, Json::error_handler_t::replace));
     if (key.type == KeyType::kText && value.is_string() && extension.name != "haptic_device")
       add_named_file(hash, folder, value.get<std::string>());

@@ -13,6 +13,7 @@
 #include "engine/session/scene_check.h"
 #include "engine/session/session_run.h"
 #include "systems/soft/body/probe_tool.h"
+#include "systems/soft/body/tissue_material.h"
 #include "systems/soft/prepare_soft.h"
 #include "systems/soft/soft_state.h"
 #include "systems/touch/model/force_field.h"
@@ -156,8 +157,7 @@ Result<SessionChange> change_rigid(SessionRun& p, const std::string& name, const
 SessionChange change_soft(SessionRun& p, const std::string& name, const SoftBody& body) {
   SessionChange change;
   change.entity = *p.find_object(name);
-  change.soft.push_back({change.entity, SoftSetting{body.young, body.poisson, body.rayleigh, body.friction_static,
-                                                    body.friction_sliding}});
+  change.soft.push_back({change.entity, SoftSetting{material_of(body), body.friction_static, body.friction_sliding}});
   return change;
 }
 

@@ -162,10 +162,19 @@ enum class SoftContact : std::uint8_t {
   kSplit,    // the lattice with its force smeared, and in series an analytic dent (systems/soft/local)
 };
 
-// Tissue: co-rotational FEM on tetrahedra (P2). Keys of PLIANT_soft_body.
+// The elastic law of tissue. All have the same slope at rest; methods.md 2.11.
+enum class TissueLaw : std::uint8_t {
+  kCorotational,  // linear in the strain: cheap; too soft when squashed, too stiff when pulled or sheared
+  kNeoHookean,    // stable Neo-Hookean: large strain
+  kFung,          // exponential: stiffens with strain
+};
+
+// Tissue: FEM on tetrahedra (P2). Keys of PLIANT_soft_body.
 struct SoftBodyParameters {
-  double young = 5e3;                    // [Pa]
-  double poisson = 0.45;                 // [1]
+  TissueLaw law = TissueLaw::kCorotational;
+  double young = 5e3;                    // [Pa] at small strain
+  double poisson = 0.45;                 // [1] at small strain
+  double stiffening = 1.0;               // [1] exponent of the law `fung`
   double density = 1000.0;               // [kg/m3]
   std::array<double, 2> rayleigh{0, 0};  // alpha [1/s], beta [s]
   double cell = 0.0;                     // [m] lattice cell; 0: sized for some 2,000 tetrahedra
@@ -181,6 +190,7 @@ struct SoftBodyParameters {
   UnderGravity under_gravity = UnderGravity::kFalls;
   Carries carries = Carries::kNothing;
   SoftContact contact = SoftContact::kLattice;
+  dvec3 velocity{0, 0, 0};  // [m/s] world, at the beginning; not of a tool
 };
 
 enum class Attachment : std::uint8_t { kSpring, kSlave };
@@ -210,6 +220,7 @@ struct RigidBodyParameters {
   double density = 1000.0;                               // [kg/m3]
   double friction_static = 0.4, friction_sliding = 0.3;  // [1]
   bool fixed = false;
+  dvec3 velocity{0, 0, 0};  // [m/s] world, at the beginning; not of a tool
 };
 
 // Objects that a probe touches. A Deformable is touched at its actual position, by its own law. For soft and rigid

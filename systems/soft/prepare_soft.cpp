@@ -52,6 +52,7 @@ Status add_soft(const World& world, SoftState& soft) {
       parts.push_back(&world.meshes[part.mesh].triangles);
     state->set_part_meshes(std::move(parts));
     state->self_collides = true;  // fingers pinch, a strip folds
+    if (!handle) state->start_with(body.velocity);
     add(soft, entity, std::move(state));
   }
   return Done{};
@@ -70,7 +71,7 @@ Status add_rigid(const World& world, SoftState& soft) {
       if (const Handle6* handle = world.registry.find<Handle6>(entity))
         state = std::make_unique<RigidTool>(mesh, *mass, *handle, pose);
       else
-        state = std::make_unique<RigidState>(mesh, pose, *mass);
+        state = std::make_unique<RigidState>(mesh, pose, *mass), state->start_with(body.velocity);
     }
     state->friction_static = body.friction_static;
     state->friction_sliding = body.friction_sliding;

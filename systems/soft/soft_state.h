@@ -18,6 +18,7 @@
 #include "systems/soft/contact/contact_point.h"
 #include "systems/soft/contact/contact_problem.h"
 #include "systems/soft/contact/delassus.h"
+#include "systems/soft/fem/tissue.h"
 #include "systems/soft/local/split_contacts.h"
 
 namespace pliant {
@@ -50,8 +51,7 @@ struct RigidSetting {
   double friction_static = 0.4, friction_sliding = 0.3;
 };
 struct SoftSetting {
-  double young = 5e3, poisson = 0.45;
-  std::array<double, 2> rayleigh{0, 0};
+  TissueMaterial material;  // without its density, which does not change
   double friction_static = 0.4, friction_sliding = 0.3;
 };
 struct ParameterEdit {

@@ -30,7 +30,7 @@ void change(Body& body, const RigidSetting& now) {
 void change(Body& body, const SoftSetting& now) {
   body.friction_static = now.friction_static;
   body.friction_sliding = now.friction_sliding;
-  body.set_elasticity(now.young, now.poisson, {now.rayleigh[0], now.rayleigh[1]});
+  body.set_material(now.material);
 }
 void change(Body& body, const CouplingSetting& now) {
   if (auto* tool = body.as_tool()) tool->set_coupling(now);

@@ -120,6 +120,31 @@ TEST(UnusedKeys, ThicknessIsOfASurfaceAndOfAWall) {
   EXPECT_THAT(unused(body(Fill::kWall)), IsEmpty());
 }
 
+TEST(UnusedKeys, StiffeningIsOfTheExponentialLaw) {
+  const auto body = [](TissueLaw law) {
+    return level_with([&](LevelNode& n) {
+      n.soft_body.emplace();
+      n.soft_body->law = law;
+      n.soft_body->stiffening = 3.0;
+    });
+  };
+  EXPECT_THAT(unused(body(TissueLaw::kCorotational)), ElementsAre("PLIANT_soft_body/stiffening"));
+  EXPECT_THAT(unused(body(TissueLaw::kNeoHookean)), ElementsAre("PLIANT_soft_body/stiffening"));
+  EXPECT_THAT(unused(body(TissueLaw::kFung)), IsEmpty());
+}
+
+TEST(UnusedKeys, AVelocityIsOfBodiesThatMoveWithoutAHandle) {
+  const auto body = [](bool fixed) {
+    return level_with([&](LevelNode& n) {
+      n.rigid_body.emplace();
+      n.rigid_body->velocity = dvec3(1, 0, 0);
+      n.rigid_body->fixed = fixed;
+    });
+  };
+  EXPECT_THAT(unused(body(true)), ElementsAre("PLIANT_rigid_body/velocity"));
+  EXPECT_THAT(unused(body(false)), IsEmpty());
+}
+
 TEST(UnusedKeys, ADeviceThatNoProbeNamesMovesNothing) {
   Level level = level_with([](LevelNode& n) { n.device.emplace(); });
   EXPECT_THAT(unused(level), ElementsAre("PLIANT_haptic_device"));

@@ -16,7 +16,8 @@
 
 namespace pliant {
 
-struct SmearedLoad;  // systems/soft/local/smeared_load.h
+struct SmearedLoad;     // systems/soft/local/smeared_load.h
+struct TissueMaterial;  // systems/soft/fem/tissue.h
 
 struct SurfacePoint {
   std::uint32_t triangle = 0;  // of the collision mesh
@@ -109,11 +110,12 @@ class Body {
   virtual void free_step(double T, dvec3 gravity) = 0;
   // False: the step's A could not be factorised; solve() must not be called.
   virtual bool solvable() const { return true; }
-  // Between steps: changes the mass of a rigid body, or the elasticity of tissue. Pose and velocity are kept.
+  // Between steps: changes the mass of a rigid body, or the law, elasticity and damping of tissue. Pose and velocity
+  // are kept.
   virtual void set_mass(const RigidMass& mass) { (void)mass; }
-  virtual void set_elasticity(double young, double poisson, RayleighDamping damping) {
-    (void)young, (void)poisson, (void)damping;
-  }
+  virtual void set_material(const TissueMaterial& material) { (void)material; }
+  // [m/s] Before the first step.
+  virtual void start_with(dvec3 velocity) { (void)velocity; }
   // Sets its velocity to zero.
   virtual void halt() {}
   // v: after free_step v*, after correct() the step's final velocity.

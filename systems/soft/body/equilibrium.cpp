@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "systems/soft/body/tissue_material.h"
 #include "systems/soft/fem/tissue_step.h"
 
 namespace pliant {
@@ -23,7 +24,9 @@ constexpr double kLeastCorrection = 1.0 / 64;  // [1] of a correction
 constexpr double kEnergyRounding = 1e-12;      // [1] of energies
 
 TissueMaterial static_tissue(const SoftBody& body) {
-  return {.young = body.young, .poisson = body.poisson, .density = body.density};
+  TissueMaterial material = material_of(body);
+  material.alpha = material.beta = 0.0;
+  return material;
 }
 
 bool any_free(const TetMesh& tets) {

@@ -31,6 +31,7 @@ class RigidState : public Body {
   Vector starting_velocity() const override { return start_; }
   void halt() override;
   void set_mass(const RigidMass& mass) override;
+  void start_with(dvec3 velocity) override { set_velocity(velocity, dvec3(0)); }
   void show(SoftObjectSnapshot& out) const override;
 
   const RigidMass& mass() const { return mass_; }

@@ -5,6 +5,8 @@
 
 #include "runtime/assert.h"
 #include "runtime/long_work.h"
+#include "systems/soft/body/tissue_material.h"
+#include "systems/soft/fem/passive_step.h"
 #include "systems/soft/local/smearing_surface.h"
 #include "systems/soft/local/tip_law.h"
 
@@ -15,14 +17,6 @@ namespace {
 constexpr double kSettleStep = 0.1;  // [s]
 constexpr int kSettleSteps = 40;
 constexpr double kSettled = 1e-9;  // [1] of the body's size
-
-TissueMaterial material_of(const SoftBody& body) {
-  return {.young = body.young,
-          .poisson = body.poisson,
-          .density = body.density,
-          .alpha = body.rayleigh[0],
-          .beta = body.rayleigh[1]};
-}
 
 bool has_handle_nodes(const TetMesh& tets, const Handle6* handle) {
   return handle != nullptr && tets.handle_count > 0;
@@ -143,9 +137,13 @@ void SoftBodyState::separate_tissue(double T) {
       (solver_.reduced_right() - coupling_step_.right - (handle_mass_ + tissue_matrix_) * start_) / T - handle_load_;
 }
 
-void SoftBodyState::set_elasticity(double young, double poisson, RayleighDamping damping) {
-  damping_ = damping;
-  tissue_.set_elasticity(young, poisson, damping.alpha, damping.beta);
+void SoftBodyState::start_with(dvec3 velocity) {
+  for (std::uint32_t i = 0; i < tissue_.moving(); ++i) tissue_.velocity()[i] = velocity;
+}
+
+void SoftBodyState::set_material(const TissueMaterial& material) {
+  damping_ = {material.alpha, material.beta};
+  tissue_.set_material(material);
   if (tie_) tie_->set_material(tissue_.material());
   if (smearing_) smear();
 }
@@ -181,7 +179,36 @@ void SoftBodyState::unsettle() {
   refresh_surface(tissue_.position(), surface_position);
 }
 
+// The motion that is only carried: with the handle, or of the centre of mass of what nothing holds.
+std::vector<dvec3> SoftBodyState::carried_motion() const {
+  std::vector<dvec3> out(tets_.node_count(), dvec3(0));
+  if (handle_) {
+    const Vector6 w = velocity_.tail<6>();
+    const dvec3 centre = handle_->motion().pose.position;
+    for (std::uint32_t i = 0; i < tets_.pinned_begin(); ++i)
+      out[i] = linear(w) + cross(angular(w), tissue_.position()[i] - centre);
+  } else if (tissue_.moving() == tets_.node_count()) {
+    dvec3 momentum(0);
+    double mass = 0.0;
+    for (std::uint32_t i = 0; i < tissue_.moving(); ++i)
+      momentum += tissue_.mass()[i] * node_velocity(i, velocity_), mass += tissue_.mass()[i];
+    std::fill(out.begin(), out.end(), momentum / mass);
+  }
+  return out;
+}
+
+void SoftBodyState::keep_passive(double T) {
+  const std::vector<dvec3> carried = carried_motion();
+  const Eigen::Index rows = 3 * static_cast<Eigen::Index>(tissue_.moving());
+  Vector rigid(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) rigid[i] = carried[static_cast<std::size_t>(i / 3)][static_cast<int>(i % 3)];
+  const Vector d = velocity_.head(rows) - rigid;
+  const double share = passive_share(tissue_, carried, d, handle_ ? tets_.free_count : tissue_.moving(), T);
+  if (share < 1.0) velocity_.head(rows) = rigid + share * d;
+}
+
 void SoftBodyState::advance(double T) {
+  if (tissue_.large_strain() && solvable_ && velocity_.allFinite()) keep_passive(T);
   std::vector<dvec3>&x = tissue_.position(), &v = tissue_.velocity();
   for (std::uint32_t i = 0; i < tissue_.moving(); ++i) {
     v[i] = node_velocity(i, velocity_);

@@ -43,7 +43,8 @@ class SoftBodyState final : public ToolBody {
   RayleighDamping damping() const override { return damping_; }
   Vector starting_velocity() const override;
   void halt() override;
-  void set_elasticity(double young, double poisson, RayleighDamping damping) override;
+  void set_material(const TissueMaterial& material) override;
+  void start_with(dvec3 velocity) override;
   void show(SoftObjectSnapshot& out) const override;
   std::size_t part_count() const { return tets_.parts.size(); }
   void show_part(std::size_t part, SoftObjectSnapshot& out) const;
@@ -84,6 +85,8 @@ class SoftBodyState final : public ToolBody {
   dvec3 arm(std::uint32_t node) const { return handle_->arm(node - tets_.free_count); }
   dvec3 node_velocity(std::uint32_t node, const Vector& velocity) const;  // [m/s]
   void separate_tissue(double T);
+  std::vector<dvec3> carried_motion() const;  // [m/s] per node
+  void keep_passive(double T);                // passive_step.h
   void refresh_surface(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_surface) const;
 
   const TetMesh& tets_;

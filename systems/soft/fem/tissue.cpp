@@ -25,6 +25,33 @@ inline void add_block(double* __restrict to, dvec3 pi, dvec3 cj, dvec3 qj, dvec3
   to[8] += pi.z * cj.z + qj.z * ci.z + d;
 }
 
+// `to` (row major) += K.
+inline void add_block(double* __restrict to, const dmat3& K) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) to[3 * i + j] += K[j][i];
+}
+
+dmat3 block_of(const LawBlocks& blocks, std::size_t n, std::size_t lane) {
+  dmat3 out;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) out[j][i] = blocks.of[n][i][j][lane];
+  return out;
+}
+
+// K' u of an element.
+std::array<dvec3, 4> product(const LawBlocks& blocks, std::size_t lane, const std::array<dvec3, 4>& u) {
+  std::array<dvec3, 4> out{};
+  std::size_t n = 0;
+  for (int k = 1; k < 4; ++k)
+    for (int l = k; l < 4; ++l, ++n) {
+      const dmat3 K = block_of(blocks, n, lane);
+      out[k] += K * (u[l] - u[0]);
+      if (l > k) out[l] += transpose(K) * (u[k] - u[0]);
+    }
+  out[0] = -(out[1] + out[2] + out[3]);
+  return out;
+}
+
 dvec3 lane_of(const ElementLanes (&v)[3], std::size_t lane) {
   return {v[0][lane], v[1][lane], v[2][lane]};
 }
@@ -45,20 +72,20 @@ Tissue::Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_
   ASSERT(moving >= mesh.free_count && moving <= mesh.pinned_begin());
   ASSERT(mesh.pinned_begin() <= mesh.node_count());
   ASSERT(material.young > 0 && material.density > 0 && material.poisson > -1 && material.poisson < 0.5);
-  set_elasticity(material.young, material.poisson, material.alpha, material.beta);
+  set_material(material);
   take_elements();
   lay_out();
   right_.setZero(3 * mesh.pinned_begin());
   force_.setZero(3 * mesh.node_count());
 }
 
-void Tissue::set_elasticity(double young, double poisson, double alpha, double beta) {
-  material_.young = young;
-  material_.poisson = poisson;
-  material_.alpha = alpha;
-  material_.beta = beta;
-  mu_ = young / (2 * (1 + poisson));
-  lambda_ = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+void Tissue::set_material(const TissueMaterial& now) {
+  const double density = material_.density;
+  material_ = now;
+  material_.density = density;
+  mu_ = now.young / (2 * (1 + now.poisson));
+  lambda_ = now.young * now.poisson / ((1 + now.poisson) * (1 - 2 * now.poisson));
+  law_ = now.strain == Strain::kLinear ? nullptr : elastic_law(now.law);
 }
 
 void Tissue::take_elements() {
@@ -146,6 +173,7 @@ double* Tissue::block(std::uint32_t row, std::uint32_t column, std::uint32_t slo
 
 void Tissue::visit(const ElementPack& pack, const std::vector<dvec3>& x, ElementVisit& out) const {
   take_edges(pack, x, out);
+  if (law_) return take_law_forces(pack, law_, {mu_, lambda_, material_.stiffening}, out);
   if (material_.strain == Strain::kCorotational)
     take_rotations(pack, out);
   else
@@ -161,6 +189,11 @@ void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) 
   right_.setZero();
   force_.setZero();
   const Scale scale{T, T * T + T * material_.beta};
+  if (law_) {
+    assemble_law(scale, begin);
+    mirror();
+    return add_masses(T, gravity);
+  }
   const std::uint32_t end = mesh_.pinned_begin();
   const auto add_forces = [](const Tet& tet, std::size_t lane, const ElementVisit& from, double factor,
                              std::uint32_t below, Vector& to) {
@@ -185,12 +218,66 @@ void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) 
   add_masses(T, gravity);
 }
 
+// The right-hand side has f_el + K' (x - begin), the forces linearised about x, at the beginning of the step; and, of
+// pinned nodes, their velocities as displacements: A times these.
+void Tissue::assemble_law(const Scale& scale, const std::vector<dvec3>* begin) {
+  const LawConstants constants{mu_, lambda_, material_.stiffening};
+  const std::uint32_t end = mesh_.pinned_begin();
+  ElementVisit now;
+  LawBlocks blocks;
+  const Slots* slots = slots_.data();
+  for (ElementPack& pack : packs_) {
+    take_edges(pack, x_, now);
+    take_law_forces(pack, law_, constants, now);
+    take_rotations(pack, now);
+    take_law_blocks(pack, law_, constants, now, blocks);
+    std::memcpy(pack.q, now.q, sizeof now.q);
+    for (std::size_t lane = 0; lane < pack.count; ++lane, ++slots) {
+      const Tet& tet = pack.node[lane];
+      add_law_blocks(tet, lane, *slots, scale, blocks);
+      std::array<dvec3, 4> shift{};  // K' times these is on the right
+      if (begin)
+        for (int i = 0; i < 4; ++i) shift[i] = scale.T * (x_[tet[i]] - (*begin)[tet[i]]);
+      if (tet[3] >= end)
+        for (int i = 0; i < 4; ++i)
+          if (tet[i] >= end) shift[i] -= scale.stiffness * v_[tet[i]];
+      std::array<dvec3, 4> pull{};
+      if (begin || tet[3] >= end) pull = product(blocks, lane, shift);
+      for (int i = 0; i < 4; ++i) {
+        const dvec3 f = lane_of(now.f[i], lane);
+        add(force_, tet[i], f);
+        if (tet[i] < end) add(right_, tet[i], scale.T * f + pull[i]);
+      }
+    }
+  }
+}
+
+void Tissue::add_law_blocks(const Tet& tet, std::size_t lane, const Slots& slots, const Scale& scale,
+                            const LawBlocks& blocks) {
+  dmat3 row[3], first(0);  // sums over the rows of nodes 1, 2, 3
+  for (dmat3& sum : row) sum = dmat3(0);
+  std::size_t n = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int l = k; l < 3; ++l, ++n) {
+      const dmat3 K = scale.stiffness * block_of(blocks, n, lane);
+      row[k] += K;
+      if (l > k) row[l] += transpose(K);
+      if (double* const to = block(tet[k + 1], tet[l + 1], slots[4 + n])) add_block(to, K);
+    }
+  for (int l = 0; l < 3; ++l) {
+    first += row[l];
+    if (double* const to = block(tet[0], tet[l + 1], slots[static_cast<std::size_t>(l) + 1]))
+      add_block(to, -transpose(row[l]));
+  }
+  if (double* const to = block(tet[0], tet[0], slots[0])) add_block(to, first);
+}
+
 void Tissue::find_forces() {
   force_.setZero();
   ElementVisit now;
   for (ElementPack& pack : packs_) {
     visit(pack, x_, now);
-    std::memcpy(pack.q, now.q, sizeof now.q);
+    if (!law_) std::memcpy(pack.q, now.q, sizeof now.q);
     for (std::size_t lane = 0; lane < pack.count; ++lane)
       for (int i = 0; i < 4; ++i) add(force_, pack.node[lane][i], lane_of(now.f[i], lane));
   }
@@ -244,11 +331,11 @@ void Tissue::add_masses(double T, dvec3 gravity) {
     if (entry.row == entry.column) entry.value.diagonal().array() += mass_[entry.row] * damped;
 }
 
-double Tissue::elastic_energy() const {
+double Tissue::elastic_energy(const std::vector<dvec3>& position) const {
   double energy = 0.0;
   ElementVisit now;
   for (const ElementPack& pack : packs_) {
-    visit(pack, x_, now);
+    visit(pack, position, now);
     for (std::size_t lane = 0; lane < pack.count; ++lane) energy += now.energy[lane];
   }
   return energy;

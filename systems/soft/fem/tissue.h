@@ -1,9 +1,10 @@
-// Co-rotational linear tetrahedra (methods.md 2.1): f_e = -R K_e (R^T x - x0), K' = R K_e R^T, implicit Euler
+// Linear tetrahedra (methods.md 2.1), co-rotational, f_e = -R K_e (R^T x - x0), K' = R K_e R^T, or with a law for large
+// strain (law_element.h). Implicit Euler:
 //   (M + T D + T^2 K') v = M v0 + T (f_el + f_ext),   D = alpha M + beta K'.
 // Nodes in world frame. Node order as in TetMesh: free, handle, pinned.
 //
-// No 12x12 matrix is ever formed. With b_i = grad N_i at rest [1/m] and c_i = R b_i, a linear tetrahedron of volume V
-// gives, in the world frame,
+// Co-rotational: no 12x12 matrix is ever formed. With b_i = grad N_i at rest [1/m] and c_i = R b_i, a linear
+// tetrahedron of volume V gives, in the world frame,
 //   eps = sym(sum x_i c_i^T) - I,  sigma = 2 mu eps + lambda tr(eps) I,  f_i = -V sigma c_i,
 //   K'_ij = V (lambda c_i c_j^T + mu (c_j c_i^T + (b_i . b_j) I)).
 // With R the exact polar factor f is minus the gradient of the energy V (mu |eps|^2 + lambda/2 tr(eps)^2) at any
@@ -15,13 +16,14 @@
 #include "components/math.h"
 #include "components/tet_mesh.h"
 #include "systems/soft/fem/element.h"
+#include "systems/soft/fem/law_element.h"
 #include "systems/soft/linear/block_matrix.h"
 
 namespace pliant {
 
 enum class Strain : std::uint8_t {
-  kCorotational,
-  kLinear,  // R = I: for studies; valid only without rotation
+  kCorotational,  // or the material's law
+  kLinear,        // R = I: for studies; valid only without rotation
 };
 
 struct TissueMaterial {
@@ -31,6 +33,8 @@ struct TissueMaterial {
   double alpha = 0.0;       // [1/s] Rayleigh damping, mass part
   double beta = 0.0;        // [s] stiffness part
   Strain strain = Strain::kCorotational;
+  TissueLaw law = TissueLaw::kCorotational;
+  double stiffening = 1.0;  // [1] of TissueLaw::kFung
 };
 
 class Tissue {
@@ -41,8 +45,10 @@ class Tissue {
   Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_t moving);
 
   // Effective from the next assemble(); masses are kept.
-  void set_elasticity(double young, double poisson, double alpha, double beta);
+  void set_material(const TissueMaterial& material);
   const TissueMaterial& material() const { return material_; }
+  // False: the forces are linear in the strain, so one linearised step is as good as the rotations in it.
+  bool large_strain() const { return law_ != nullptr; }
 
   // [m], [m/s], world, per node. Writer: the caller that steps this tissue.
   std::vector<dvec3>& position() { return x_; }
@@ -74,7 +80,8 @@ class Tissue {
   const std::vector<Entry>& corner() const { return corner_; }  // moving <= row, column < pinned_begin
   const Vector& right() const { return right_; }
 
-  double elastic_energy() const;  // [J] at the current positions
+  double elastic_energy() const { return elastic_energy(x_); }  // [J] at the current positions
+  double elastic_energy(const std::vector<dvec3>& position) const;
   // [N] of the last assemble() or find_forces(), 3 per node, all nodes; on pinned nodes: minus the reaction force.
   const Vector& elastic_force() const { return force_; }
 
@@ -89,6 +96,9 @@ class Tissue {
   void add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, const Scale& scale,
                   const ElementVisit& visit);
   void add_prescribed(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit);
+  void assemble_law(const Scale& scale, const std::vector<dvec3>* begin);
+  void add_law_blocks(const Tet& tet, std::size_t lane, const Slots& slots, const Scale& scale,
+                      const LawBlocks& blocks);
   void mirror();
   void add_masses(double T, dvec3 gravity);
   double* block(std::uint32_t row, std::uint32_t column, std::uint32_t slot);
@@ -96,6 +106,7 @@ class Tissue {
   const TetMesh& mesh_;
   TissueMaterial material_;
   double lambda_ = 0.0, mu_ = 0.0;  // [Pa] Lame's
+  ElasticLaw law_ = nullptr;        // for large strain; null: co-rotational or linear
   std::uint32_t moving_ = 0;
   std::vector<dvec3> x_, v_;
   std::vector<double> mass_;
