@@ -109,7 +109,7 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
       std::abs(foot.height) > static_cast<double>(s.mesh.box.diagonal()) + radius ||
       foot.height > radius * (1 + 2 * kAhead))
     return drop_contact(source, contact);
-  put_contact(source, contact, deepest_on_tip(s, tip, radius, foot, source.axis.along));
+  put_contact(source, contact, deepest_on_tip(s, tip, radius, foot, source.axis.along, &source.place));
   // A depth changes no faster than the tip moves, unless the tracked minimum vanished and the foot moved downhill to
   // another one. The additional depth was not pushed. Over a short way, that is what the gradients do not explain.
   const dvec3 step_there = source.x - was.at(source.axis.along);  // of the same sphere of a capsule
