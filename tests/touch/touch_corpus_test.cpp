@@ -37,7 +37,7 @@ std::vector<std::string> meshes() {
 #ifdef PLIANT_SANITIZED
 constexpr int kTicks = 6400, kStrokes = 3;
 #else
-constexpr int kTicks = 16000, kStrokes = 12;
+constexpr int kTicks = 16000, kStrokes = 20;
 #endif
 
 class CorpusTouch : public ::testing::TestWithParam<std::string> {};
@@ -152,8 +152,31 @@ int walls_between(const Stage& stage, dvec3 from, dvec3 to) {
   return count;
 }
 
-// Where a press meets one wall alone. Not on all meshes: on cages as coarse as the press is deep, and on organs with
-// walls within walls, one place in five to twenty is off.
+// Whether the way enters one wall and leaves none.
+bool one_wall(const Stage& stage, dvec3 from, dvec3 to) {
+  return walls_between(stage, from, to) == 1 && walls_between(stage, to, from) == 0;
+}
+
+// A probe is in the stage only while it is tried: others would share its load.
+void begin_at(Stage& stage, Entity probe, dvec3 x) {
+  stage.world.registry.get<Probe>(probe).placed = false;
+  stage.place(probe, x);
+  stage.tick();
+}
+void take_away(Stage& stage, Entity probe, dvec3 up, dvec3 away) {
+  for (const dvec3& x : {up, away}) {
+    stage.place(probe, x);
+    stage.tick();
+  }
+}
+
+bool is_behind(const Stage& stage, Entity probe) {
+  for (auto [entity, contact] : stage.world.registry.view<const Contact>())
+    if (contact.probe == probe && contact.height < 0) return true;
+  return false;
+}
+
+// Where a press meets one wall alone. Not on all meshes: docs/accuracy.md says where a place is off.
 class CorpusStroke : public ::testing::TestWithParam<std::string> {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(CorpusStroke);
 
@@ -172,6 +195,7 @@ TEST_P(CorpusStroke, FeelsWhatAFreshPressFeels) {
     for (const vec3 corner : {own.min, own.max}) box.add(vec3(pose.to_world(dvec3(corner))));
   }
   const double size = box.diagonal(), depth = 0.008 * size, far = 0.1 * size;
+  const dvec3 away = dvec3(box.max) + dvec3(10 * size);
   std::mt19937 random(5);
   struct Stroke {
     Entity hand, fresh;
@@ -188,38 +212,38 @@ TEST_P(CorpusStroke, FeelsWhatAFreshPressFeels) {
     const dvec3 along = normalize(cross(n, std::abs(n.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
     const double radius = i % 3 == 0 ? 0.0 : i % 3 == 1 ? 0.01 * size : 0.03 * size;
     const dvec3 x = pose.to_world(dvec3(mesh.position(v))) + (radius - depth) * n;
-    strokes.push_back(
-        {stroked.add_probe(x + far * n, radius), pressed.add_probe(x + far * n, radius), radius, x, n, along});
+    strokes.push_back({stroked.add_probe(away, radius), pressed.add_probe(away, radius), radius, x, n, along});
   }
   stroked.prepare();
   pressed.prepare();
   int compared = 0;
   for (const Stroke& stroke : strokes) {
     const dvec3 up = far * stroke.normal;
-    if (walls_between(stroked, stroke.x + up, stroke.x - stroke.radius * stroke.normal) != 1) continue;
-    stroked.move(stroke.hand, stroke.x, 0.05);
+    if (!one_wall(stroked, stroke.x + up, stroke.x - stroke.radius * stroke.normal)) continue;
+    begin_at(stroked, stroke.hand, stroke.x + up);
+    const bool behind = is_behind(stroked, stroke.hand);
+    if (!behind) stroked.move(stroke.hand, stroke.x, 0.05);
     constexpr int kSteps = 1200;
-    for (int i = 1; i <= kSteps; ++i) {
+    for (int i = 1; i <= kSteps && !behind; ++i) {
       const dvec3 x = stroke.x + 0.06 * size * i / kSteps * stroke.along;
       stroked.place(stroke.hand, x);
       stroked.tick();
-      if (i % 100 || walls_between(stroked, x + up, x - stroke.radius * stroke.normal) != 1) continue;
-      pressed.place(stroke.fresh, x + up);
-      pressed.tick();
-      pressed.move(stroke.fresh, x, 0.05);
-      pressed.wait(0.02);
-      stroked.wait(0.02);
-      const double is = length(raw_force(stroked, stroke.hand)), should = length(raw_force(pressed, stroke.fresh));
-      ++compared;
-      EXPECT_NEAR(is, should, 0.02 * should + 0.003)
-          << stroke.radius / size << " of the size, stroke " << &stroke - strokes.data() << " at " << i;
-      pressed.place(stroke.fresh, x + up);
-      pressed.tick();
+      if (i % 100 || !one_wall(stroked, x + up, x - stroke.radius * stroke.normal)) continue;
+      begin_at(pressed, stroke.fresh, x + up);
+      if (!is_behind(pressed, stroke.fresh)) {
+        pressed.move(stroke.fresh, x, 0.05);
+        pressed.wait(0.02);
+        stroked.wait(0.02);
+        const double is = length(raw_force(stroked, stroke.hand)), should = length(raw_force(pressed, stroke.fresh));
+        ++compared;
+        EXPECT_NEAR(is, should, 0.02 * should + 0.003)
+            << stroke.radius / size << " of the size, stroke " << &stroke - strokes.data() << " at " << i;
+      }
+      take_away(pressed, stroke.fresh, x + up, away);
     }
-    stroked.place(stroke.hand, stroke.x + up);
-    stroked.tick();
+    take_away(stroked, stroke.hand, stroke.x + up, away);
   }
-  EXPECT_GE(compared, 6 * kStrokes);
+  EXPECT_GE(compared, 4 * kStrokes);
 }
 
 // Presses of a point and of spheres on the largest part, straight in and out, deeper than many walls are thick.
@@ -296,6 +320,8 @@ INSTANTIATE_TEST_SUITE_P(Corpus, CorpusPress, ::testing::ValuesIn(meshes()), nam
 INSTANTIATE_TEST_SUITE_P(Corpus, CorpusStroke,
                          ::testing::Values("meshes-draco/Box_Draco.glb", "meshes-valid/gltf-transform/DenseSphere.glb",
                                            "meshes-valid/spot/spot_triangulated.obj",
+                                           "meshes-valid/spot/spot_quadrangulated.obj", "meshes-valid/pmndrs/bunny.glb",
+                                           "meshes-valid/draco-testdata/CesiumMan.glb",
                                            "meshes-valid/webxr-hand/right.glb"),
                          name_of);
 

@@ -110,8 +110,9 @@ bool climb(const ContactSearch& s, const Axis& axis, double radius, AxisSphere& 
 
 }  // namespace
 
-TipContact deepest_on_tip(const ContactSearch& s, const TipPlace& tip, double radius, Foot foot, double along) {
-  if (tip.axis == dvec3(0)) return {contact_place(s.object, s.mesh, foot, tip.end), {}, tip.end};
+TipContact deepest_on_tip(const ContactSearch& s, const TipPlace& tip, double radius, Foot foot, double along,
+                          const FootBlend* before) {
+  if (tip.axis == dvec3(0)) return {contact_place(s.object, s.mesh, foot, tip.end, before), {}, tip.end};
   const Axis axis(tip, radius);
   AxisSphere at = lowest(s, axis, sphere_at(s, axis, foot, along));
   for (int i = 0; i < kMostClimbs && climb(s, axis, radius, at);) ++i;

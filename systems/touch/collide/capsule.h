@@ -28,8 +28,10 @@ struct TipContact {
   double raised = 0.0;  // [m] of the sphere, by the bend
 };
 
-// The deepest sphere, from that at `along` and its foot on, downhill. Of a sphere: itself.
-TipContact deepest_on_tip(const ContactSearch& s, const TipPlace& tip, double radius, Foot foot, double along);
+// The deepest sphere, from that at `along` and its foot on, downhill. Of a sphere: itself. `before`: see
+// contact_place.h.
+TipContact deepest_on_tip(const ContactSearch& s, const TipPlace& tip, double radius, Foot foot, double along,
+                          const FootBlend* before = nullptr);
 
 // The ridge between two contacts of a capsule: on the way along the axis, the sphere that is least deep.
 Ridge ridge_along(const ContactSearch& s, const SourceState& a, const SourceState& b);

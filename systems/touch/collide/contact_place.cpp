@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/curved_patch.h"
 #include "systems/touch/collide/around_vertex.h"
 #include "systems/touch/collide/seams.h"
 #include "systems/touch/collide/section.h"
@@ -136,13 +137,68 @@ bool connected(const Mesh& mesh, const Foot& from, const Foot& to, dvec3 x, doub
          walk_section(mesh, from.triangle, to.triangle, p, -across, near);
 }
 
+// How much the side of a foot on its edge faces x: 0 where x leaves the side's tangent plane.
+Facing facing_of(const Mesh& mesh, const Foot& foot) {
+  if (foot.place == FootPlace::kInside) return {};
+  const CurvedPatch::Point at = curved_patch(mesh, foot.triangle).at(foot.barycentric.y, foot.barycentric.z);
+  const dvec3 n = cross(at.pu, at.pv);
+  const double size = length(n), cosine = dot(foot.normal, n) / size;
+  const auto turn = [&](dvec3 dn) { return (dot(dn, foot.normal) - dot(dn, n) / size * cosine) / size; };
+  return {cosine, glm::transpose(foot.turns) * (n / size) +
+                      turn(cross(at.puu, at.pv) + cross(at.pu, at.puv)) * foot.shifts[1] +
+                      turn(cross(at.puv, at.pv) + cross(at.pu, at.pvv)) * foot.shifts[2]};
+}
+
+// The contact's foot and those on other sides.
+struct SideFeet {
+  const ObjectState& object;
+  const Mesh& mesh;
+  dvec3 x;
+  double same, farthest;  // [m]
+  std::uint32_t count = 1;
+  std::array<Foot, kMostFeet> feet;
+  std::array<Facing, kMostFeet> facing{};
+
+  // The foot of x on the side on which it starts, if it matters.
+  void add(std::uint32_t triangle, dvec3 barycentric) {
+    constexpr double kLeastFacing = 1e-6;
+    const Foot foot = descend(mesh, triangle, barycentric, x, false, object.closed);
+    if (!(foot.height < 0) || -foot.height > farthest || dot(foot.normal, feet[0].normal) < kThin) return;
+    const auto is_same = [&](const Foot& f) {
+      return length(f.p - foot.p) < same + 1e-9 * length(f.p) && dot(f.normal, foot.normal) > 0.999;
+    };
+    if (std::any_of(feet.begin(), feet.begin() + count, is_same)) return;
+    const Facing side = facing_of(mesh, foot);
+    if (!(side.cosine > kLeastFacing) || -foot.height > farthest * side.cosine) return;
+    const double within =
+        kCreaseReach * std::max(-feet[0].height, -foot.height) + 2 * static_cast<double>(mesh.tree.bulge);
+    if (!connected(mesh, foot, feet[0], x, within)) return;
+    std::uint32_t to = count;
+    const auto depth = [&](std::uint32_t i) { return -feet[i].height / facing[i].cosine; };
+    if (count < kMostFeet) {
+      ++count;
+    } else {  // replaces the farthest of the others
+      to = 1;
+      for (std::uint32_t i = 2; i < count; ++i)
+        if (depth(i) > depth(to)) to = i;
+      if (!(-foot.height / side.cosine < depth(to))) return;
+    }
+    feet[to] = foot;
+    facing[to] = side;
+    farthest = std::min(farthest, kBlendRatio * depth(to));
+  }
+};
+
 }  // namespace
 
-FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot& own, dvec3 x) {
-  std::array<Foot, kMostFeet> feet;
-  feet[0] = own;
-  if (own.height >= 0 || object.creases.empty()) return blend_feet(feet, 1);
-  double farthest = kBlendRatio * -own.height;
+FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot& own, dvec3 x,
+                        const FootBlend* before) {
+  // A foot over a crack is beside that on its edge.
+  const double same = object.closed.empty() ? kSameContact * static_cast<double>(mesh.mean_edge) : crack_of(mesh);
+  SideFeet sides{object, mesh, x, same, kBlendRatio * -own.height};
+  sides.feet[0] = own;
+  if (own.height >= 0 || object.creases.empty()) return blend_feet(sides.feet, 1);
+  const double farthest = sides.farthest;
   std::array<NearCrease, kMostCreases> creases;
   std::size_t near = 0;
   // Around the point first. Then farther out, for sharp wedges, unless the surface is rough.
@@ -150,9 +206,8 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
     near = 0;
     nearest_creases(object, mesh, own, x, kCreaseReach * -own.height, farthest, creases, near);
   }
-  std::uint32_t count = 1;
-  // A foot over a crack is beside that on its edge.
-  const double same = object.closed.empty() ? kSameContact * static_cast<double>(mesh.mean_edge) : crack_of(mesh);
+  for (std::uint32_t i = 0; before && before->count > 1 && i < before->count; ++i)
+    sides.add(before->foot[i].triangle, before->foot[i].barycentric);
   std::array<std::uint32_t, kMostCreases> started;
   std::size_t starts = 0;
   for (std::size_t i = 0; i < near; ++i) {
@@ -162,30 +217,15 @@ FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot&
       return f.place == FootPlace::kInside && dot(f.normal, crease.normal) > 1 - 1e-9 &&
              std::abs(dot(f.p, crease.normal) - crease.offset) < same;
     };
-    if (std::any_of(feet.begin(), feet.begin() + count, same_side)) continue;
+    if (std::any_of(sides.feet.begin(), sides.feet.begin() + sides.count, same_side)) continue;
     const Start start = start_on_side(object, mesh, crease, x);
     if (start.vertex != kBorder) {
       if (std::find(started.begin(), started.begin() + starts, start.vertex) != started.begin() + starts) continue;
       started[starts++] = start.vertex;
     }
-    const Foot foot = descend(mesh, start.triangle, start.barycentric, x, false, object.closed);
-    if (!(foot.height < 0) || -foot.height > farthest || dot(foot.normal, own.normal) < kThin) continue;
-    const auto is_same = [&](const Foot& f) {
-      return length(f.p - foot.p) < same + 1e-9 * length(f.p) && dot(f.normal, foot.normal) > 0.999;
-    };
-    if (std::any_of(feet.begin(), feet.begin() + count, is_same)) continue;
-    const double within = kCreaseReach * std::max(-own.height, -foot.height) + 2 * static_cast<double>(mesh.tree.bulge);
-    if (!connected(mesh, foot, own, x, within)) continue;
-    if (count < kMostFeet) {
-      feet[count++] = foot;
-    } else {  // replaces the farthest of the others
-      const auto deepest = std::min_element(feet.begin() + 1, feet.end(),
-                                            [](const Foot& f, const Foot& g) { return f.height < g.height; });
-      if (foot.height > deepest->height) *deepest = foot;
-    }
-    farthest = std::min(farthest, kBlendRatio * -foot.height);
+    sides.add(start.triangle, start.barycentric);
   }
-  return blend_feet(feet, count);
+  return blend_feet(sides.feet, sides.count, sides.facing);
 }
 
 }  // namespace pliant

@@ -162,7 +162,7 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
       std::abs(foot.height) > static_cast<double>(s.mesh.box.diagonal()) + radius ||
       foot.height > radius * (1 + 2 * kAhead))
     return beyond && last < 0 ? slip(s, source, contact, place, last) : drop_contact(source, contact);
-  put_contact(source, contact, deepest_on_tip(s, tip, radius, foot, source.axis.along));
+  put_contact(source, contact, deepest_on_tip(s, tip, radius, foot, source.axis.along, &source.place));
   if (!keeps_side(source, depth_of_tip(s, source, contact), length(source.x - x + step))) {
     s.world.dropped |= kDroppedRim;
     return slip(s, source, contact, place, last);

@@ -2,10 +2,12 @@
 // a convex crease is below both sides. Its depth is then a smooth minimum of its depths below each side. The force
 // therefore turns continuously from one side's normal to the other's, and fades where the point leaves through the
 // other side. With depths s_i, smallest m:
-//   ln s = min over weights of  sum w_i ln s_i + (D/2) (sum w_i^2 - 1),   w_i >= 0,  sum w_i = 1
-//   => w_i = max(0, (c - ln s_i) / D),   ds = s sum w_i ds_i / s_i
-// (sparsemax; Martins & Astudillo 2016). It depends only on ratios of depths, and sides deeper than e^D m have no
-// effect. It is continuously differentiable: the energy W(s) is conservative.
+//   ln s = min over weights of  sum w_i ln s_i + (D/2) (w.K w - 1),   w_i >= 0,  sum w_i = 1
+//   => on the support  K w = c - ln s_i / D,   ds = s (sum w_i ds_i / s_i + (D/2) w.dK w)
+// (sparsemax where K = 1; Martins & Astudillo 2016). It depends only on ratios of depths, and sides deeper than e^D m
+// have no effect. It is continuously differentiable: the energy W(s) is conservative. K_ij = k(|n_i - n_j|), positive
+// definite, is 1 for equal normals and 0 from 89 degrees on: two feet that are the same, or on one smooth side next to
+// each other, count as one, and the depth is continuous where they merge.
 #pragma once
 
 #include <array>
@@ -63,7 +65,15 @@ inline Painted painted(const FootBlend& blend, const Mesh& mesh, const std::vect
   return interpolate(blend, mesh, [&](std::uint32_t v) { return double(factor[v]); });
 }
 
+// cos of the angle at which x is seen from the side's edge, if its foot is there. The depth below that side is s / cos:
+// the side has no effect where x leaves its tangent plane.
+struct Facing {
+  double cosine = 1.0;
+  dvec3 slope{0};  // [1/m] d cosine / dx
+};
+
 // Blends `feet`. The first is the contact's foot. All are behind the surface, or there is only one.
-FootBlend blend_feet(const std::array<Foot, kMostFeet>& feet, std::uint32_t count);
+FootBlend blend_feet(const std::array<Foot, kMostFeet>& feet, std::uint32_t count,
+                     const std::array<Facing, kMostFeet>& facing = {});
 
 }  // namespace pliant

@@ -14,6 +14,8 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kMostFootSeeds = 32;
+// Mean edge from which on a mesh is coarse. [1] of the distance within which walls are searched
+constexpr double kCoarse = 0.1;
 
 // Whether p is on a wall through which this tip was pressed. Such a tip is beyond the wall but still in contact with
 // its entry side. On its way back the wall must not catch it: it is ignored if the contact's foot is behind it, if it
@@ -42,6 +44,16 @@ void find_walls(const ContactSearch& s, const ProbeTip& tip, dvec3 x, double wit
   const float limit2 = static_cast<float>(limit * limit * 1.0001);
   const double same = 1e-3 * static_cast<double>(mesh.mean_edge);
   const bool seamless = s.object.seams.empty();
+  // Patches next to each other may each have a minimum where their triangles have one. Not felt on finer meshes.
+  const bool coarse = mesh.tree.bulge > 0 && static_cast<double>(mesh.mean_edge) > kCoarse * within;
+  const auto add = [&](const Foot& foot) {
+    if (!(foot.height >= 0) || foot.height > within || is_inner_wall(s.object, foot.triangle)) return;
+    if (meets_seam(s.object, s.mesh, foot) && (!faces(s.mesh, foot) || !bears_between(s, tip, foot, x))) return;
+    const auto is_same = [&](const Foot& f) { return length(f.p - foot.p) < same; };
+    if (count < kMostFootSeeds &&
+        std::none_of(feet.begin(), feet.begin() + static_cast<std::ptrdiff_t>(count), is_same))
+      feet[count++] = foot;
+  };
   visit_runs_near(
       mesh, x, [&] { return limit; },
       [&](std::uint32_t first, std::uint32_t run) {
@@ -63,11 +75,11 @@ void find_walls(const ContactSearch& s, const ProbeTip& tip, dvec3 x, double wit
           }
           if (!lowest) continue;
           const Foot foot = s.downhill(t, at.barycentric, x);
-          if (!(foot.height >= 0) || foot.height > within || is_inner_wall(s.object, foot.triangle)) continue;
-          if (meets_seam(s.object, s.mesh, foot) && (!faces(s.mesh, foot) || !bears_between(s, tip, foot, x))) continue;
-          const auto is_same = [&](const Foot& f) { return length(f.p - foot.p) < same; };
-          if (std::none_of(feet.begin(), feet.begin() + static_cast<std::ptrdiff_t>(count), is_same))
-            feet[count++] = foot;
+          add(foot);
+          if (!coarse || !foot.valid()) continue;
+          for (int edge = 0; edge < 3; ++edge)
+            if (const std::uint32_t next = mesh.across[foot.triangle][edge]; next != kBorder)
+              add(s.downhill(next, dvec3(1.0 / 3), x));
         }
       });
 }
