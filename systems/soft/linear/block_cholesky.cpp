@@ -8,10 +8,11 @@ namespace pliant {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
-constexpr double kTaskShare = 0.15;  // [1] of the factor's work: the largest subtree that is one task
-constexpr double kSharedWork = 2e6;  // [1] multiplications and additions: less is faster on one thread
-constexpr int kBlockColumns = 64;    // columns of a panel whose diagonal block is factorised before the strips below it
-constexpr int kStripsTogether = 4;   // of a task
+constexpr double kTaskShare = 0.15;   // [1] of the factor's work: the largest subtree that is one task
+constexpr double kSharedWork = 2e6;   // [1] multiplications and additions: less is faster on one thread
+constexpr double kSharedFront = 6e6;  // the same of one front
+constexpr int kBlockColumns = 64;   // columns of a panel whose diagonal block is factorised before the strips below it
+constexpr int kStripsTogether = 4;  // of a task
 
 int strips_of(std::size_t rows) {
   return static_cast<int>((rows + kStrip - 1) / kStrip);
@@ -242,7 +243,9 @@ bool BlockCholesky::factorise_top(std::uint32_t front, const BlockMatrix& a) {
   for_each_child(front, [&](const Front& child) {
     add_update(child, stack_[child.update].lane, f, own, triangle->lane, scratch(0));
   });
+  const bool shared = static_cast<double>(f.strips) * f.strips * f.columns * kStrip * kStrip > kSharedFront;
   const auto share = [&](int from, const auto& part) {
+    if (!shared) return part(from, f.strips);
     const auto tasks = static_cast<std::size_t>((f.strips - from + kStripsTogether - 1) / kStripsTogether);
     run_tasks(tasks, [&](std::size_t i, unsigned) {  // the longest strips first
       const int to = f.strips - static_cast<int>(i) * kStripsTogether;

@@ -78,6 +78,7 @@ class BlockCholesky final : public LinearSolver {
   void forward_front(const Front& f, Lane* x, Lane* above, Scratch& scratch) const;
   template <class Lane>
   void backward_front(const Front& f, Lane* x, Scratch& scratch) const;
+  void touch_above(std::size_t packs) const;
   template <class Lane>
   void forward_all(Lane* x, std::size_t packs) const;
   template <class Lane>

@@ -12,8 +12,7 @@ constexpr std::uint32_t kNoFront = 0xffffffff;
 constexpr std::size_t kMostPacks = 16;  // solved together
 constexpr double kSharedCopies = 2e4;   // [1] strips of eight numbers
 constexpr std::size_t kGramTasks = 4;   // each passes over all packs
-constexpr double kSharedSolve =
-    4e5;  // [1] numbers of the factor times right-hand sides: fewer are faster on one thread
+constexpr double kSharedSolve = 1e7;    // [bytes] read of the factor by all packs: less is faster on one thread
 
 template <class Task>
 void for_each_task(bool shared, std::size_t count, const Task& task) {
@@ -64,10 +63,17 @@ void BlockCholesky::backward_front(const Front& f, Lane* x, Scratch& scratch) co
   std::copy_n(local, f.columns, x + f.first);
 }
 
+// A front's update touches the fronts above it.
+void BlockCholesky::touch_above(std::size_t packs) const {
+  for (std::size_t s = 0; s < fronts_.size(); ++s)
+    for (std::size_t p = 0; p < packs && fronts_[s].parent != kNoFront; ++p)
+      if (touched_[s * packs + p]) touched_[fronts_[s].parent * packs + p] = 1;
+}
+
 // x = L^-1 x. Fronts that a pack does not touch are skipped.
 template <class Lane>
 void BlockCholesky::forward_all(Lane* x, std::size_t packs) const {
-  const bool shared = static_cast<double>(factor_strips_ * packs * sizeof(Lane)) > kSharedSolve;
+  const bool shared = static_cast<double>(factor_strips_ * packs * sizeof(Strip)) > kSharedSolve;
   sums_above_.resize(std::max<std::size_t>(packs * above_, 1));
   const auto above_of = [&](const Subtree& tree, std::size_t pack) {
     return reinterpret_cast<Lane*>(sums_above_.data()) + packs * tree.above + pack * fronts_[tree.root].below.size();
@@ -77,33 +83,26 @@ void BlockCholesky::forward_all(Lane* x, std::size_t packs) const {
     std::fill_n(above_of(tree, 0), packs * fronts_[tree.root].below.size(), Lane{});
     Scratch& own = scratch(thread);
     for (std::uint32_t s = tree.first; s <= tree.root; ++s)
-      for (std::size_t p = 0; p < packs; ++p) {
-        if (!touched_[s * packs + p]) continue;
-        if (s < tree.root) touched_[fronts_[s].parent * packs + p] = 1;
-        forward_front(fronts_[s], x + p * rows_, above_of(tree, p), own);
-      }
+      for (std::size_t p = 0; p < packs; ++p)
+        if (touched_[s * packs + p]) forward_front(fronts_[s], x + p * rows_, above_of(tree, p), own);
   });
   for_each_task(shared, packs, [&](std::size_t p, unsigned thread) {
     for (const Subtree& tree : subtrees_) {
       const Front& root = fronts_[tree.root];
-      if (!touched_[tree.root * packs + p] || root.parent == kNoFront) continue;
-      touched_[root.parent * packs + p] = 1;
+      if (!touched_[tree.root * packs + p]) continue;
       const Lane* const sums = above_of(tree, p);
       for (std::size_t i = 0; i < root.below.size(); ++i) add_lane(x[p * rows_ + root.below[i]], sums[i]);
     }
     Scratch& own = scratch(thread);
-    for (const std::uint32_t s : top_) {
-      if (!touched_[s * packs + p]) continue;
-      if (fronts_[s].parent != kNoFront) touched_[fronts_[s].parent * packs + p] = 1;
-      forward_front<Lane>(fronts_[s], x + p * rows_, nullptr, own);
-    }
+    for (const std::uint32_t s : top_)
+      if (touched_[s * packs + p]) forward_front<Lane>(fronts_[s], x + p * rows_, nullptr, own);
   });
 }
 
 // x = L^-T x.
 template <class Lane>
 void BlockCholesky::backward_all(Lane* x, std::size_t packs) const {
-  const bool shared = static_cast<double>(factor_strips_ * packs * sizeof(Lane)) > kSharedSolve;
+  const bool shared = static_cast<double>(factor_strips_ * packs * sizeof(Strip)) > kSharedSolve;
   for_each_task(shared, packs, [&](std::size_t p, unsigned thread) {
     Scratch& own = scratch(thread);
     for (std::size_t i = top_.size(); i-- > 0;) backward_front(fronts_[top_[i]], x + p * rows_, own);
@@ -144,6 +143,7 @@ void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
     touched_.assign(packs * fronts_.size(), 0);
     const bool shared = static_cast<double>(x_.size()) > kSharedCopies;
     for_each_task(shared, packs, [&](std::size_t p, unsigned) { take_columns(some, p, packs); });
+    touch_above(packs);
     forward_all(x_.data(), packs);
     backward_all(x_.data(), packs);
     for_each_task(shared, packs, [&](std::size_t p, unsigned) { give_columns(some, p); });
@@ -156,18 +156,25 @@ void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
 void BlockCholesky::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const {
   const std::vector<Eigen::Index> place = place_columns(b);
   const auto packs = static_cast<std::size_t>((3 * b.count() + kStrip - 1) / kStrip);
-  x_.assign(packs * rows_, Strip{});
   touched_.assign(fronts_.size() * packs, 0);
   for (Eigen::Index three = 0; three < b.count(); ++three)
-    for (const BlockColumns::Entry& entry : b.of(three)) {
-      const std::uint32_t row = new_of_old_[entry.row];
+    for (const BlockColumns::Entry& entry : b.of(three))
+      for (int c = 0; c < 3; ++c)
+        touched_[front_of_[new_of_old_[entry.row]] * packs +
+                 static_cast<std::size_t>(place[static_cast<std::size_t>(three)] + c) / kStrip] = 1;
+  touch_above(packs);
+  x_.resize(packs * rows_);
+  for_each_task(static_cast<double>(x_.size()) > kSharedCopies, packs, [&](std::size_t p, unsigned) {
+    for (std::size_t s = 0; s < fronts_.size(); ++s)
+      if (touched_[s * packs + p]) std::fill_n(&x_[p * rows_ + fronts_[s].first], fronts_[s].columns, Strip{});
+  });
+  for (Eigen::Index three = 0; three < b.count(); ++three)
+    for (const BlockColumns::Entry& entry : b.of(three))
       for (int c = 0; c < 3; ++c) {
         const auto column = static_cast<std::size_t>(place[static_cast<std::size_t>(three)] + c);
-        Strip* const x = &x_[column / kStrip * rows_ + 3 * row];
+        Strip* const x = &x_[column / kStrip * rows_ + 3 * new_of_old_[entry.row]];
         for (int r = 0; r < 3; ++r) x[r].lane[column % kStrip] += entry.value(r, c);
-        touched_[front_of_[row] * packs + column / kStrip] = 1;
       }
-    }
   forward_all(x_.data(), packs);
   add_grams(packs);
 
@@ -185,23 +192,24 @@ void BlockCholesky::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) con
 // tiles_ = Y^T Y, pack by pack.
 void BlockCholesky::add_grams(std::size_t packs) const {
   tiles_.assign(packs * (packs + 1) / 2 * kStrip, Strip{});
-  run_tasks(std::min(packs, kGramTasks), [&](std::size_t task, unsigned) {
-    std::vector<std::size_t> here;  // packs with non-zeros in this front
-    for (std::size_t s = 0; s < fronts_.size(); ++s) {
-      const Front& f = fronts_[s];
-      here.clear();
-      for (std::size_t p = 0; p < packs; ++p)
-        if (touched_[s * packs + p]) here.push_back(p);
-      for (const std::size_t p : here) {
-        if (p % kGramTasks != task) continue;
-        for (const std::size_t q : here) {
-          if (q > p) break;
-          add_gram(x_[p * rows_ + f.first].lane, kStrip, x_[q * rows_ + f.first].lane, kStrip, f.columns,
-                   tiles_[(p * (p + 1) / 2 + q) * kStrip].lane);
-        }
-      }
-    }
-  });
+  for_each_task(static_cast<double>(x_.size()) > kSharedCopies, std::min(packs, kGramTasks),
+                [&](std::size_t task, unsigned) {
+                  std::vector<std::size_t> here;  // packs with non-zeros in this front
+                  for (std::size_t s = 0; s < fronts_.size(); ++s) {
+                    const Front& f = fronts_[s];
+                    here.clear();
+                    for (std::size_t p = 0; p < packs; ++p)
+                      if (touched_[s * packs + p]) here.push_back(p);
+                    for (const std::size_t p : here) {
+                      if (p % kGramTasks != task) continue;
+                      for (const std::size_t q : here) {
+                        if (q > p) break;
+                        add_gram(x_[p * rows_ + f.first].lane, kStrip, x_[q * rows_ + f.first].lane, kStrip, f.columns,
+                                 tiles_[(p * (p + 1) / 2 + q) * kStrip].lane);
+                      }
+                    }
+                  }
+                });
 }
 
 // Column index of each triple.
