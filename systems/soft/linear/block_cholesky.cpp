@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
 constexpr double kTaskShare = 0.15;   // [1] of the factor's work: the largest subtree that is one task
-constexpr double kSharedWork = 2e6;   // [1] multiplications and additions: less is faster on one thread
+constexpr double kSharedWork = 5e7;   // [1] multiplications and additions: less, some 3,000 tetrahedra, gains nothing
 constexpr double kSharedFront = 6e6;  // the same of one front
 constexpr int kBlockColumns = 64;   // columns of a panel whose diagonal block is factorised before the strips below it
 constexpr int kStripsTogether = 4;  // of a task

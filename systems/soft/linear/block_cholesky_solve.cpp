@@ -10,9 +10,7 @@ namespace {
 
 constexpr std::uint32_t kNoFront = 0xffffffff;
 constexpr std::size_t kMostPacks = 16;  // solved together
-constexpr double kSharedCopies = 2e4;   // [1] strips of eight numbers
 constexpr std::size_t kGramTasks = 4;   // each passes over all packs
-constexpr double kSharedSolve = 1e7;    // [bytes] read of the factor by all packs: less is faster on one thread
 
 template <class Task>
 void for_each_task(bool shared, std::size_t count, const Task& task) {
@@ -73,7 +71,7 @@ void BlockCholesky::touch_above(std::size_t packs) const {
 // x = L^-1 x. Fronts that a pack does not touch are skipped.
 template <class Lane>
 void BlockCholesky::forward_all(Lane* x, std::size_t packs) const {
-  const bool shared = static_cast<double>(factor_strips_ * packs * sizeof(Strip)) > kSharedSolve;
+  const bool shared = !top_.empty();
   sums_above_.resize(std::max<std::size_t>(packs * above_, 1));
   const auto above_of = [&](const Subtree& tree, std::size_t pack) {
     return reinterpret_cast<Lane*>(sums_above_.data()) + packs * tree.above + pack * fronts_[tree.root].below.size();
@@ -102,7 +100,7 @@ void BlockCholesky::forward_all(Lane* x, std::size_t packs) const {
 // x = L^-T x.
 template <class Lane>
 void BlockCholesky::backward_all(Lane* x, std::size_t packs) const {
-  const bool shared = static_cast<double>(factor_strips_ * packs * sizeof(Strip)) > kSharedSolve;
+  const bool shared = !top_.empty();
   for_each_task(shared, packs, [&](std::size_t p, unsigned thread) {
     Scratch& own = scratch(thread);
     for (std::size_t i = top_.size(); i-- > 0;) backward_front(fronts_[top_[i]], x + p * rows_, own);
@@ -141,7 +139,7 @@ void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
     const auto packs = static_cast<std::size_t>((some.cols() + kStrip - 1) / kStrip);
     x_.resize(packs * rows_);
     touched_.assign(packs * fronts_.size(), 0);
-    const bool shared = static_cast<double>(x_.size()) > kSharedCopies;
+    const bool shared = !top_.empty();
     for_each_task(shared, packs, [&](std::size_t p, unsigned) { take_columns(some, p, packs); });
     touch_above(packs);
     forward_all(x_.data(), packs);
@@ -164,7 +162,7 @@ void BlockCholesky::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) con
                  static_cast<std::size_t>(place[static_cast<std::size_t>(three)] + c) / kStrip] = 1;
   touch_above(packs);
   x_.resize(packs * rows_);
-  for_each_task(static_cast<double>(x_.size()) > kSharedCopies, packs, [&](std::size_t p, unsigned) {
+  for_each_task(!top_.empty(), packs, [&](std::size_t p, unsigned) {
     for (std::size_t s = 0; s < fronts_.size(); ++s)
       if (touched_[s * packs + p]) std::fill_n(&x_[p * rows_ + fronts_[s].first], fronts_[s].columns, Strip{});
   });
@@ -192,24 +190,23 @@ void BlockCholesky::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) con
 // tiles_ = Y^T Y, pack by pack.
 void BlockCholesky::add_grams(std::size_t packs) const {
   tiles_.assign(packs * (packs + 1) / 2 * kStrip, Strip{});
-  for_each_task(static_cast<double>(x_.size()) > kSharedCopies, std::min(packs, kGramTasks),
-                [&](std::size_t task, unsigned) {
-                  std::vector<std::size_t> here;  // packs with non-zeros in this front
-                  for (std::size_t s = 0; s < fronts_.size(); ++s) {
-                    const Front& f = fronts_[s];
-                    here.clear();
-                    for (std::size_t p = 0; p < packs; ++p)
-                      if (touched_[s * packs + p]) here.push_back(p);
-                    for (const std::size_t p : here) {
-                      if (p % kGramTasks != task) continue;
-                      for (const std::size_t q : here) {
-                        if (q > p) break;
-                        add_gram(x_[p * rows_ + f.first].lane, kStrip, x_[q * rows_ + f.first].lane, kStrip, f.columns,
-                                 tiles_[(p * (p + 1) / 2 + q) * kStrip].lane);
-                      }
-                    }
-                  }
-                });
+  for_each_task(!top_.empty(), std::min(packs, kGramTasks), [&](std::size_t task, unsigned) {
+    std::vector<std::size_t> here;  // packs with non-zeros in this front
+    for (std::size_t s = 0; s < fronts_.size(); ++s) {
+      const Front& f = fronts_[s];
+      here.clear();
+      for (std::size_t p = 0; p < packs; ++p)
+        if (touched_[s * packs + p]) here.push_back(p);
+      for (const std::size_t p : here) {
+        if (p % kGramTasks != task) continue;
+        for (const std::size_t q : here) {
+          if (q > p) break;
+          add_gram(x_[p * rows_ + f.first].lane, kStrip, x_[q * rows_ + f.first].lane, kStrip, f.columns,
+                   tiles_[(p * (p + 1) / 2 + q) * kStrip].lane);
+        }
+      }
+    }
+  });
 }
 
 // Column index of each triple.
