@@ -72,7 +72,7 @@ TEST(BlockCholesky, GivesTheSameBitsForEveryNumberOfThreads) {
     const BlockMatrix a = random_spd(size, brick(x, y, z), 0.1, 5);
     BlockCholesky solver;
     solver.analyse(a);
-    const Vector b = random_vector(size, 6);
+    const Vector b = random_right_side(size, 6);
     const Rows right = Rows::NullaryExpr(3 * size, 44, [&](Eigen::Index i, Eigen::Index j) { return b[(i + j) % 97]; });
     BlockColumns pushes;
     pushes.clear(size);

@@ -45,7 +45,7 @@ inline BlockMatrix random_spd(std::uint32_t size, const Groups& groups, double m
   return a;
 }
 
-inline Vector random_vector(std::uint32_t block_rows, unsigned seed) {
+inline Vector random_right_side(std::uint32_t block_rows, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
   return Vector::NullaryExpr(3 * block_rows, [&] { return uniform(random); });

@@ -38,12 +38,16 @@ class ContactSweeps {
   bool movable(int i) const { return p_.blocks[i][0][0] > 0.0; }
   const dmat3& block(int i) const { return p_.blocks[i]; }
   dvec3 impulse(int i) const { return to_own(i, &p_.impulse[3 * i]); }
-  dvec3 velocity(int i) const { return lever_ ? to_own(i, levered(i)) : to_own(i, &p_.velocity[3 * i]); }
+  dvec3 velocity(int i) const {
+    const double* at = &p_.velocity[3 * i];
+    dvec3 u;
+    if (lever_) u = levered(i), at = &u.x;
+    return to_own(i, at);
+  }
   void set_impulse(int i, dvec3 own) {
     const dvec3 l = from_own(i, own);
     for (int k = 0; k < 3; ++k) p_.impulse[3 * i + k] = l[k];
   }
-  dvec3 to_own(int i, dvec3 v) const { return turned_ ? v * p_.own[i] : v; }
   dvec3 to_own(int i, const double* v) const {
     const dvec3 x(v[0], v[1], v[2]);
     return turned_ ? x * p_.own[i] : x;
