@@ -47,6 +47,10 @@ std::vector<Note> explain_dropped(std::uint32_t dropped) {
       {kDroppedSets, "dropped.sets",
        "a surface yielded in more places than it remembers (256), and stayed elastic in the others",
        "raise `reach`, so that near dents count as one, or `yield.force`"},
+      {kDroppedRim, "dropped.rim",
+       "a probe slipped round the rim of a part that is thinner than the press was deep, and felt nothing until it was "
+       "clear",
+       "press less deep there, or give the part thickness"},
       {kDroppedSetBack, "dropped.set_back",
        "a tool separated from its device (more than 2 m, or faster than 50 m/s) and was reset to the device's pose",
        "reduce `soft_step`, or move slower"}};

@@ -35,40 +35,71 @@ struct Chord {
   double bottom = 0.0, top = 0.0;  // [m]
   bool valid = false;
 };
-Chord chord(const Level& level, std::int32_t object, dvec3 p, dvec3 up) {
-  Chord out;
+
+std::vector<std::array<dvec3, 3>> world_triangles(const Level& level, std::int32_t object) {
+  std::vector<std::array<dvec3, 3>> out;
   const LevelNode& node = level.nodes[static_cast<std::size_t>(object)];
-  const dmat4 world = world_matrices(level.nodes)[static_cast<std::size_t>(object)];
   if (node.mesh < 0) return out;
+  const dmat4 world = world_matrices(level.nodes)[static_cast<std::size_t>(object)];
   for (const Primitive& primitive : level.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-    std::vector<dvec3> at;
-    for (const vec3& v : primitive.position) at.push_back(dvec3(world * glm::dvec4(dvec3(v), 1.0)) - p);
-    for (std::size_t t = 0; t + 2 < primitive.index.size(); t += 3) {
-      const dvec3 a = at[primitive.index[t]], ab = at[primitive.index[t + 1]] - a, ac = at[primitive.index[t + 2]] - a;
-      const dvec3 across = cross(up, ac);
-      const double area = dot(ab, across);
-      if (area == 0.0) continue;
-      const double u = dot(-a, across) / area, v = dot(up, cross(-a, ab)) / area;
-      if (u < 0.0 || v < 0.0 || u + v > 1.0) continue;
-      const double s = dot(ac, cross(-a, ab)) / area;
-      out.bottom = out.valid ? std::min(out.bottom, s) : s;
-      out.top = out.valid ? std::max(out.top, s) : s;
-      out.valid = true;
-    }
+    const auto at = [&](std::size_t i) {
+      return dvec3(world * glm::dvec4(dvec3(primitive.position[primitive.index[i]]), 1.0));
+    };
+    for (std::size_t t = 0; t + 2 < primitive.index.size(); t += 3) out.push_back({at(t), at(t + 1), at(t + 2)});
   }
   return out;
 }
 
-// The point to touch: above the middle of the object's box; if there is a hole, the object's highest vertex.
+Chord chord(const std::vector<std::array<dvec3, 3>>& triangles, dvec3 p, dvec3 up) {
+  Chord out;
+  for (const auto& triangle : triangles) {
+    const dvec3 a = triangle[0] - p, ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
+    const dvec3 across = cross(up, ac);
+    const double area = dot(ab, across);
+    if (area == 0.0) continue;
+    const double u = dot(-a, across) / area, v = dot(up, cross(-a, ab)) / area;
+    if (u < 0.0 || v < 0.0 || u + v > 1.0) continue;
+    const double s = dot(ac, cross(-a, ab)) / area;
+    out.bottom = out.valid ? std::min(out.bottom, s) : s;
+    out.top = out.valid ? std::max(out.top, s) : s;
+    out.valid = true;
+  }
+  return out;
+}
+
+// The point to touch: on top of the object, as near to the middle of its box as it is half as thick as at its thickest.
+// Thickness is measured along kColumns x kColumns lines.
 dvec3 touch_point(const Level& level, std::int32_t object) {
-  const dvec3 up = up_of(level), middle(world_box(level, object).center());
-  if (const Chord through = chord(level, object, middle, up); through.valid) return middle + through.top * up;
-  const LevelNode& node = level.nodes[static_cast<std::size_t>(object)];
-  const dmat4 world = world_matrices(level.nodes)[static_cast<std::size_t>(object)];
+  constexpr int kColumns = 15, kHalf = kColumns / 2;
+  const Box box = world_box(level, object);
+  const dvec3 up = up_of(level), middle(box.center());
+  const dvec3 side = normalize(cross(up, std::abs(up.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 0, 1)));
+  const dvec3 axes[] = {side, cross(up, side)};
+  double reach[2];
+  for (int i = 0; i < 2; ++i) reach[i] = dot(glm::abs(axes[i]), dvec3(box.max - box.min)) / kColumns;
+  const std::vector<std::array<dvec3, 3>> triangles = world_triangles(level, object);
+  struct Column {
+    dvec3 top;
+    double thick = 0.0, away = 0.0;  // [m]
+  };
+  std::vector<Column> columns;
+  double thickest = 0.0;
+  for (int i = -kHalf; i <= kHalf; ++i)
+    for (int k = -kHalf; k <= kHalf; ++k) {
+      const dvec3 aside = i * reach[0] * axes[0] + k * reach[1] * axes[1];
+      const Chord through = chord(triangles, middle + aside, up);
+      if (!through.valid) continue;
+      columns.push_back({middle + aside + through.top * up, through.top - through.bottom, length(aside)});
+      thickest = std::max(thickest, columns.back().thick);
+    }
+  const Column* best = nullptr;
+  for (const Column& column : columns)
+    if (column.thick >= 0.5 * thickest && (!best || column.away < best->away)) best = &column;
+  if (best) return best->top;
   dvec3 highest = middle;
-  for (const Primitive& primitive : level.meshes[static_cast<std::size_t>(node.mesh)].primitives)
-    for (const vec3& v : primitive.position)
-      if (const dvec3 at(world * glm::dvec4(dvec3(v), 1.0)); dot(at, up) > dot(highest, up)) highest = at;
+  for (const auto& triangle : triangles)
+    for (const dvec3& at : triangle)
+      if (dot(at, up) > dot(highest, up)) highest = at;
   return highest;
 }
 
@@ -246,7 +277,7 @@ Path press_path(const Level& level, std::int32_t tool, std::int32_t object, doub
         if (dot(at, up) < dot(lowest, up)) lowest = at;
       }
   const double diagonal = static_cast<double>(world_box(level, object).diagonal());
-  const Chord through = chord(level, object, lowest, up);
+  const Chord through = chord(world_triangles(level, object), lowest, up);
   const double thick = through.valid ? through.top - through.bottom : diagonal;
   const double gap = through.valid ? std::max(0.0, -through.top) : kClearance * diagonal;
   if (depth <= 0.0) depth = std::min(diagonal / 20.0, thick > 0.0 ? thick / 3.0 : diagonal / 20.0);

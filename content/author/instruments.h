@@ -25,8 +25,8 @@ struct InstrumentSize {
   double tip = 0.0;     // [m] radius of the tip; 0: from the length. Unused for a hand
 };
 
-// Places the instrument over the highest point of the object below which the object is thick. Its tip points down
-// (along Level::simulation's gravity), kClearance of the diagonal above the object. Rigid instruments weigh 25 g, so
+// Places the instrument over the object, as near to its middle as it is thick there. Its tip points down (along
+// Level::simulation's gravity), kClearance of the diagonal above the object. Rigid instruments weigh 25 g, so
 // that one coupling suits every size; the hand is soft. The device has no driver yet. Returns the new node's number.
 // Error: the object has no mesh.
 Result<std::int32_t> add_instrument(Level& level, InstrumentKind kind, std::int32_t object,

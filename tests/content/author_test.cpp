@@ -15,6 +15,7 @@
 #include "content/level_file.h"
 #include "content/mesh/mesh_build.h"
 #include "systems/prepare_world.h"
+#include "tests/content/mesh_shapes.h"
 
 namespace pliant::test {
 namespace {
@@ -201,6 +202,32 @@ TEST(Author, AProbeStandsOverTheObjectAndItsPathPressesIt) {
   for (const PathRow& row : path.rows) lowest = std::min(lowest, row.position.y);
   EXPECT_NEAR(lowest, top - 0.01 + 0.005, 2e-3);
   EXPECT_TRUE(prepared(level).ok());
+}
+
+// A tall block at the end of a sheet that lies below the middle of the box.
+TEST(Author, WhereTheMiddleIsThinWhatIsThickIsPressed) {
+  Level level;
+  Primitive shape;
+  const auto add_box = [&](vec3 middle, vec3 half) {
+    const Primitive part = test::box(half, false);
+    const auto first = static_cast<std::uint32_t>(shape.position.size());
+    for (const vec3& p : part.position) shape.position.push_back(middle + p);
+    for (const std::uint32_t i : part.index) shape.index.push_back(first + i);
+  };
+  add_box({-0.02f, 0.001f, 0}, {0.08f, 0.001f, 0.02f});
+  add_box({0.08f, 0.025f, 0}, {0.02f, 0.025f, 0.02f});
+  level.meshes.push_back({"step", {shape}});
+  LevelNode node;
+  node.name = "step";
+  node.mesh = 0;
+  level.nodes.push_back(node);
+  const Result<std::int32_t> probe = add_probe(level, 0, 0.004);
+  ASSERT_TRUE(probe.ok());
+  const Path path = press_path(level, *probe, 0);
+  EXPECT_GT(path.rows[0].position.x, 0.06);
+  double lowest = 1e9;
+  for (const PathRow& row : path.rows) lowest = std::min(lowest, row.position.y);
+  EXPECT_LT(lowest, 0.05 + 0.004 - 0.005);
 }
 
 TEST(Author, AllOfTheObjectIsInTheCamerasPictureWhereverGravityPoints) {

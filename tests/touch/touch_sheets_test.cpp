@@ -42,8 +42,8 @@ Primitive organ_of(Organ organ, int n, double wall) {
     const dvec3 u = normalize(dvec3(at)),
                 a = normalize(cross(u, std::abs(u.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0))), b = cross(u, a);
     constexpr double h = 0.02;
-    const dvec3 n = normalize(cross(outer(u + h * a) - outer(u - h * a), outer(u + h * b) - outer(u - h * b)));
-    out.position.push_back(vec3(outer(u) - wall * (1 + 0.4 * std::sin(3 * u.x + 2 * u.z)) * n));
+    const dvec3 outward = normalize(cross(outer(u + h * a) - outer(u - h * a), outer(u + h * b) - outer(u - h * b)));
+    out.position.push_back(vec3(outer(u) - wall * (1 + 0.4 * std::sin(3 * u.x + 2 * u.z)) * outward));
   }
   for (std::size_t i = 0; i < ball.index.size(); i += 3)
     for (const std::size_t k : {0, 2, 1}) out.index.push_back(first + ball.index[i + k]);
@@ -152,6 +152,48 @@ TEST(TouchSheets, APointPressedThroughASlabAndIntoTheNextIsPushedByBoth) {
         EXPECT_EQ(raw_force(stage, probe), dvec3(0));
       }
     }
+}
+
+// A flat lens, smooth up to its rim, pressed towards the rim deeper than it is thick: the tip slips off, is let go, and
+// is neither pulled down nor held on its way back. Then the same place feels a press as before.
+TEST(TouchSheets, ATipThatSlipsOffARimComesBackFree) {
+  Primitive lens = scenes::sphere(40, 1.0);
+  for (vec3& p : lens.position) {
+    const dvec3 u(p);
+    const double out = std::sqrt(u.x * u.x + u.z * u.z), wide = std::sin(0.5 * 3.14159265358979 * out);  // dense rim
+    p = vec3(0.02f * vec3(dvec3(u.x, 0, u.z) * (out > 0 ? wide / out : 0.0)) +
+             vec3(0, 0.002 * std::sqrt(std::max(0.0, 1 - wide * wide)) * (u.y < 0 ? -1 : 1), 0));
+  }
+  int slips = 0;
+  for (const double radius : {0.0, 0.003, 0.006})
+    for (const double start : {0.008, 0.012, 0.015, 0.017, 0.018})
+      for (const double aside : {0.0, 0.05}) {
+        Stage stage;
+        stage.add(lens, frictionless());
+        const dvec3 above(start, 0.012 + radius, 0.001);
+        const Entity probe = stage.add_probe(above, radius);
+        stage.prepare();
+        const auto press = [&](double down) {
+          stage.place(probe, above + dvec3(aside * down, -down, 0));
+          stage.tick();
+          return raw_force(stage, probe);
+        };
+        double first = 0, again = 0;
+        const double lowest = 0.0135 + 2 * radius;  // beyond, it leaves the lens, and touches its other side
+        for (double down = 0; down < lowest; down += 2e-5) {
+          const double felt = press(down).y;
+          if (down < 0.0115) first = felt;
+        }
+        slips += (stage.world.dropped & kDroppedRim) != 0;
+        for (double down = lowest; down > 0; down -= 2e-5) {
+          const dvec3 felt = press(down);
+          ASSERT_GE(felt.y, -1e-9) << radius << ' ' << start << ' ' << aside << " lifted to " << down;
+        }
+        EXPECT_EQ(press(0), dvec3(0));
+        for (double down = 0; down < 0.0115; down += 2e-5) again = press(down).y;
+        EXPECT_NEAR(again, first, 1e-3 * first) << radius << ' ' << start << ' ' << aside;
+      }
+  EXPECT_GT(slips, 6);
 }
 
 }  // namespace

@@ -37,8 +37,12 @@ struct ContactSearch {
   // Tips that are only drawn leave half of the pool to those that bear force.
   SourceState* free_source(const Tip& tip) const {
     for (std::uint32_t i = tip.drawn ? object.probe_sources / 2 : 0; i < object.probe_sources; ++i)
-      if (!object.sources[i].tracked) return &object.sources[i];
+      if (!object.sources[i].tracked && !slipped(object.sources[i])) return &object.sources[i];
     return nullptr;
+  }
+  // Whether the contact here slipped round a rim, and its tip is not clear yet.
+  bool slipped(const SourceState& source) const {
+    return !source.tracked && source.held.slipped && source.held.tick >= tick.index;
   }
 };
 

@@ -92,7 +92,7 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
   const Foot before = source.place.main();
   const double last = source.place.height;
   if (last < s.early())
-    source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal};
+    source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal, false};
   const dvec3 step = x - source.x, slope = source.place.gradient, place = source.place.p;
   const TipPlace was{source.x - source.axis.along * source.axis.axis, source.axis.axis};
   Foot foot = follow_foot(s, before, source.x, x);
@@ -100,6 +100,13 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
   contact.previous_height = contact.height;
   const AtSeam at_seam = step_over(s, source, contact, x, foot);
   if (at_seam == AtSeam::kCarried) return;
+  // From behind one wall to the front of another at once: the foot slipped round the rim of a part thinner than the
+  // depth. Nothing holds the tip any more; it comes back through the part.
+  if (last < 0 && at_seam == AtSeam::kStays && foot.height > 2 * length(step) + s.early()) {
+    source.held.slipped = true;
+    s.world.dropped |= kDroppedRim;
+    return drop_contact(source, contact);
+  }
   const bool front = foot.height >= 0;
   // Past the rim of an open surface, or too far away for a meaningful foot.
   const std::vector<std::uint32_t>& seams = s.object.closed;

@@ -219,6 +219,25 @@ void find_near(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, d
   }
 }
 
+// Walls that a tip was pressed through before it slipped round a rim stay open for it until it is clear: in front of
+// the nearest wall on the side that it came from, or away from the object.
+void keep_open(const ContactSearch& s, const ProbeTip& tip, const TipPlace& to) {
+  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
+    SourceState& source = s.object.sources[i];
+    HeldFoot& held = source.held;
+    if (!s.slipped(source) || held.probe != tip.probe || held.tip != tip.index) continue;
+    const dvec3 x = to.at(source.axis.along);
+    const FlatPoint near = closest_flat(s.mesh, x, 2.0 * static_cast<double>(s.mesh.box.diagonal()) + tip.tip.radius);
+    if (!near.valid()) continue;
+    const uvec3 t = s.mesh.triangles[near.triangle];
+    const dvec3 a(s.mesh.position(t.x)),
+        outward = cross(dvec3(s.mesh.position(t.y)) - a, dvec3(s.mesh.position(t.z)) - a);
+    const double away = tip.tip.radius * (1 + kAhead);
+    if (dot(held.normal, outward) < 0 || dot(x - a, outward) <= 0 || near.distance2 <= away * away)
+      held.tick = s.tick.index + 1;
+  }
+}
+
 // Number of intervals between the spheres of a capsule from which its contacts are searched: half a radius long, of a
 // line half an edge of the mesh. A sphere: 0.
 int intervals(const ContactSearch& s, const Tip& tip) {
@@ -241,6 +260,7 @@ void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, TipPlace& se
   if (low.x > box.max.x || low.y > box.max.y || low.z > box.max.z || high.x < box.min.x || high.y < box.min.y ||
       high.z < box.min.z)
     return;
+  keep_open(s, tip, to);
   if (is_beside(s, tip)) return;
   const TipWay way{from, to};
   const int count = intervals(s, tip.tip);

@@ -58,12 +58,14 @@ struct AxisPlace {
 };
 
 // Foot of a contact whose tip was behind the surface: the tip may return through a wall that it was pressed through.
+// It stays when the contact slips round a rim, until the tip is clear of the surface.
 struct HeldFoot {
   std::uint64_t tick = 0;  // number of the tick that wrote it, plus 1
   Entity probe;
   std::uint8_t tip = 0;
-  dvec3 p{0};       // [m] object frame
-  dvec3 normal{0};  // [1] of the contact
+  dvec3 p{0};            // [m] object frame
+  dvec3 normal{0};       // [1] of the contact
+  bool slipped = false;  // its contact slipped round a rim, and its tip is not clear yet
 };
 
 // One entry of an object's pool: a contact, its place, and its part in the object's field.
