@@ -58,7 +58,7 @@ class ContactSweeps {
 
  private:
   static dvec3 three(const double* v) { return {v[0], v[1], v[2]}; }
-  // Not inlined: sweeps without a lever took a quarter longer.
+  // Not inlined: sweeps without a lever stay a short loop.
   [[gnu::noinline]] dvec3 levered(int i) const;  // velocity of contact i, in W's axes
   [[gnu::noinline]] void add_to_lever(int i, dvec3 impulse);
   void relax(int i);
