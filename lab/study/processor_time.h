@@ -4,12 +4,16 @@
 #include <cstdint>
 #include <ctime>
 
+#include "runtime/helped_time.h"
+
 namespace pliant {
 
+// Of this thread, with what others spent on its tasks; or of all threads.
 inline std::uint64_t processor_ns(clockid_t whose = CLOCK_THREAD_CPUTIME_ID) {
   timespec now{};
   clock_gettime(whose, &now);
-  return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000u + static_cast<std::uint64_t>(now.tv_nsec);
+  const std::uint64_t helped = whose == CLOCK_THREAD_CPUTIME_ID ? helped_ns() : 0;
+  return helped + static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000u + static_cast<std::uint64_t>(now.tv_nsec);
 }
 
 // CPU time of all threads of the process, for work shared among them.

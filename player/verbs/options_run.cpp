@@ -63,7 +63,7 @@ CLI::App* add_run_options(CLI::App& app, RunOptions& run) {
       ->check(named());  // docs/cli.md
   verb->add_option("--record", run.record, "write every probe's pose per tick to FILE")->check(named());
   verb->add_option("--replay", run.replay, "move the probes as FILE says, in lockstep")->check(named());
-  verb->add_option("--threads", run.threads, "threads for loading and preparing; 0: all")->check(within(0, 1024));
+  verb->add_option("--threads", run.threads, "threads for loading, preparing and the soft step; 0: all")->check(within(0, 1024));
   verb->add_option("--soft-store", run.soft_store, "folder of soft bodies that the runs of a sweep share")
       ->group("")
       ->check(named());  // player/sweep

@@ -43,6 +43,7 @@ dvec2 bent(const CondensedContacts& model, const CondensedState& state, int i) {
 // precomputed.
 void slide(const CondensedContacts& model, CondensedState& state, const Vector6& w, Vector& on_modes,
            Vector6& on_handle) {
+  std::array<double, kMaxModes> by_slip;
   for (int i = 0; i < model.count; ++i) {
     const auto c = static_cast<std::size_t>(i);
     const auto impulse = state.problem.impulse.segment<3>(3 * i);
@@ -52,8 +53,9 @@ void slide(const CondensedContacts& model, CondensedState& state, const Vector6&
     const dvec2 slip = size > model.farthest[c] ? model.farthest[c] / size * state.slip[c] : state.slip[c];
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Index row = 3 * i + axis;
-      const auto of_modes = slip.x * model.from_modes_by_slip[0].row(row).head(model.modes) +
-                            slip.y * model.from_modes_by_slip[1].row(row).head(model.modes);
+      auto of_modes = Eigen::Map<Eigen::RowVectorXd>(by_slip.data(), model.modes);
+      of_modes = slip.x * model.from_modes_by_slip[0].row(row).head(model.modes) +
+                 slip.y * model.from_modes_by_slip[1].row(row).head(model.modes);
       const auto of_handle =
           slip.x * model.from_handle_by_slip[0].row(row) + slip.y * model.from_handle_by_slip[1].row(row);
       state.shift[c][axis] = of_modes.dot(state.rate.head(model.modes)) + of_handle.dot(w);
@@ -78,19 +80,17 @@ void fill_bias(const CondensedContacts& model, const CondensedState& state, cons
   }
 }
 
-// W = delassus + R S^-1 R^T, R = reduced_handle: the second term is the handle's compliance.
-void fill_delassus(const CondensedContacts& model, const Eigen::LLT<Matrix6>& factor, const TickHandle& handle,
-                   CondensedState& state) {
+// W = delassus + R S^-1 R^T, R = reduced_handle: the second term is the handle's compliance. It is not added up: that
+// took longer than solving.
+void set_delassus(const CondensedContacts& model, const Eigen::LLT<Matrix6>& factor, const TickHandle& handle,
+                  CondensedState& state) {
   const Eigen::Index rows = 3 * model.count;
-  Eigen::MatrixXd& W = state.problem.W;
-  W.topLeftCorner(rows, rows) = model.delassus.topLeftCorner(rows, rows);
+  state.problem.shared = &model.delassus;
+  state.problem.lever = nullptr;
   if (handle.moved) return;
   const Matrix6 lower = factor.matrixL().solve(Matrix6::Identity());
   state.lever.topRows(rows).noalias() = model.reduced_handle.topRows(rows).lazyProduct(lower.transpose());
-  for (Eigen::Index c = 0; c < rows; ++c) {
-    const Vector6 of_c = state.lever.row(c);
-    add_columns(&W(0, c), state.lever.data(), state.lever.outerStride(), static_cast<int>(rows), of_c.data(), 6);
-  }
+  state.problem.lever = &state.lever;
 }
 
 // x += T v of all that moves.
@@ -142,7 +142,7 @@ void CondensedState::resize(int most_contacts, int most_modes) {
   slip.assign(static_cast<std::size_t>(most_contacts), dvec2(0.0));
   shift.assign(static_cast<std::size_t>(most_contacts), dvec3(0.0));
   lever.setZero(rows, 6);
-  problem.resize(most_contacts);
+  problem.resize_vectors(most_contacts);
   problem.own.assign(static_cast<std::size_t>(most_contacts), dmat3(1.0));
   problem.count = 0;
   key.assign(static_cast<std::size_t>(most_contacts), 0);
@@ -210,7 +210,7 @@ Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, co
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.count); ++i)
     state.problem.own[i] =
         turned_axes(model.lean[i] + bent(model, state, static_cast<int>(i)), model.turning[i], state.slip[i]);
-  fill_delassus(model, factor, handle, state);
+  set_delassus(model, factor, handle, state);
   fill_bias(model, state, free_w, state.problem.bias);
   state.report = solve(state.problem, limits);
   const Vector& lambda = state.problem.impulse;

@@ -35,7 +35,7 @@ struct CondensedState {
   Vector last;                     // [N s] working memory: impulses of those contacts
   SweepReport report;
   Vector free_rate;  // working memory
-  Eigen::Matrix<double, Eigen::Dynamic, 6> lever;
+  Lever lever;
 
   void resize(int most_contacts, int most_modes);
   // Starts from the model's state. The model lacks the forces of stiff contacts (reduce/stiff_contacts.h): they

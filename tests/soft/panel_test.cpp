@@ -47,8 +47,9 @@ TEST(PanelKernels, GiveTheSameBitsWithEveryWidth) {
       for (int c = 0; c < columns; ++c)           // a heavy diagonal: positive definite
         wide[static_cast<std::size_t>(c / kStrip * columns + c)].lane[c % kStrip] = 2 * columns;
       Strips plain = wide, reciprocal = random_strips(size, 2), plain_reciprocal = reciprocal;
-      ASSERT_TRUE(factorise_panel(wide.front().lane, panel, reciprocal.front().lane));
-      ASSERT_TRUE(plain::factorise_panel(plain.front().lane, panel, plain_reciprocal.front().lane));
+      const PanelPart all{0, columns, 0, strips};
+      ASSERT_TRUE(factorise_part(wide.front().lane, panel, reciprocal.front().lane, all));
+      ASSERT_TRUE(plain::factorise_part(plain.front().lane, panel, plain_reciprocal.front().lane, all));
       EXPECT_TRUE(same_bits(wide, plain)) << columns << ' ' << strips;
       EXPECT_TRUE(same_bits(reciprocal, plain_reciprocal)) << columns << ' ' << strips;
 
@@ -64,8 +65,8 @@ TEST(PanelKernels, GiveTheSameBitsWithEveryWidth) {
       Strips sums(size);
       const auto rows = static_cast<std::size_t>(strips);
       agree(
-          "update_triangle", triangle, [&](double* x) { update_triangle(panel, x); },
-          [&](double* x) { plain::update_triangle(panel, x); });
+          "update_triangle", triangle, [&](double* x) { update_triangle(panel, x, columns / kStrip, strips); },
+          [&](double* x) { plain::update_triangle(panel, x, columns / kStrip, strips); });
       agree(
           "forward", rows, [&](double* x) { forward(panel, inverse, x); },
           [&](double* x) { plain::forward(panel, inverse, x); });

@@ -7,53 +7,10 @@
 
 #include "systems/soft/fem/tissue.h"
 #include "systems/soft/linear/auto_solver.h"
+#include "tests/soft/random_spd.h"
 
 namespace pliant {
 namespace {
-
-using Groups = std::vector<std::array<std::uint32_t, 4>>;
-
-// A brick of n^3 nodes, a path of tetrahedra through each cell (Kuhn's six).
-Groups brick(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz) {
-  const auto node = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) { return (i * ny + j) * nz + k; };
-  Groups out;
-  const std::array<std::array<int, 3>, 6> paths{{{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
-  for (std::uint32_t i = 0; i + 1 < nx; ++i)
-    for (std::uint32_t j = 0; j + 1 < ny; ++j)
-      for (std::uint32_t k = 0; k + 1 < nz; ++k)
-        for (const auto& path : paths) {
-          std::array<std::uint32_t, 3> at{i, j, k};
-          std::array<std::uint32_t, 4> tet{node(i, j, k), 0, 0, 0};
-          for (std::size_t s = 0; s < 3; ++s) {
-            ++at[static_cast<std::size_t>(path[s])];
-            tet[s + 1] = node(at[0], at[1], at[2]);
-          }
-          out.push_back(tet);
-        }
-  return out;
-}
-
-// Adds G^T G for a random G of each group, like a stiff element, and a mass: symmetric positive definite.
-BlockMatrix random_spd(std::uint32_t size, const Groups& groups, double mass, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  BlockMatrix a = make_pattern(size, groups);
-  for (const auto& group : groups) {
-    const Eigen::Matrix<double, 6, 12> G = Eigen::Matrix<double, 6, 12>::NullaryExpr([&] { return uniform(random); });
-    const Eigen::Matrix<double, 12, 12> K = G.transpose() * G;
-    for (std::uint32_t i = 0; i < 4; ++i)
-      for (std::uint32_t j = 0; j < 4; ++j)
-        if (group[i] < size && group[j] < size) a.value[a.find(group[i], group[j])] += K.block<3, 3>(3 * i, 3 * j);
-  }
-  for (const std::uint32_t k : a.diagonal) a.value[k] += mass * Block::Identity();
-  return a;
-}
-
-Vector random_vector(std::uint32_t block_rows, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  return Vector::NullaryExpr(3 * block_rows, [&] { return uniform(random); });
-}
 
 double distance(const Vector& x, const Vector& truth) {
   return (x - truth).norm() / truth.norm();
@@ -77,7 +34,7 @@ TEST(BlockMatrix, PatternHoldsEveryCouplingOnceAscendingAndItsDiagonal) {
 
 TEST(BlockMatrix, ProductIsTheDenseProduct) {
   const BlockMatrix a = random_spd(60, brick(3, 4, 5), 0.1, 1);
-  const Vector x = random_vector(60, 2);
+  const Vector x = random_right_side(60, 2);
   Vector y;
   a.multiply(x, y);
   EXPECT_LT(distance(y, a.dense() * x), 1e-14);
@@ -106,7 +63,7 @@ TEST_P(EverySolver, AgreesWithADenseFactorOnBricksOfManySizes) {
     const std::uint32_t size = nx * ny * nz;
     const BlockMatrix a = random_spd(size, brick(nx, ny, nz), 0.05, size);
     const auto solver = ready(a);
-    const Vector b = random_vector(size, 7), truth = a.dense().llt().solve(b);
+    const Vector b = random_right_side(size, 7), truth = a.dense().llt().solve(b);
     Vector x = Vector::Zero(3 * size);
     solver->solve(b, x);
     EXPECT_LE((x - truth).norm(), 1e-8 * truth.norm()) << size << " block rows";
@@ -120,7 +77,7 @@ TEST_P(EverySolver, SolvesGraphsThatDoNotHangTogether) {
     for (std::uint32_t part = 0; part < 3; ++part)
       groups.push_back({3 * tet[0] + part, 3 * tet[1] + part, 3 * tet[2] + part, 3 * tet[3] + part});
   const BlockMatrix a = random_spd(83, groups, 0.2, 3);
-  const Vector b = random_vector(83, 4), truth = a.dense().llt().solve(b);
+  const Vector b = random_right_side(83, 4), truth = a.dense().llt().solve(b);
   Vector x = Vector::Zero(249);
   ready(a)->solve(b, x);
   EXPECT_LT(distance(x, truth), 1e-8);
@@ -131,7 +88,7 @@ TEST_P(EverySolver, FactorisesNewNumbersWithoutANewAnalysis) {
   const BlockMatrix before = random_spd(60, groups, 0.1, 1), after = random_spd(60, groups, 0.3, 2);
   const auto solver = ready(before);
   ASSERT_TRUE(solver->factorise(after));
-  const Vector b = random_vector(60, 3);
+  const Vector b = random_right_side(60, 3);
   Vector x = Vector::Zero(180);
   solver->solve(b, x);
   EXPECT_LT(distance(x, after.dense().llt().solve(b)), 1e-8);
@@ -142,7 +99,7 @@ TEST_P(EverySolver, SolvesManyColumnsAsItSolvesEach) {
   const auto solver = ready(a);
   for (const int count : {1, 3, 8, 21}) {
     Rows columns(180, count);
-    for (int c = 0; c < count; ++c) columns.col(c) = random_vector(60, 10u + static_cast<unsigned>(c));
+    for (int c = 0; c < count; ++c) columns.col(c) = random_right_side(60, 10u + static_cast<unsigned>(c));
     const Rows right = columns;
     if (count == 3) {
       Rows larger(200, count);  // a coupled system whose upper rows are these
@@ -178,7 +135,7 @@ TEST_P(EverySolver, GramMatrixIsThatOfTheDenseInverse) {
     for (std::uint32_t i = 0; i < count; ++i) {
       for (std::uint32_t k = 0; k < i % 4; ++k) {
         const std::uint32_t row = i == 3 ? 120 : (53 * i + 17 * k) % 121;  // the lone last one, thrice
-        b.entries.push_back({row, Block(Eigen::Map<const Block>(random_vector(3, 10 * i + k).data()))});
+        b.entries.push_back({row, Block(Eigen::Map<const Block>(random_right_side(3, 10 * i + k).data()))});
         dense.block<3, 3>(3 * row, 3 * i) += b.entries.back().value;
       }
       b.close();
@@ -198,7 +155,7 @@ TEST_P(EverySolver, GramMatrixIsThatOfTheDenseInverse) {
 
 TEST_P(EverySolver, GivesTheSameBitsForTheSameNumbers) {
   const BlockMatrix a = random_spd(60, brick(3, 4, 5), 0.1, 5);
-  const Vector b = random_vector(60, 3);
+  const Vector b = random_right_side(60, 3);
   Vector x = Vector::Zero(180), again = x;
   ready(a)->solve(b, x);
   ready(a)->solve(b, again);
@@ -317,7 +274,7 @@ TEST(AutoSolver, ChangesItsMethodAndNotItsAnswers) {
     EXPECT_LT(distance(x, truth), 1e-8);
     if (columns == 0) continue;
     Rows many(b.size(), columns);
-    for (int c = 0; c < columns; ++c) many.col(c) = random_vector(beam.tissue->moving(), static_cast<unsigned>(c));
+    for (int c = 0; c < columns; ++c) many.col(c) = random_right_side(beam.tissue->moving(), static_cast<unsigned>(c));
     Rows right = many;
     solver.solve_many(many);
     direct.solve_many(right);

@@ -58,6 +58,7 @@ SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
   report.newtons = newton.solves();
   sweeps.begin_slips(10.0 * report.residual + enough);
   sweeps.end_slips();
+  sweeps.finish();
   return report;
 }
 
@@ -146,8 +147,9 @@ double ContactProblem::diagonal(Eigen::Index row) const {
 SweepReport solve(ContactProblem& problem, const SweepLimits& limits) {
   const Eigen::Index rows = 3 * problem.count;
   const std::size_t count = static_cast<std::size_t>(problem.count);
-  ASSERT(problem.part_count > 0 || !problem.sparse.first.empty() ||
-         (problem.W.rows() >= rows && problem.W.cols() >= rows));
+  const Eigen::MatrixXd& W = problem.shared ? *problem.shared : problem.W;
+  ASSERT(problem.part_count > 0 || !problem.sparse.first.empty() || (W.rows() >= rows && W.cols() >= rows));
+  ASSERT(!problem.shared || limits.newtons == 0);
   ASSERT(problem.bias.size() >= rows && problem.impulse.size() >= rows && problem.sliding.size() >= count &&
          problem.mu_static.size() >= count && problem.mu_sliding.size() >= count);
   if (problem.velocity.size() < rows) problem.velocity.resize(rows);

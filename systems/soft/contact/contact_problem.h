@@ -32,6 +32,8 @@ struct ContactColumns {
   void clear() { first.clear(), runs.clear(), values.clear(); }
 };
 
+using Lever = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+
 // Working memory of Newton steps (contact_newton.h).
 struct NewtonMemory {
   std::vector<double> matrix, right, column, impulse, velocity;
@@ -55,6 +57,10 @@ struct ContactProblem {
 
   // Alternatives to W:
   ContactColumns sparse;
+  // W = *shared + *lever *lever^T: a matrix that stays as it is between solves, and one body that moves with few degrees
+  // of freedom. Without a lever: *shared alone. For sweeps without Newton steps. They outlive the solve.
+  const Eigen::MatrixXd* shared = nullptr;
+  const Lever* lever = nullptr;
   // Uncoupled contacts are separate problems. Only their W (or sparse) and `members` are inputs: the contacts of the
   // whole, ascending. place: part and index of each contact of the whole.
   std::vector<ContactProblem> parts;

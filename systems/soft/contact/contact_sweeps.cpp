@@ -56,7 +56,11 @@ struct LocalSolve {
 }  // namespace
 
 ContactSweeps::ContactSweeps(ContactProblem& problem)
-    : p_(problem), stride_(problem.W.outerStride()), turned_(!problem.own.empty()) {
+    : p_(problem),
+      W_(problem.shared ? *problem.shared : problem.W),
+      lever_(problem.lever),
+      stride_(W_.outerStride()),
+      turned_(!problem.own.empty()) {
   double largest = 0.0;
   for (int i = 0; i < p_.count; ++i) {
     p_.blocks[i] = read_block(i);
@@ -70,7 +74,7 @@ dmat3 ContactSweeps::read_block(int i) const {
   const double* w = nullptr;
   std::ptrdiff_t stride = stride_;
   if (p_.sparse.first.empty()) {
-    w = p_.W.data() + 3 * i * stride_ + 3 * i;
+    w = W_.data() + 3 * i * stride_ + 3 * i;
   } else {
     const auto end = p_.sparse.runs.begin() + p_.sparse.first[i + 1];
     const auto run = std::find_if(p_.sparse.runs.begin() + p_.sparse.first[i], end,
@@ -81,6 +85,11 @@ dmat3 ContactSweeps::read_block(int i) const {
   }
   dmat3 block;
   for (int k = 0; k < 3; ++k) block[k] = dvec3(w[k * stride], w[k * stride + 1], w[k * stride + 2]);
+  if (lever_)
+    for (int c = 0; c < 6; ++c) {
+      const dvec3 l = three(&(*lever_)(3 * i, c));
+      block += glm::outerProduct(l, l);
+    }
   return turned_ ? glm::transpose(p_.own[i]) * block * p_.own[i] : block;
 }
 
@@ -88,7 +97,7 @@ dmat3 ContactSweeps::read_block(int i) const {
 // reordering a sum, and unchanged contacts cost nothing.
 void ContactSweeps::add_columns(int i, dvec3 d, double* out) const {
   if (p_.sparse.first.empty()) {
-    add_three(out, p_.W.data() + 3 * i * stride_, stride_, 3 * p_.count, d.x, d.y, d.z);
+    add_three(out, W_.data() + 3 * i * stride_, stride_, 3 * p_.count, d.x, d.y, d.z);
     return;
   }
   for (int r = p_.sparse.first[i]; r < p_.sparse.first[i + 1]; ++r) {
@@ -97,12 +106,33 @@ void ContactSweeps::add_columns(int i, dvec3 d, double* out) const {
   }
 }
 
+dvec3 ContactSweeps::levered(int i) const {
+  dvec3 u = three(&p_.velocity[3 * i]);
+  for (std::size_t c = 0; c < 6; ++c) u += three(&(*lever_)(3 * i, static_cast<Eigen::Index>(c))) * moved_[c];
+  return u;
+}
+
+void ContactSweeps::add_to_lever(int i, dvec3 impulse) {
+  for (std::size_t c = 0; c < 6; ++c) moved_[c] += dot(three(&(*lever_)(3 * i, static_cast<Eigen::Index>(c))), impulse);
+}
+
+void ContactSweeps::finish() {
+  for (int i = 0; lever_ && i < p_.count; ++i) {
+    const dvec3 u = levered(i);
+    for (int k = 0; k < 3; ++k) p_.velocity[3 * i + k] = u[k];
+  }
+  moved_.fill(0.0);
+}
+
 void ContactSweeps::refresh_velocity() {
   double* const u = p_.velocity.data();
   std::copy_n(p_.bias.data(), 3 * p_.count, u);
+  moved_.fill(0.0);
   for (int i = 0; i < p_.count; ++i) {
-    const double* const l = &p_.impulse[3 * i];
-    if (l[0] != 0.0 || l[1] != 0.0 || l[2] != 0.0) add_columns(i, {l[0], l[1], l[2]}, u);
+    const dvec3 l = three(&p_.impulse[3 * i]);
+    if (l == dvec3(0.0)) continue;
+    add_columns(i, l, u);
+    if (lever_) add_to_lever(i, l);
   }
 }
 
@@ -172,6 +202,7 @@ void ContactSweeps::relax(int i) {
   if (d == dvec3(0.0)) return;
   for (int k = 0; k < 3; ++k) l[k] = after[k];
   add_columns(i, d, p_.velocity.data());
+  if (lever_) add_to_lever(i, d);
 }
 
 double ContactSweeps::residual_of(int i) const {

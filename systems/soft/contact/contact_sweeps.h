@@ -2,6 +2,8 @@
 // residual. Vectors of a contact are in its axes: normal, two tangents.
 #pragma once
 
+#include <array>
+
 #include "systems/soft/contact/contact_problem.h"
 
 namespace pliant {
@@ -20,6 +22,7 @@ class ContactSweeps {
   void sweep() {
     for (int i = 0; i < p_.count; ++i) relax(i);
   }
+  void finish();            // problem().velocity has the lever's part
   double residual() const;  // [m/s] SweepReport::residual
   // [m/s] Over contacts that close without impulses: distant contacts must not affect the accuracy of the others.
   double fastest() const;
@@ -35,7 +38,12 @@ class ContactSweeps {
   bool movable(int i) const { return p_.blocks[i][0][0] > 0.0; }
   const dmat3& block(int i) const { return p_.blocks[i]; }
   dvec3 impulse(int i) const { return to_own(i, &p_.impulse[3 * i]); }
-  dvec3 velocity(int i) const { return to_own(i, &p_.velocity[3 * i]); }
+  dvec3 velocity(int i) const {
+    const double* at = &p_.velocity[3 * i];
+    dvec3 u;
+    if (lever_) u = levered(i), at = &u.x;
+    return to_own(i, at);
+  }
   void set_impulse(int i, dvec3 own) {
     const dvec3 l = from_own(i, own);
     for (int k = 0; k < 3; ++k) p_.impulse[3 * i + k] = l[k];
@@ -45,15 +53,22 @@ class ContactSweeps {
     return turned_ ? x * p_.own[i] : x;
   }
   dvec3 from_own(int i, dvec3 v) const { return turned_ ? p_.own[i] * v : v; }
-  // out += change of every contact's velocity by `impulse`, in W's axes, of contact i.
+  // out += change of every contact's velocity by `impulse`, in W's axes, of contact i; without the lever's part.
   void add_columns(int i, dvec3 impulse, double* out) const;
 
  private:
+  static dvec3 three(const double* v) { return {v[0], v[1], v[2]}; }
+  // Not inlined: sweeps without a lever stay a short loop.
+  [[gnu::noinline]] dvec3 levered(int i) const;  // velocity of contact i, in W's axes
+  [[gnu::noinline]] void add_to_lever(int i, dvec3 impulse);
   void relax(int i);
   double residual_of(int i) const;
   dmat3 read_block(int i) const;  // of W, in the contact's axes
 
   ContactProblem& p_;
+  const Eigen::MatrixXd& W_;
+  const Lever* lever_;
+  std::array<double, 6> moved_{};  // lever^T lambda: its part of the velocities is added where one is read
   std::ptrdiff_t stride_;
   bool turned_;  // contacts have axes different from W's
 };

@@ -1,12 +1,18 @@
 #include "systems/soft/linear/block_cholesky.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace pliant {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
+constexpr double kTaskShare = 0.15;   // [1] of the factor's work: the largest subtree that is one task
+constexpr double kSharedWork = 5e7;   // [1] multiplications and additions: less, some 3,000 tetrahedra, gains nothing
+constexpr double kSharedFront = 6e6;  // the same of one front
+constexpr int kBlockColumns = 64;   // columns of a panel whose diagonal block is factorised before the strips below it
+constexpr int kStripsTogether = 4;  // of a task
 
 int strips_of(std::size_t rows) {
   return static_cast<int>((rows + kStrip - 1) / kStrip);
@@ -19,53 +25,117 @@ std::size_t triangle_strips(int strips) {
 
 void BlockCholesky::analyse(const BlockMatrix& a) {
   Elimination e = plan_elimination(a);
+  flops_ = e.flops;
+  rows_ = 3 * static_cast<std::size_t>(a.size);
+  place_fronts(e);
+  share_tree(e);
+  place_updates();
+  place_sources(a, e);
+  factor_.clear(), stack_.clear();
+  reciprocal_.resize(rows_);
+  scratch_.fill({});
+  front_of_.clear();
+  for (std::uint32_t s = 0; s < fronts_.size(); ++s) front_of_.insert(front_of_.end(), e.supernodes[s].count, s);
+  old_of_new_ = std::move(e.old_of_new), new_of_old_ = std::move(e.new_of_old);
+}
+
+void BlockCholesky::place_fronts(const Elimination& e) {
   fronts_.assign(e.supernodes.size(), {});
-  std::size_t factor = 0, top = 0, highest = 0;
-  flops_ = 0;
-  int most_rows = 0, most_columns = 0;
-  std::vector<std::size_t> waiting;  // strips of updates on the stack, as in factorise()
+  factor_strips_ = most_rows_ = most_columns_ = 0;
   for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
     const Supernode& node = e.supernodes[s];
     Front& f = fronts_[s];
     f.first = 3 * node.first;
     f.columns = static_cast<int>(3 * node.count);
     f.strips = strips_of(3 * (node.count + node.below.size()));
-    f.panel = factor;
+    f.panel = factor_strips_;
     f.parent = node.parent;
     for (const std::uint32_t row : node.below)
       for (std::uint32_t i = 0; i < 3; ++i) f.below.push_back(3 * row + i);
-    factor += static_cast<std::size_t>(f.columns) * static_cast<std::size_t>(f.strips);
-    for (int c = 0; c < f.columns; ++c) flops_ += std::pow(f.columns + static_cast<double>(f.below.size()) - c, 2);
-    most_rows = std::max(most_rows, f.strips * kStrip);
-    most_columns = std::max(most_columns, f.columns);
-    if (f.parent != kNone) {
-      ++fronts_[f.parent].children;
-      const Supernode& up = e.supernodes[f.parent];
-      for (const std::uint32_t row : f.below) {
-        const std::uint32_t block = row / 3, end = up.first + up.count;
-        const auto under = std::lower_bound(up.below.begin(), up.below.end(), block) - up.below.begin();
-        const auto at = block < end ? block - up.first : up.count + static_cast<std::uint32_t>(under);
-        f.in_parent.push_back(static_cast<int>(3 * at + row % 3));
-      }
+    factor_strips_ += static_cast<std::size_t>(f.columns) * static_cast<std::size_t>(f.strips);
+    most_rows_ = std::max(most_rows_, static_cast<std::size_t>(f.strips) * kStrip);
+    most_columns_ = std::max(most_columns_, static_cast<std::size_t>(f.columns));
+    if (f.parent == kNone) continue;
+    const Supernode& up = e.supernodes[f.parent];
+    for (const std::uint32_t row : f.below) {
+      const std::uint32_t block = row / 3, end = up.first + up.count;
+      const auto under = std::lower_bound(up.below.begin(), up.below.end(), block) - up.below.begin();
+      const auto at = block < end ? block - up.first : up.count + static_cast<std::uint32_t>(under);
+      f.in_parent.push_back(static_cast<int>(3 * at + row % 3));
     }
-    highest = std::max(highest, top + triangle_strips(f.rest()));
-    for (std::uint32_t c = 0; c < f.children; ++c) {
-      top -= waiting.back();
-      waiting.pop_back();
-    }
-    waiting.push_back(triangle_strips(f.rest()));
-    top += waiting.back();
   }
-  factor_strips_ = factor, stack_strips_ = highest + 1;
-  factor_.clear(), stack_.clear();
-  reciprocal_.resize(3 * a.size);
-  const auto rows = static_cast<std::size_t>(most_rows);
-  row_from_.resize(rows), row_panel_.resize(rows), row_triangle_.resize(rows);
-  x_.resize(3 * a.size + 1), local_.resize(rows + 1), sums_.resize(static_cast<std::size_t>(most_columns) + 1);
-  place_sources(a, e);
-  front_of_.clear();
-  for (std::uint32_t s = 0; s < fronts_.size(); ++s) front_of_.insert(front_of_.end(), e.supernodes[s].count, s);
-  old_of_new_ = std::move(e.old_of_new), new_of_old_ = std::move(e.new_of_old);
+}
+
+// The largest subtrees within a share of the work are tasks; top_ has what is above them.
+void BlockCholesky::share_tree(const Elimination& e) {
+  std::vector<double> work(fronts_.size());  // of the subtree
+  for (std::uint32_t s = 0; s < fronts_.size(); ++s) fronts_[s].descendant = s;
+  for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
+    work[s] += flops_of(e.supernodes[s]);
+    if (const std::uint32_t parent = fronts_[s].parent; parent != kNone) {
+      work[parent] += work[s];
+      fronts_[parent].descendant = std::min(fronts_[parent].descendant, fronts_[s].descendant);
+    }
+  }
+  const auto small = [&](std::uint32_t s) { return work[s] <= kTaskShare * flops_ || flops_ < kSharedWork; };
+  subtrees_.clear(), top_.clear();
+  for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
+    Front& f = fronts_[s];
+    f.inside = f.below.size();
+    if (!small(s))
+      top_.push_back(s);
+    else if (f.parent == kNone || !small(f.parent))
+      subtrees_.push_back({f.descendant, s, 0, 0});
+  }
+  above_ = 0;
+  for (Subtree& tree : subtrees_) {
+    const std::vector<std::uint32_t>& outside = fronts_[tree.root].below;
+    tree.above = above_;
+    above_ += outside.size();
+    for (std::uint32_t s = tree.first; s <= tree.root; ++s) {
+      Front& f = fronts_[s];
+      const std::uint32_t end = fronts_[tree.root].first + static_cast<std::uint32_t>(fronts_[tree.root].columns);
+      f.inside = static_cast<std::size_t>(std::lower_bound(f.below.begin(), f.below.end(), end) - f.below.begin());
+      for (std::size_t i = f.inside; i < f.below.size(); ++i)
+        f.in_root.push_back(
+            static_cast<std::uint32_t>(std::lower_bound(outside.begin(), outside.end(), f.below[i]) - outside.begin()));
+    }
+  }
+}
+
+// Each subtree has a stack of its own, on which its root's update remains; each front above has a place.
+void BlockCholesky::place_updates() {
+  stack_strips_ = 0;
+  for (Subtree& tree : subtrees_) {
+    std::size_t top = 0, highest = 0;
+    for (std::uint32_t s = tree.first; s <= tree.root; ++s) {
+      const std::size_t size = triangle_strips(fronts_[s].rest());
+      highest = std::max(highest, top + size);
+      for_each_child(s, [&](const Front& child) { top -= triangle_strips(child.rest()); });
+      top += size;
+    }
+    tree.stack = fronts_[tree.root].update = stack_strips_;
+    stack_strips_ += highest;
+  }
+  for (const std::uint32_t s : top_) {
+    fronts_[s].update = stack_strips_;
+    stack_strips_ += triangle_strips(fronts_[s].rest());
+  }
+  ++stack_strips_;
+}
+
+// The last child first.
+template <class Use>
+void BlockCholesky::for_each_child(std::uint32_t front, Use use) const {
+  const std::uint32_t begin = fronts_[front].descendant;
+  for (std::uint32_t next = front; next > begin; next = fronts_[next - 1].descendant) use(fronts_[next - 1]);
+}
+
+BlockCholesky::Scratch& BlockCholesky::scratch(unsigned thread) const {
+  Scratch& own = scratch_[thread];
+  for (auto* rows : {&own.from, &own.panel, &own.triangle}) rows->resize(most_rows_);
+  own.local.resize(most_rows_ + 1), own.sums.resize(most_columns_ + 1);
+  return own;
 }
 
 void BlockCholesky::place_sources(const BlockMatrix& a, const Elimination& e) {
@@ -104,15 +174,15 @@ void BlockCholesky::assemble(const Front& f, const BlockMatrix& a, double* panel
 
 // Adds a child's update to its parent's panel and triangle, column by column.
 void BlockCholesky::add_update(const Front& child, const double* update, const Front& parent, double* panel,
-                               double* triangle) {
+                               double* triangle, Scratch& scratch) const {
   const int above = child.columns / kStrip, parent_above = parent.columns / kStrip;
   const int rows = static_cast<int>(child.below.size());
   for (int i = 0; i < rows; ++i) {
     const int r = child.columns + i, to = child.in_parent[static_cast<std::size_t>(i)];
     const auto at = static_cast<std::size_t>(i);
-    row_from_[at] = static_cast<std::size_t>(triangle_size(r / kStrip - above) + r % kStrip);
-    row_panel_[at] = static_cast<std::size_t>(to / kStrip * kStrip * parent.columns + to % kStrip);
-    row_triangle_[at] =
+    scratch.from[at] = static_cast<std::size_t>(triangle_size(r / kStrip - above) + r % kStrip);
+    scratch.panel[at] = static_cast<std::size_t>(to / kStrip * kStrip * parent.columns + to % kStrip);
+    scratch.triangle[at] =
         static_cast<std::size_t>(to < parent.columns ? 0 : triangle_size(to / kStrip - parent_above) + to % kStrip);
   }
   for (int i = 0; i < rows; ++i) {
@@ -120,198 +190,78 @@ void BlockCholesky::add_update(const Front& child, const double* update, const F
     const int to = child.in_parent[static_cast<std::size_t>(i)];
     const bool in_panel = to < parent.columns;
     double* const out = in_panel ? panel + to * kStrip : triangle + (to - parent_above * kStrip) * kStrip;
-    const std::size_t* const row_to = in_panel ? row_panel_.data() : row_triangle_.data();
-    for (int j = i; j < rows; ++j) out[row_to[j]] += from[row_from_[static_cast<std::size_t>(j)]];
+    const std::size_t* const row_to = in_panel ? scratch.panel.data() : scratch.triangle.data();
+    for (int j = i; j < rows; ++j) out[row_to[j]] += from[scratch.from[static_cast<std::size_t>(j)]];
   }
 }
 
 bool BlockCholesky::factorise(const BlockMatrix& a) {
   factor_.resize(factor_strips_), stack_.resize(stack_strips_);
-  std::vector<std::uint32_t> waiting;
-  Strip* top = stack_.data();
-  for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
+  std::atomic<bool> positive{true};
+  run_tasks(subtrees_.size(), [&](std::size_t i, unsigned thread) {
+    if (positive && !factorise_subtree(subtrees_[i], a, scratch(thread))) positive = false;
+  });
+  for (const std::uint32_t s : top_)
+    if (positive && !factorise_top(s, a)) positive = false;
+  return positive;
+}
+
+bool BlockCholesky::factorise_subtree(const Subtree& tree, const BlockMatrix& a, Scratch& scratch) {
+  Strip* top = stack_.data() + tree.stack;
+  for (std::uint32_t s = tree.first; s <= tree.root; ++s) {
     const Front& f = fronts_[s];
     double* const own = factor_[f.panel].lane;
     std::fill_n(own, f.columns * f.strips * kStrip, 0.0);
     assemble(f, a, own);
-    double* const triangle = top->lane;
     const std::size_t size = triangle_strips(f.rest());
-    std::fill_n(triangle, size * kStrip, 0.0);
+    std::fill_n(top, size, Strip{});
     Strip* below = top;
-    for (std::uint32_t c = 0; c < f.children; ++c) {
-      const Front& child = fronts_[waiting.back()];
-      waiting.pop_back();
+    for_each_child(s, [&](const Front& child) {
       below -= triangle_strips(child.rest());
-      add_update(child, below->lane, f, own, triangle);
-    }
-    if (!factorise_panel(own, panel(f), reciprocal_.data() + f.first)) return false;
-    update_triangle(panel(f), triangle);
+      add_update(child, below->lane, f, own, top->lane, scratch);
+    });
+    double* const reciprocal = reciprocal_.data() + f.first;
+    for (int first = 0; first < f.columns; first += kBlockColumns)
+      if (!factorise_part(own, panel(f), reciprocal,
+                          {first, std::min(first + kBlockColumns, f.columns), first / kStrip, f.strips}))
+        return false;
+    update_triangle(panel(f), top->lane, f.columns / kStrip, f.strips);
     std::copy(top, top + size, below);
     top = below + size;
-    waiting.push_back(s);
   }
   return true;
 }
 
-void BlockCholesky::solve(const Vector& b, Vector& x) const {
-  double* const w = x_.front().lane;
-  double* const local = local_.front().lane;
-  for (std::uint32_t i = 0; i < old_of_new_.size(); ++i)
-    for (std::uint32_t d = 0; d < 3; ++d) w[3 * i + d] = b[3 * old_of_new_[i] + d];
-  for (const Front& f : fronts_) {
-    std::copy_n(w + f.first, f.columns, local);
-    std::fill(local + f.columns, local + f.strips * kStrip, 0.0);
-    forward(panel(f), reciprocal_.data() + f.first, local);
-    std::copy_n(local, f.columns, w + f.first);
-    for (std::size_t i = 0; i < f.below.size(); ++i) w[f.below[i]] += local[f.columns + static_cast<int>(i)];
-  }
-  for (std::size_t s = fronts_.size(); s-- > 0;) {
-    const Front& f = fronts_[s];
-    std::copy_n(w + f.first, f.columns, local);
-    std::fill(local + f.columns, local + f.strips * kStrip, 0.0);
-    for (std::size_t i = 0; i < f.below.size(); ++i) local[f.columns + static_cast<int>(i)] = w[f.below[i]];
-    backward(panel(f), reciprocal_.data() + f.first, local, sums_.front().lane);
-    std::copy_n(local, f.columns, w + f.first);
-  }
-  x.resize(b.size());
-  for (std::uint32_t i = 0; i < old_of_new_.size(); ++i)
-    for (std::uint32_t d = 0; d < 3; ++d) x[3 * old_of_new_[i] + d] = w[3 * i + d];
-}
-
-// Eight columns at a time. Subtrees without non-zero right-hand sides are skipped in the forward substitution.
-void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
-  if (columns.cols() == 1) {
-    Vector x;
-    solve(columns.col(0), x);
-    columns.col(0) = x;
-    return;
-  }
-  for (Eigen::Index from = 0; from < columns.cols(); from += kStrip) {
-    auto some = columns.middleCols(from, std::min<Eigen::Index>(kStrip, columns.cols() - from));
-    take_columns(some);
-    for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
-      const Front& f = fronts_[s];
-      if (!touched_[s]) continue;
-      if (f.parent != kNone) touched_[f.parent] = 1;
-      forward_pack(f, x_.data());
-    }
-    for (std::size_t s = fronts_.size(); s-- > 0;) {
-      const Front& f = fronts_[s];
-      std::copy_n(&x_[f.first], f.columns, local_.data());
-      for (std::size_t i = 0; i < f.below.size(); ++i) local_[static_cast<std::size_t>(f.columns) + i] = x_[f.below[i]];
-      std::fill(local_.data() + f.columns + f.below.size(), local_.data() + f.strips * kStrip, Strip{});
-      backward_many(panel(f), reciprocal_.data() + f.first, local_.front().lane);
-      std::copy_n(local_.data(), f.columns, &x_[f.first]);
-    }
-    give_columns(some);
-  }
-}
-
-// One front's forward substitution for a pack of eight right-hand sides: its rows of x, and its update of the rows
-// below.
-void BlockCholesky::forward_pack(const Front& f, Strip* x) const {
-  std::copy_n(x + f.first, f.columns, local_.data());
-  std::fill(local_.data() + f.columns, local_.data() + f.strips * kStrip, Strip{});
-  forward_many(panel(f), reciprocal_.data() + f.first, local_.front().lane);
-  std::copy_n(local_.data(), f.columns, x + f.first);
-  for (std::size_t i = 0; i < f.below.size(); ++i)
-    for (int l = 0; l < kStrip; ++l) x[f.below[i]].lane[l] += local_[static_cast<std::size_t>(f.columns) + i].lane[l];
-}
-
-// B^T A^-1 B = Y^T Y with Y = L^-1 B. It needs no backward substitution, and Y is non-zero only on the paths from B's
-// rows to the roots of the elimination tree. Triples are sorted by the elimination order of their first rows, so that
-// few packs of eight columns share a front far from the roots.
-void BlockCholesky::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const {
-  const std::vector<Eigen::Index> place = place_columns(b);
-  const auto packs = static_cast<std::size_t>((3 * b.count() + kStrip - 1) / kStrip);
-  const std::size_t rows = 3 * old_of_new_.size();
-  packs_.assign(packs * rows, Strip{});
-  tiles_.assign(packs * (packs + 1) / 2 * kStrip, Strip{});
-  touched_.assign(fronts_.size() * packs, 0);
-  for (Eigen::Index three = 0; three < b.count(); ++three)
-    for (const BlockColumns::Entry& entry : b.of(three)) {
-      const std::uint32_t row = new_of_old_[entry.row];
-      for (int c = 0; c < 3; ++c) {
-        const auto column = static_cast<std::size_t>(place[static_cast<std::size_t>(three)] + c);
-        Strip* const x = &packs_[column / kStrip * rows + 3 * row];
-        for (int r = 0; r < 3; ++r) x[r].lane[column % kStrip] += entry.value(r, c);
-        touched_[front_of_[row] * packs + column / kStrip] = 1;
-      }
-    }
-
-  std::vector<std::size_t> here;  // packs with non-zeros in this front
-  for (std::size_t s = 0; s < fronts_.size(); ++s) {
-    const Front& f = fronts_[s];
-    here.clear();
-    for (std::size_t p = 0; p < packs; ++p) {
-      if (!touched_[s * packs + p]) continue;
-      here.push_back(p);
-      if (f.parent != kNone) touched_[f.parent * packs + p] = 1;
-      forward_pack(f, &packs_[p * rows]);
-    }
-    for (const std::size_t p : here)
-      for (const std::size_t q : here) {
-        if (q > p) break;
-        add_gram(packs_[p * rows + f.first].lane, kStrip, packs_[q * rows + f.first].lane, kStrip, f.columns,
-                 tiles_[(p * (p + 1) / 2 + q) * kStrip].lane);
-      }
-  }
-
-  gram.resize(3 * b.count(), 3 * b.count());
-  const auto of = [&](Eigen::Index i) {
-    return static_cast<std::size_t>(place[static_cast<std::size_t>(i / 3)] + i % 3);
+// All threads on one front: first the diagonal block of some columns, then the strips below it.
+bool BlockCholesky::factorise_top(std::uint32_t front, const BlockMatrix& a) {
+  const Front& f = fronts_[front];
+  double* const own = factor_[f.panel].lane;
+  Strip* const triangle = stack_.data() + f.update;
+  std::fill_n(own, f.columns * f.strips * kStrip, 0.0);
+  assemble(f, a, own);
+  std::fill_n(triangle, triangle_strips(f.rest()), Strip{});
+  for_each_child(front, [&](const Front& child) {
+    add_update(child, stack_[child.update].lane, f, own, triangle->lane, scratch(0));
+  });
+  const bool shared = static_cast<double>(f.strips) * f.strips * f.columns * kStrip * kStrip > kSharedFront;
+  const auto share = [&](int from, const auto& part) {
+    if (!shared) return part(from, f.strips);
+    const auto tasks = static_cast<std::size_t>((f.strips - from + kStripsTogether - 1) / kStripsTogether);
+    run_tasks(tasks, [&](std::size_t i, unsigned) {  // the longest strips first
+      const int to = f.strips - static_cast<int>(i) * kStripsTogether;
+      part(std::max(from, to - kStripsTogether), to);
+    });
   };
-  for (Eigen::Index i = 0; i < gram.rows(); ++i)
-    for (Eigen::Index j = 0; j < gram.cols(); ++j) {
-      const std::size_t row = std::max(of(i), of(j)), column = std::min(of(i), of(j)), p = row / kStrip;
-      gram(i, j) = tiles_[(p * (p + 1) / 2 + column / kStrip) * kStrip + column % kStrip].lane[row % kStrip];
-    }
-}
-
-// Column index of each triple.
-std::vector<Eigen::Index> BlockCholesky::place_columns(const BlockColumns& b) const {
-  std::vector<std::pair<std::uint32_t, Eigen::Index>> order;  // first row, three
-  for (Eigen::Index three = 0; three < b.count(); ++three) {
-    std::uint32_t first = kNone;
-    for (const BlockColumns::Entry& entry : b.of(three)) first = std::min(first, new_of_old_[entry.row]);
-    order.emplace_back(first, three);
+  double* const reciprocal = reciprocal_.data() + f.first;
+  for (int first = 0; first < f.columns; first += kBlockColumns) {
+    const int last = std::min(first + kBlockColumns, f.columns), under = strips_of(static_cast<std::size_t>(last));
+    if (!factorise_part(own, panel(f), reciprocal, {first, last, first / kStrip, under})) return false;
+    share(under, [&](int from, int to) {
+      [[maybe_unused]] const bool done = factorise_part(own, panel(f), reciprocal, {first, last, from, to});
+    });
   }
-  std::sort(order.begin(), order.end());
-  std::vector<Eigen::Index> place(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k)
-    place[static_cast<std::size_t>(order[k].second)] = 3 * static_cast<Eigen::Index>(k);
-  return place;
-}
-
-// x_ = up to eight columns in the factor's order; touched_: fronts in which one of them is non-zero.
-void BlockCholesky::take_columns(Eigen::Ref<const Rows> some) const {
-  touched_.resize(fronts_.size());
-  for (std::uint32_t s = 0; s < fronts_.size(); ++s) {
-    const Front& f = fronts_[s];
-    touched_[s] = 0;
-    for (std::uint32_t r = f.first; r < f.first + static_cast<std::uint32_t>(f.columns); ++r) {
-      const double* const from = some.data() + some.outerStride() * (3 * old_of_new_[r / 3] + r % 3);
-      double* const to = x_[r].lane;
-      if (some.cols() == kStrip) {
-        std::copy_n(from, kStrip, to);
-      } else {
-        std::copy_n(from, some.cols(), to);
-        std::fill(to + some.cols(), to + kStrip, 0.0);
-      }
-      for (int l = 0; l < kStrip; ++l) touched_[s] |= static_cast<char>(to[l] != 0);
-    }
-  }
-}
-
-void BlockCholesky::give_columns(Eigen::Ref<Rows> some) const {
-  for (std::uint32_t i = 0; i < old_of_new_.size(); ++i)
-    for (std::uint32_t d = 0; d < 3; ++d) {
-      double* const to = some.data() + some.outerStride() * (3 * old_of_new_[i] + d);
-      if (some.cols() == kStrip)
-        std::copy_n(x_[3 * i + d].lane, kStrip, to);
-      else
-        std::copy_n(x_[3 * i + d].lane, some.cols(), to);
-    }
+  share(f.columns / kStrip, [&](int from, int to) { update_triangle(panel(f), triangle->lane, from, to); });
+  return true;
 }
 
 std::unique_ptr<LinearSolver> make_block_cholesky(std::uint32_t) {

@@ -1,12 +1,16 @@
 // Sparse Cholesky factor A = L L^T of 3x3 blocks by the multifrontal method (Duff and Reid 1983; Liu 1992). Each
 // supernode of the elimination tree assembles its columns of A and its children's updates, factorises its dense panel
 // and leaves an update for its parent. All arithmetic is dense (panel_kernels.h). Chosen over the left-looking method
-// for its simpler memory traffic. The pattern fixes the order of operations, so results repeat to the bit. One thread
-// at a time: solving uses scratch memory of the solver.
+// for its simpler memory traffic.
+// Threads: disjoint subtrees of similar work are tasks; above them, one front after the other is shared strip by strip,
+// or right-hand sides pack by pack. The pattern fixes tasks and the order of every sum, so results are the same to the
+// bit for any number of threads. One caller at a time: solving uses scratch memory of the solver.
 #pragma once
 
+#include <array>
 #include <vector>
 
+#include "runtime/tasks.h"
 #include "systems/soft/linear/elimination.h"
 #include "systems/soft/linear/linear_solver.h"
 #include "systems/soft/linear/panel_kernels.h"
@@ -36,35 +40,71 @@ class BlockCholesky final : public LinearSolver {
     std::uint32_t first = 0;      // its first column
     int columns = 0, strips = 0;  // of the panel; in scalars, not blocks
     std::size_t panel = 0;        // index in factor_
+    std::size_t update = 0;       // index in stack_; of top fronts and subtrees' roots
     std::uint32_t sources_begin = 0, sources_end = 0;
-    std::vector<std::uint32_t> below;  // rows under the diagonal block, three a block row
-    std::vector<int> in_parent;        // index of those rows in the parent's front
+    std::vector<std::uint32_t> below;    // rows under the diagonal block, three a block row
+    std::vector<int> in_parent;          // index of those rows in the parent's front
+    std::size_t inside = 0;              // of those rows: in its subtree; all of a top front
+    std::vector<std::uint32_t> in_root;  // index of the others among the rows below the subtree's root
     std::uint32_t parent = 0xffffffff;
-    std::uint32_t children = 0;
+    std::uint32_t descendant = 0;                           // the first front below it, or itself
     int rest() const { return strips - columns / kStrip; }  // strips of the update
+  };
+  // A task: fronts first to root.
+  struct Subtree {
+    std::uint32_t first, root;
+    std::size_t stack, above;  // its part of stack_; of sums for rows above it
+  };
+  struct Scratch {
+    std::vector<std::size_t> from, panel, triangle;  // of an update's rows
+    std::vector<Strip> local, sums;
   };
 
   FactorPanel panel(const Front& f) const { return {factor_[f.panel].lane, f.columns, f.strips}; }
+  void place_fronts(const Elimination& e);
+  void share_tree(const Elimination& e);
+  void place_updates();
   void place_sources(const BlockMatrix& a, const Elimination& e);
   void assemble(const Front& f, const BlockMatrix& a, double* panel) const;
-  void add_update(const Front& child, const double* update, const Front& parent, double* panel, double* triangle);
-  void forward_pack(const Front& f, Strip* x) const;
+  template <class Use>
+  void for_each_child(std::uint32_t front, Use use) const;
+  void add_update(const Front& child, const double* update, const Front& parent, double* panel, double* triangle,
+                  Scratch& scratch) const;
+  bool factorise_subtree(const Subtree& tree, const BlockMatrix& a, Scratch& scratch);
+  bool factorise_top(std::uint32_t front, const BlockMatrix& a);
+  Scratch& scratch(unsigned thread) const;
+
+  template <class Lane>
+  void forward_front(const Front& f, Lane* x, Lane* above, Scratch& scratch) const;
+  template <class Lane>
+  void backward_front(const Front& f, Lane* x, Scratch& scratch) const;
+  void touch_above(std::size_t packs) const;
+  template <class Lane>
+  void forward_all(Lane* x, std::size_t packs) const;
+  template <class Lane>
+  void backward_all(Lane* x, std::size_t packs) const;
   std::vector<Eigen::Index> place_columns(const BlockColumns& b) const;
-  void take_columns(Eigen::Ref<const Rows> some) const;
-  void give_columns(Eigen::Ref<Rows> some) const;
+  void add_grams(std::size_t packs) const;
+  void take_columns(Eigen::Ref<const Rows> columns, std::size_t pack, std::size_t packs) const;
+  void give_columns(Eigen::Ref<Rows> columns, std::size_t pack) const;
 
   std::vector<std::uint32_t> old_of_new_;
   std::vector<std::uint32_t> new_of_old_, front_of_;  // of block rows; front_of_ by their new number
   std::vector<Front> fronts_;
+  std::vector<Subtree> subtrees_;
+  std::vector<std::uint32_t> top_;  // fronts above the subtrees, ascending
   std::vector<Source> sources_;
-  std::size_t factor_strips_ = 0, stack_strips_ = 0;
+  std::size_t rows_ = 0, most_rows_ = 0, most_columns_ = 0;
+  std::size_t factor_strips_ = 0, stack_strips_ = 0, above_ = 0;
   double flops_ = 0;
   std::vector<Strip> factor_;       // allocated by the first factorise()
   std::vector<double> reciprocal_;  // of L's diagonal
   std::vector<Strip> stack_;        // updates waiting for their parents
-  std::vector<std::size_t> row_from_, row_panel_, row_triangle_;
-  mutable std::vector<Strip> x_, local_, sums_, packs_, tiles_;
+  // Of right-hand sides, eight a pack, pack after pack: x; sums of subtrees for rows above them; products. touched_: of
+  // each front, the packs with non-zeros there.
+  mutable std::vector<Strip> x_, sums_above_, tiles_;
   mutable std::vector<char> touched_;
+  mutable std::array<Scratch, kMostTaskThreads> scratch_;
 };
 
 }  // namespace pliant

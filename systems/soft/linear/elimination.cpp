@@ -4,10 +4,13 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 
+#include "systems/soft/linear/nested_dissection.h"
+
 namespace pliant {
 namespace {
 
 constexpr std::uint32_t kNoParent = 0xffffffff;
+constexpr std::uint32_t kLeastDissected = 100;  // block rows; smaller: minimum degree is as good
 
 std::vector<std::uint32_t> minimum_degree(const BlockMatrix& a) {
   const int n = static_cast<int>(a.size);
@@ -136,15 +139,29 @@ std::vector<Supernode> merge_columns(std::vector<std::vector<std::uint32_t>> row
   return out;
 }
 
-}  // namespace
-
-Elimination plan_elimination(const BlockMatrix& a) {
+Elimination plan(const BlockMatrix& a, const std::vector<std::uint32_t>& fill_reducing) {
   Elimination e;
-  const std::vector<std::uint32_t> fill_reducing = minimum_degree(a);
   const auto tree = elimination_tree(a, fill_reducing, inverse(fill_reducing));
   for (const std::uint32_t c : postorder(tree)) e.old_of_new.push_back(fill_reducing[c]);
   e.new_of_old = inverse(e.old_of_new);
   e.supernodes = merge_columns(column_rows(a, e, elimination_tree(a, e.old_of_new, e.new_of_old)));
+  for (const Supernode& s : e.supernodes) e.flops += flops_of(s);
+  return e;
+}
+
+}  // namespace
+
+double flops_of(const Supernode& s) {
+  const double rows = 3.0 * (s.count + static_cast<double>(s.below.size()));
+  double sum = 0;
+  for (std::uint32_t c = 0; c < 3 * s.count; ++c) sum += (rows - c) * (rows - c);
+  return sum;
+}
+
+Elimination plan_elimination(const BlockMatrix& a) {
+  Elimination e = plan(a, minimum_degree(a));
+  if (a.size >= kLeastDissected)
+    if (Elimination dissected = plan(a, nested_dissection(a)); dissected.flops < e.flops) e = std::move(dissected);
 
   std::vector<std::uint32_t> owner(a.size);
   for (std::uint32_t s = 0; s < e.supernodes.size(); ++s)

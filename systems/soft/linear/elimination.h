@@ -1,7 +1,9 @@
 // Symbolic elimination of a sparse symmetric matrix of blocks: its order, and the grouping of columns. For
 // block_cholesky.h; depends only on the pattern, done once. Order: approximate minimum degree on the graph of blocks
-// (Amestoy, Davis, Duff 1996), then a postorder of the elimination tree. Supernodes: runs of columns with (nearly) the
-// same rows, merged while few zeros are included (relaxed supernodes, Ashcraft and Grimes 1989).
+// (Amestoy, Davis, Duff 1996) or nested dissection (nested_dissection.h), whichever factor has less work: compact
+// bodies gain up to half by the latter, slender ones nothing. Then a postorder of the elimination tree. Supernodes:
+// runs of columns with (nearly) the same rows, merged while few zeros are included (relaxed supernodes, Ashcraft and
+// Grimes 1989).
 #pragma once
 
 #include <cstdint>
@@ -17,9 +19,12 @@ struct Supernode {
   std::uint32_t parent = 0xffffffff;   // receives its update: the supernode that eliminates below.front()
 };
 
+double flops_of(const Supernode& supernode);  // additions and multiplications of its panel and its update
+
 struct Elimination {
   std::vector<std::uint32_t> old_of_new, new_of_old;
   std::vector<Supernode> supernodes;  // children before parents, each subtree contiguous
+  double flops = 0;                   // additions and multiplications of the factor
 };
 
 Elimination plan_elimination(const BlockMatrix& a);

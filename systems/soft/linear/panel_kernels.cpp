@@ -100,48 +100,53 @@ PLIANT_INLINE bool factorise_tile(double* tile, int width, double* reciprocal) {
   return true;
 }
 
+// Eight columns of one strip: subtracts the columns already factorised, then divides by the diagonal block's triangle,
+// or factorises that.
 template <int kBytes>
-PLIANT_INLINE bool factorise_panel_for(double* data, FactorPanel panel, double* reciprocal) {
-  alignas(64) double tile[kStrip * kStrip];
-  const int stride = kStrip * panel.columns;
-  for (int begin = 0; begin < panel.columns; begin += kStrip) {
-    const int width = std::min(kStrip, panel.columns - begin);
-    double* const pivots = data + static_cast<std::ptrdiff_t>(begin / kStrip) * stride;
-    for (int i = begin / kStrip; i < panel.strips; ++i) {
-      double* const strip = data + static_cast<std::ptrdiff_t>(i) * stride;
-      double* const out = strip + begin * kStrip;
-      // tile = A - (columns already factorised)
-      std::fill(tile, tile + kStrip * kStrip, 0.0);
-      add_products<kBytes, Read::kRow>(strip, pivots, begin, kStrip, tile, width);
-      for (int c = 0; c < width * kStrip; ++c) tile[c] = out[c] - tile[c];
-      if (strip == pivots) {
-        if (!factorise_tile<kBytes>(tile, width, reciprocal + begin)) return false;
-      } else {
-        const double* const L = pivots + begin * kStrip;
-        for (int j = 0; j < width; ++j) {
-          for (int q = 0; q < j; ++q) add_scaled<kBytes>(tile + j * kStrip, tile + q * kStrip, -L[q * kStrip + j]);
-          scale(tile + j * kStrip, reciprocal[begin + j]);
-        }
-      }
-      std::copy(tile, tile + width * kStrip, out);
+PLIANT_INLINE bool factorise_strip(double* strip, const double* pivots, int begin, int width, double* reciprocal) {
+  alignas(64) double tile[kStrip * kStrip] = {};
+  double* const out = strip + begin * kStrip;
+  add_products<kBytes, Read::kRow>(strip, pivots, begin, kStrip, tile, width);
+  for (int c = 0; c < width * kStrip; ++c) tile[c] = out[c] - tile[c];
+  if (strip == pivots) {
+    if (!factorise_tile<kBytes>(tile, width, reciprocal + begin)) return false;
+  } else {
+    const double* const L = pivots + begin * kStrip;
+    for (int j = 0; j < width; ++j) {
+      for (int q = 0; q < j; ++q) add_scaled<kBytes>(tile + j * kStrip, tile + q * kStrip, -L[q * kStrip + j]);
+      scale(tile + j * kStrip, reciprocal[begin + j]);
     }
   }
+  std::copy(tile, tile + width * kStrip, out);
   return true;
 }
 
+// Strip by strip: a strip stays in the cache while its columns are done.
 template <int kBytes>
-PLIANT_INLINE void update_triangle_for(FactorPanel panel, double* triangle) {
+PLIANT_INLINE bool factorise_part_for(double* data, FactorPanel panel, double* reciprocal, PanelPart part) {
+  const auto stride = static_cast<std::ptrdiff_t>(kStrip) * panel.columns;
+  for (int i = part.from; i < part.to; ++i)
+    for (int begin = part.first; begin < part.last && begin <= i * kStrip; begin += kStrip)
+      if (!factorise_strip<kBytes>(data + i * stride, data + begin / kStrip * stride, begin,
+                                   std::min(kStrip, part.last - begin), reciprocal))
+        return false;
+  return true;
+}
+
+// Eight strips of rows at a time, which share every strip of columns in the cache.
+template <int kBytes>
+PLIANT_INLINE void update_triangle_for(FactorPanel panel, double* triangle, int from, int to) {
   alignas(64) double tile[kStrip * kStrip];
-  const int stride = kStrip * panel.columns, above = panel.columns / kStrip;
-  for (int i = above; i < panel.strips; ++i)
-    for (int j = above; j <= i; ++j) {
-      std::fill(tile, tile + kStrip * kStrip, 0.0);
-      add_products<kBytes, Read::kRow>(panel.data + static_cast<std::ptrdiff_t>(i) * stride,
-                                       panel.data + static_cast<std::ptrdiff_t>(j) * stride, panel.columns, kStrip,
-                                       tile);
-      double* const out = triangle + triangle_size(i - above) + static_cast<std::ptrdiff_t>(j - above) * 64;
-      for (int c = 0; c < kStrip * kStrip; ++c) out[c] -= tile[c];
-    }
+  const auto stride = static_cast<std::ptrdiff_t>(kStrip) * panel.columns;
+  const int above = panel.columns / kStrip;
+  for (int begin = from; begin < to; begin += kStrip)
+    for (int j = above; j < std::min(begin + kStrip, to); ++j)
+      for (int i = std::max(begin, j); i < std::min(begin + kStrip, to); ++i) {
+        std::fill(tile, tile + kStrip * kStrip, 0.0);
+        add_products<kBytes, Read::kRow>(panel.data + i * stride, panel.data + j * stride, panel.columns, kStrip, tile);
+        double* const out = triangle + triangle_size(i - above) + static_cast<std::ptrdiff_t>(j - above) * 64;
+        for (int c = 0; c < kStrip * kStrip; ++c) out[c] -= tile[c];
+      }
 }
 
 template <int kBytes>
@@ -230,8 +235,8 @@ PLIANT_INLINE void add_gram_for(const double* x, int x_step, const double* y, in
 
 }  // namespace
 
-#define FACTORISE(bytes) factorise_panel_for<bytes>(data, panel, reciprocal)
-#define UPDATE(bytes) update_triangle_for<bytes>(panel, triangle)
+#define FACTORISE(bytes) factorise_part_for<bytes>(data, panel, reciprocal, part)
+#define UPDATE(bytes) update_triangle_for<bytes>(panel, triangle, from, to)
 #define FORWARD(bytes) forward_for<bytes>(panel, reciprocal, x)
 #define BACKWARD(bytes) backward_for<bytes>(panel, reciprocal, x, sums)
 #define FORWARD_MANY(bytes) forward_many_for<bytes>(panel, reciprocal, x)
@@ -239,9 +244,10 @@ PLIANT_INLINE void add_gram_for(const double* x, int x_step, const double* y, in
 #define GRAM(bytes) add_gram_for<bytes>(x, x_step, y, y_step, rows, tile)
 #define BYTES(bytes) bytes
 
-PLIANT_KERNEL(bool, factorise_panel, (double* data, FactorPanel panel, double* reciprocal), (data, panel, reciprocal),
-              FACTORISE)
-PLIANT_KERNEL(void, update_triangle, (FactorPanel panel, double* triangle), (panel, triangle), UPDATE)
+PLIANT_KERNEL(bool, factorise_part, (double* data, FactorPanel panel, double* reciprocal, PanelPart part),
+              (data, panel, reciprocal, part), FACTORISE)
+PLIANT_KERNEL(void, update_triangle, (FactorPanel panel, double* triangle, int from, int to),
+              (panel, triangle, from, to), UPDATE)
 PLIANT_KERNEL(void, forward, (FactorPanel panel, const double* reciprocal, double* x), (panel, reciprocal, x), FORWARD)
 PLIANT_KERNEL(void, backward, (FactorPanel panel, const double* reciprocal, double* x, double* sums),
               (panel, reciprocal, x, sums), BACKWARD)

@@ -18,13 +18,19 @@ constexpr long triangle_size(int strips) {
   return 32L * strips * (strips + 1);
 }
 
-// data (the panel's) = its Cholesky factor, including the rows under the diagonal block. reciprocal: 1 / diagonal,
-// `columns` of them. False: a pivot is not positive and finite.
-[[nodiscard]] bool factorise_panel(double* data, FactorPanel panel, double* reciprocal);
+// A rectangle of a panel: whole strips from `from` up to `to`, columns from `first` (a multiple of 8) up to `last`.
+struct PanelPart {
+  int first = 0, last = 0, from = 0, to = 0;
+};
 
-// triangle -= L L^T over the strips from columns / 8 on, L the panel. Rows and columns that belong to the diagonal
-// block, and entries above the diagonal, are undefined.
-void update_triangle(FactorPanel panel, double* triangle);
+// data (the panel's) becomes its Cholesky factor, part by part: columns before part.first are done in all strips that
+// are read. A part with the diagonal block of its columns, then strips below it, in any order or at once. reciprocal: 1
+// / diagonal, `columns` of them. False: a pivot is not positive and finite.
+[[nodiscard]] bool factorise_part(double* data, FactorPanel panel, double* reciprocal, PanelPart part);
+
+// triangle -= L L^T over the strips from columns / 8 on, L the panel: of its strips from `from` up to `to`, counted in
+// the panel. Rows and columns that belong to the diagonal block, and entries above the diagonal, are undefined.
+void update_triangle(FactorPanel panel, double* triangle, int from, int to);
 
 // One right-hand side. forward: x (rows of the panel) is the diagonal block's part of the right-hand side on entry,
 // then its solution, followed by the update of the rows below. backward: x has solutions below, right-hand side above;
@@ -48,8 +54,8 @@ int panel_register_bytes();
 
 // Portable versions: the reference for the others.
 namespace plain {
-bool factorise_panel(double* data, FactorPanel panel, double* reciprocal);
-void update_triangle(FactorPanel panel, double* triangle);
+bool factorise_part(double* data, FactorPanel panel, double* reciprocal, PanelPart part);
+void update_triangle(FactorPanel panel, double* triangle, int from, int to);
 void forward(FactorPanel panel, const double* reciprocal, double* x);
 void backward(FactorPanel panel, const double* reciprocal, double* x, double* sums);
 void forward_many(FactorPanel panel, const double* reciprocal, double* x);

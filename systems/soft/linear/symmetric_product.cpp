@@ -4,11 +4,14 @@
 #include <vector>
 
 #include "runtime/assert.h"
+#include "runtime/tasks.h"
 #include "systems/soft/linear/panel_kernels.h"
 
 namespace pliant {
 namespace {
 
+constexpr double kSharedProduct = 4e6;         // [1] multiplications: fewer are faster on one thread
+constexpr Eigen::Index kShares = 4;            // tasks: every so many rows of tiles, as later rows are longer
 constexpr Eigen::Index kColumnsTogether = 64;  // rows of all columns that stay in the cache while tiles are summed
 
 struct alignas(64) Tile {
@@ -32,14 +35,19 @@ Eigen::MatrixXd symmetric_product(const Rows& a, const Rows& b) {
     return symmetric_product(padded(a, columns), padded(b, columns)).topLeftCorner(a.cols(), a.cols());
 
   std::vector<Tile> tiles(static_cast<std::size_t>(strips * (strips + 1) / 2));
-  for (Eigen::Index row = 0; row < a.rows(); row += kColumnsTogether) {
-    const auto rows = static_cast<int>(std::min(kColumnsTogether, a.rows() - row));
-    Tile* tile = tiles.data();
-    for (Eigen::Index i = 0; i < strips; ++i)
-      for (Eigen::Index j = 0; j <= i; ++j, ++tile)
-        add_gram(&a(row, i * kStrip), static_cast<int>(columns), &b(row, j * kStrip), static_cast<int>(columns), rows,
-                 tile->value);
-  }
+  const auto add_tiles = [&](Eigen::Index first, Eigen::Index step) {
+    for (Eigen::Index row = 0; row < a.rows(); row += kColumnsTogether) {
+      const auto rows = static_cast<int>(std::min(kColumnsTogether, a.rows() - row));
+      for (Eigen::Index i = first; i < strips; i += step)
+        for (Eigen::Index j = 0; j <= i; ++j)
+          add_gram(&a(row, i * kStrip), static_cast<int>(columns), &b(row, j * kStrip), static_cast<int>(columns), rows,
+                   tiles[static_cast<std::size_t>(i * (i + 1) / 2 + j)].value);
+    }
+  };
+  if (static_cast<double>(a.rows() * columns) * static_cast<double>(columns) < kSharedProduct)
+    add_tiles(0, 1);
+  else
+    run_tasks(kShares, [&](std::size_t share, unsigned) { add_tiles(static_cast<Eigen::Index>(share), kShares); });
   Eigen::MatrixXd out(columns, columns);
   const Tile* tile = tiles.data();
   for (Eigen::Index i = 0; i < strips; ++i)

@@ -61,8 +61,10 @@ Answer answer(const ActiveSet& active, const CondensedContacts& c, const Eigen::
     if (c.stiff[static_cast<std::size_t>(active.rows[static_cast<std::size_t>(k)] / 3)]) RWD(k, k) += kRigidCompliance;
   Answer out;
   out.DJ = active.D.transpose() * J;
-  out.phi = -RWD.partialPivLu().solve(RJ);
-  out.psi = active.slips ? Eigen::MatrixXd(-RWD.transpose().partialPivLu().solve(out.DJ)) : out.phi;
+  const Eigen::PartialPivLU<Eigen::MatrixXd> factor(RWD);
+  out.phi = -factor.solve(RJ);
+  out.psi = out.phi;
+  if (active.slips) out.psi = factor.transpose().solve(Eigen::MatrixXd(-out.DJ));
   return out;
 }
 
