@@ -178,6 +178,7 @@ Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, c
 }
 
 std::optional<Note> locking_doubt(const SoftBody& body, std::size_t tetrahedra) {
+  if (body.mesh.empty() && body.elements == Elements::kHexahedra) return std::nullopt;  // mean gradients do not lock
   const double bound = tetrahedra < kManyTets ? kLockingPoisson : kLockingPoissonOfMany;
   if (body.poisson < bound) return std::nullopt;
   return Note{fmt::format("has a Poisson's ratio of {:g}: from {:g} on its {} tetrahedra lock, and it is over 10 % too "

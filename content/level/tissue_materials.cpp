@@ -49,6 +49,18 @@ std::vector<dvec3> samples_of(const TetMesh& mesh, std::size_t element, int samp
   return out;
 }
 
+dvec3 middle_of(const TetMesh& mesh, std::size_t element) {
+  dvec3 sum(0);
+  const auto add = [&](const auto& nodes) {
+    for (const std::uint32_t node : nodes) sum += mesh.nodes[node] / static_cast<double>(nodes.size());
+  };
+  if (mesh.cells.empty())
+    add(mesh.tets[element]);
+  else
+    add(mesh.cells[element].nodes);
+  return sum;
+}
+
 // The paint at the place of the surface nearest to each element's middle.
 void paint_factors(const Mesh& surface, TetMesh& mesh) {
   const auto at = [&](const std::vector<float>& values, uvec3 t, dvec3 weight) {
@@ -58,7 +70,7 @@ void paint_factors(const Mesh& surface, TetMesh& mesh) {
   };
   parallel_for(mesh.factors.size(), 32, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
-      const RayPoint near = closest_of(surface, samples_of(mesh, e, 1)[0]);
+      const RayPoint near = closest_of(surface, middle_of(mesh, e));
       if (near.triangle == kBorder) continue;
       const uvec3 t = surface.triangles[near.triangle];
       const dvec3 a(surface.position(t.x)), b(surface.position(t.y)), c(surface.position(t.z));

@@ -14,6 +14,7 @@ namespace pliant {
 namespace {
 
 constexpr int kCoarse = 4, kFine = 8;          // samples of a cell along each axis: to count cells, and to weigh them
+constexpr double kOfBox = 1e-3;                // [1] variance that a single sample leaves, times samples squared
 constexpr double kLeastShare = 0.02;           // [1] of a cell: one with less tissue is left out
 constexpr int kCellTries = 8;                  // attempts to reach the usual number
 constexpr double kMostUsualCells = 100'000.0;  // cells of the box per attempt
@@ -58,7 +59,10 @@ CellTissue tissue_in(const FillRegion& region, const CellGrid& grid, glm::ivec3 
   for (int z = 0; z < samples; ++z)
     for (int y = 0; y < samples; ++y)
       for (int x = 0; x < samples; ++x) {
-        const dvec3 own = 2.0 * (dvec3(x, y, z) + 0.5) / static_cast<double>(samples) - 1.0;
+        // Each in a box of its own, at a place that no plane through the lattice's nodes meets again and again.
+        const dvec3 in_box = glm::fract(
+            dvec3(0.5 + 0.3820 * y + 0.6180 * z, 0.5 + 0.6180 * x + 0.3820 * z, 0.5 + 0.3820 * x + 0.6180 * y));
+        const dvec3 own = 2.0 * (dvec3(x, y, z) + in_box) / static_cast<double>(samples) - 1.0;
         if (!region(low + 0.5 * width * (own + 1.0))) continue;
         ++inside;
         out.mean += own;
@@ -66,14 +70,15 @@ CellTissue tissue_in(const FillRegion& region, const CellGrid& grid, glm::ivec3 
         out.triple += own.x * own.y * own.z;
         squares += own * own;
       }
+  const int all = samples * samples * samples;
   if (inside == 0) return out;
+  if (inside == all) return {1.0};
   const double n = inside;
-  out.share = n / std::pow(samples, 3);
+  out.share = n / all;
   out.mean /= n;
   out.products /= n;
   out.triple /= n;
-  // A sample stands for a small box of its own.
-  out.spread = squares / n - out.mean * out.mean + 1.0 / (3.0 * samples * samples);
+  out.spread = squares / n - out.mean * out.mean + kOfBox / (samples * samples);
   return out;
 }
 
