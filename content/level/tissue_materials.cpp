@@ -115,25 +115,37 @@ Result<std::vector<double>> shares_of(const std::string& name, const Level& leve
   return share;
 }
 
-// Each node's volume by the mean density of its elements.
+// Each node's volume by the mean density of its elements, in all as much more as these.
 void weigh_parts(const std::vector<double>& density, TetMesh& mesh) {
   if (mesh.volume.empty()) {
     mesh.volume.assign(mesh.nodes.size(), 0.0);
     for (const Tet& tet : mesh.tets)
       for (const std::uint32_t node : tet) mesh.volume[node] += 0.25 * tet_volume(mesh.nodes, tet);
   }
-  std::vector<double> dense(mesh.nodes.size(), 0.0), whole(mesh.nodes.size(), 0.0);
+  std::vector<double> more(mesh.nodes.size(), 0.0), whole(mesh.nodes.size(), 0.0);
+  double of_elements = 0.0, of_nodes = 0.0;
   for (std::size_t e = 0; e < density.size(); ++e) {
-    const auto add = [&](const auto& nodes, double volume) {
-      for (const std::uint32_t node : nodes) dense[node] += volume * density[e], whole[node] += volume;
+    double volume = 0.0;
+    const auto add = [&](const auto& nodes) {
+      for (const std::uint32_t node : nodes) more[node] += volume * (density[e] - 1.0), whole[node] += volume;
     };
-    if (mesh.cells.empty())
-      add(mesh.tets[e], tet_volume(mesh.nodes, mesh.tets[e]));
-    else
-      add(mesh.cells[e].nodes, mesh.cells[e].share);
+    if (mesh.cells.empty()) {
+      volume = tet_volume(mesh.nodes, mesh.tets[e]);
+      add(mesh.tets[e]);
+    } else {
+      for (std::size_t k = 0; k < kTetsOfCell; ++k)
+        volume += mesh.cells[e].share * tet_volume(mesh.nodes, mesh.tets[kTetsOfCell * e + k]);
+      add(mesh.cells[e].nodes);
+    }
+    of_elements += volume * (density[e] - 1.0);
   }
-  for (std::size_t n = 0; n < dense.size(); ++n)
-    if (whole[n] > 0.0) mesh.volume[n] *= dense[n] / whole[n];
+  for (std::size_t n = 0; n < more.size(); ++n) {
+    more[n] = whole[n] > 0.0 ? mesh.volume[n] * more[n] / whole[n] : 0.0;
+    of_nodes += more[n];
+  }
+  const double ratio = of_nodes * of_elements > 0.0 ? of_elements / of_nodes : 1.0;
+  for (std::size_t n = 0; n < more.size(); ++n)
+    mesh.volume[n] = std::max(mesh.volume[n] + ratio * more[n], kLeastPaint * mesh.volume[n]);
 }
 
 }  // namespace

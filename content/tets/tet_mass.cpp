@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kMassSamples = 30000;  // points in the box
+constexpr double kMassSamples = 10000;  // points in the box
 constexpr double kSameVolume = 0.02;         // [1] volume by triangles and by samples
 constexpr double kMatched = 1e-12;      // [1] moments that are equal
 constexpr double kLeastStep = 1e-3;     // [1] of Newton's
