@@ -18,6 +18,22 @@ struct Mesh;
 
 using Tet = std::array<std::uint32_t, 4>;  // nodes; positive volume: (b-a) x (c-a) . (d-a) > 0
 
+// A cell of a lattice with the part of it that is tissue. Corner k is at (+-1, +-1, +-1) of its own coordinates: bit 0
+// of k is x, bit 1 y, bit 2 z. Moments are over the tissue, in these coordinates.
+struct LatticeCell {
+  std::array<std::uint32_t, 8> nodes{};
+  double share = 1.0;          // [1] of its volume
+  dvec3 mean{0}, products{0};  // [1] of x, y, z; of yz, zx, xy
+  dvec3 spread{1.0 / 3.0};     // [1] variance of x, y, z
+};
+
+inline constexpr std::size_t kTetsOfCell = 6;
+
+// Factors on the body's material.
+struct ElementFactors {
+  double stiffness = 1.0, damping = 1.0;  // [1] on young; on rayleigh's beta
+};
+
 // Embedding of a point of the collision mesh in the tetrahedra: sum of weight[i] * node[tets[tet][i]]. Weights sum to
 // 1; they may be negative where the collision mesh is slightly outside.
 struct Embedding {
@@ -66,7 +82,14 @@ struct TetMesh {
   std::uint32_t free_count = 0;    // nodes [0, free_count) are free
   std::uint32_t handle_count = 0;  // nodes [free_count, free_count + handle_count) belong to the rigid handle
   std::vector<Tet> tets;
-  std::vector<Embedding> embedding;    // of each vertex of the body's touch mesh (SoftBody::collision_mesh)
+  // Of a lattice of hexahedra: they carry the elasticity. Tetrahedra 6 k to 6 k + 5 divide cell k, for what is
+  // embedded.
+  std::vector<LatticeCell> cells;
+  std::vector<double> volume;           // [m3] of each node: what its mass is of, times the body's density; empty: a
+                                        // quarter of each of its tetrahedra
+  std::vector<std::uint16_t> group;     // of each tetrahedron of a file: its physical group, 0 none; empty: none
+  std::vector<ElementFactors> factors;  // of each cell, or without cells of each tetrahedron; empty: 1
+  std::vector<Embedding> embedding;     // of each vertex of the body's touch mesh (SoftBody::collision_mesh)
   std::vector<SurfaceSample> samples;  // of the touch mesh, a quarter of a cell apart; empty unless SoftContact::kSplit
   std::vector<CarriedPart> parts;
   // [m] Initial positions of the nodes, if not at rest (UnderGravity). Writer: prepare_soft.

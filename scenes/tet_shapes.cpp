@@ -70,6 +70,10 @@ void hold(TetMesh& mesh, const std::function<bool(dvec3)>& pinned, const std::fu
   mesh.nodes = std::move(nodes);
   for (Tet& tet : mesh.tets)
     for (std::uint32_t& n : tet) n = new_name[n];
+  for (LatticeCell& cell : mesh.cells)
+    for (std::uint32_t& n : cell.nodes) n = new_name[n];
+  const std::vector<double> volume = mesh.volume;
+  for (std::size_t n = 0; n < volume.size(); ++n) mesh.volume[new_name[n]] = volume[n];
   mesh.free_count = counts[0];
   mesh.handle_count = counts[1];
 }

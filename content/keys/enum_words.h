@@ -90,6 +90,16 @@ constexpr const char* word_of(SoftContact contact) {
   return nullptr;
 }
 
+constexpr const char* word_of(Elements elements) {
+  switch (elements) {
+    case Elements::kTetrahedra:
+      return "tetrahedra";
+    case Elements::kHexahedra:
+      return "hexahedra";
+  }
+  return nullptr;
+}
+
 constexpr const char* word_of(Carries carries) {
   switch (carries) {
     case Carries::kNothing:

@@ -66,8 +66,7 @@ Json schema_of(const Key& key, const Json& standard) {
       break;
     case KeyType::kItems: {
       Json properties = Json::object();
-      const Layer usual;
-      for (const Key& of : key.items) properties[of.name] = schema_of(of, of.get(&usual));
+      for (const Key& of : key.items) properties[of.name] = schema_of(of, of.get(key.usual_item));
       out["type"] = "array";
       out["items"] = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
       out["maxItems"] = kMostItems;

@@ -176,10 +176,11 @@ Key layers_key() {
       "layers that a probe breaks through, from the surface down, at most {}; below the last one is the law of "
       "`stiffness`",
       kMostLayers);
+  static const Layer usual;
+  out.usual_item = &usual;
   out.items = layer_keys();
   out.get = [items = out.items](const void* owner) {
     Json list = Json::array();
-    const Layer usual;
     for (const Layer& layer : static_cast<const LevelNode*>(owner)->deformable->layers) {
       Json item = Json::object();
       for (const Key& key : items)
@@ -194,6 +195,56 @@ Key layers_key() {
       for (const Key& key : items)
         if (value[i].contains(key.name)) key.set(&layers[i], value[i][key.name]);
     static_cast<LevelNode*>(owner)->deformable->layers = Layers(std::move(layers));
+  };
+  return out;
+}
+
+// Keys of an item of `materials`; their owner is a TissuePart.
+std::vector<Key> tissue_part_keys() {
+  const auto p = [](auto member) {
+    return [member](void* owner) -> auto& {
+      return static_cast<TissuePart*>(owner)->*member;
+    };
+  };
+  const Range young{0.0, SoftBodyRange::kYoung.max}, density{0.0, SoftBodyRange::kDensity.max};
+  std::vector<Key> keys;
+  keys.push_back(text("name", KeyType::kText, p(&TissuePart::name),
+                      "a physical group of the file `mesh`, or a node whose closed mesh lies in the tissue"));
+  keys.push_back(
+      number("young", "Pa", {young, {50.0, 1e9}}, p(&TissuePart::young), "its Young's modulus; 0: the body's"));
+  keys.push_back(
+      number("density", "kg/m3", {density, {10.0, 25e3}}, p(&TissuePart::density), "its density; 0: the body's"));
+  keys.push_back(number("damping", "1", {{0.0, 1e6}, {0.1, 100.0}}, p(&TissuePart::damping),
+                        "factor on the body's `rayleigh` beta"));
+  return keys;
+}
+
+Key materials_key() {
+  Key out;
+  out.name = "materials";
+  out.type = KeyType::kItems;
+  out.doc =
+      "parts of the tissue with a material of their own (a lump, a group of the file); where two overlap the later "
+      "one counts";
+  static const TissuePart usual;
+  out.usual_item = &usual;
+  out.items = tissue_part_keys();
+  out.get = [items = out.items](const void* owner) {
+    Json list = Json::array();
+    for (const TissuePart& part : static_cast<const LevelNode*>(owner)->soft_body->materials) {
+      Json item = Json::object();
+      for (const Key& key : items)
+        if (Json value = key.get(&part); value != key.get(&usual) || key.name == "name") item[key.name] = value;
+      list.push_back(std::move(item));
+    }
+    return list;
+  };
+  out.set = [items = out.items](void* owner, const Json& value) {
+    std::vector<TissuePart> parts(value.size());
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      for (const Key& key : items)
+        if (value[i].contains(key.name)) key.set(&parts[i], value[i][key.name]);
+    static_cast<LevelNode*>(owner)->soft_body->materials = std::move(parts);
   };
   return out;
 }
@@ -481,6 +532,9 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
   keys.push_back(number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell),
                         fmt::format("lattice cell; 0: sized for some {} tetrahedra", kUsualTets)));
+  keys.push_back(choice("elements", s(&S::elements),
+                        "of the lattice: `tetrahedra`, fitted to the surface; `hexahedra`, whole even cells that count "
+                        "by their part inside it, and neither lock nor resist bending too much"));
   keys.push_back(
       box("focus", s(&S::focus),
           "box in the object frame with cells of `cell`, growing to six times outside; left out: even cells"));
@@ -511,6 +565,7 @@ std::vector<Key> soft_body_keys() {
              "`split`, the lattice with its force smeared and an analytic dent in series"));
   keys.push_back(vector("velocity", "m/s", {kVelocityRange, {-10.0, 10.0}}, s(&S::velocity),
                         "at the beginning, in the world; not of a tool; one number points down (-Y)"));
+  keys.push_back(materials_key());
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, s(&S::error),
                         "error budget: takes the cheapest unstated cell, soft step, solver and, of a tool, force whose "
                         "measured error is within it; 0: none"));

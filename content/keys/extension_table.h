@@ -42,9 +42,10 @@ struct Key {
   Range usual;                                      // `validate` queries values outside of it, except 0
   std::vector<std::string> (*choices)() = nullptr;  // of a choice: its words, including registered ones
   std::string doc;
-  std::vector<Key> items;  // of a list of objects: their keys; the owner of these is a Layer
-  bool alias = false;      // sets other keys; never saved
-  bool whole = false;      // a number without a fraction
+  std::vector<Key> items;            // of a list of objects: their keys
+  const void* usual_item = nullptr;  // the owner of these, with its defaults
+  bool alias = false;                // sets other keys; never saved
+  bool whole = false;                // a number without a fraction
   std::function<Json(const void*)> get;
   std::function<void(void*, const Json&)> set;  // requires a checked value
 };

@@ -39,7 +39,7 @@ Result<SoftPreview> preview_soft_body(const BuiltMesh& surface, const SoftBody& 
   preview.parts = count_parts(tets);
   preview.parts_lost = tets.report.parts_dropped;
   preview.quality = tets.quality;
-  preview.volume = total_volume(tets);
+  preview.volume = tissue_volume(tets);
   preview.wall = tets.report.wall;
   preview.step_ms = step_ms(preview.tetrahedra, machine_slowness());
   preview.notes = std::move(tets.report.notes);

@@ -16,7 +16,7 @@ namespace {
 
 fs::path g_soft_store;
 
-constexpr std::uint64_t kBegin = 0x33746f6f66546c50, kEnd = ~kBegin;  // of a file
+constexpr std::uint64_t kBegin = 0x34746f6f66546c50, kEnd = ~kBegin;  // of a file
 
 // A structured binding names every member: a new one stops the build here.
 void visit_members(auto& io, auto& of, const BuiltMesh*) {
@@ -40,9 +40,11 @@ void visit_members(auto& io, auto& of, const DrawMesh*) {
   io(vertices, indices, parts);
 }
 void visit_members(auto& io, auto& of, const TetMesh*) {
-  auto& [name, nodes, free_count, handle_count, tets, embedding, samples, parts, start, quality, report] = of;
-  ASSERT(parts.empty() && samples.empty());  // what it carries, and how it is touched, belongs to a World
-  io(name, nodes, free_count, handle_count, tets, embedding, start, quality, report);
+  auto& [name, nodes, free_count, handle_count, tets, cells, volume, factors, group, embedding, samples, parts, start,
+         quality, report] = of;
+  // What it carries, how it is touched and what parts of it are made of belongs to a World.
+  ASSERT(parts.empty() && samples.empty() && factors.empty());
+  io(name, nodes, free_count, handle_count, tets, cells, volume, group, embedding, start, quality, report);
 }
 void visit_members(auto& io, auto& of, const TetReport*) {
   auto& [cell, coarsest, wall, parts_dropped, volume_dropped, thin, least_thickness, thinnest, notes, findings] = of;
@@ -53,8 +55,8 @@ void visit_members(auto& io, auto& of, const Note*) {
   io(what, cure, code, about);
 }
 void visit_members(auto& io, auto& of, const SoftParts*) {
-  auto& [surface, tets, notes] = of;
-  io(surface, tets, notes);
+  auto& [surface, tets, notes, groups] = of;
+  io(surface, tets, notes, groups);
 }
 
 template <class T>
@@ -162,6 +164,7 @@ LevelNode only_tissue(const LevelNode& node) {
   body.fill = node.soft_body->fill;
   body.thickness = node.soft_body->thickness;
   body.mesh = node.soft_body->mesh;
+  body.elements = node.soft_body->elements;
   body.pinned = node.soft_body->pinned;
   if (node.handle) out.handle.emplace().box = node.handle->box;
   return out;
@@ -175,6 +178,7 @@ std::uint64_t soft_key(const LevelNode& node, const LevelMesh* mesh, const mat4&
   hash.add(body.cell);
   add_box(hash, body.focus);
   hash.add(static_cast<int>(body.fill));
+  hash.add(static_cast<int>(body.elements));
   hash.add(body.thickness);
   add_text(hash, body.mesh);
   add_named_file(hash, folder, body.mesh);

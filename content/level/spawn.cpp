@@ -15,6 +15,7 @@
 #include "content/level/spawn_relief.h"
 #include "content/level/spawn_soft.h"
 #include "content/level/spawn_state.h"
+#include "content/level/tissue_materials.h"
 #include "content/level/spawn_varying.h"
 #include "content/tets/surface_samples.h"
 
@@ -147,6 +148,8 @@ class Spawner {
     state_.say_preparing(n, node.name);
     Result<SoftParts> parts = find_soft_parts(node, mesh, mat4(world_to(pose) * to_world), state_.folder);
     if (!parts) return state_.around(n, parts.error());
+    if (Status s = set_materials(level_, node, world_to(pose), state_.motions.world, *parts); !s)
+      return state_.around(n, s.error());
     tetrahedra_ += static_cast<double>(parts->tets.tets.size());
     if (Status s = state_.within(n, LevelBudget::ask(limits::kTets, tetrahedra_)); !s) return s;
     for (const std::string& note : parts->notes) state_.notes.push_back(node.soft_body->mesh + ": " + note);

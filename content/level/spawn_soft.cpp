@@ -7,13 +7,17 @@
 #include "content/level/inner_sheet.h"
 #include "content/mesh/mesh_refine.h"
 #include "content/tets/lattice.h"
+#include "content/tets/lattice_inside.h"
+#include "content/tets/surface_rays.h"
 #include "content/tets/tet_boundary.h"
 #include "content/tets/tet_embed.h"
 #include "content/tets/tet_file.h"
 #include "content/tets/tet_findings.h"
 #include "content/tets/tet_groups.h"
+#include "content/tets/tet_mass.h"
 #include "content/tets/tet_parts.h"
 #include "content/tets/tet_quality.h"
+#include "runtime/parallel.h"
 
 namespace pliant {
 namespace {
@@ -27,15 +31,17 @@ constexpr double kFocusOverBox = 2.0;   // [1] radius of the lattice's focus ove
 
 // The tetrahedra of the body's file, in the object frame.
 Result<TetMesh> read_tets(const std::string& name, const std::string& file, const mat4& to_object,
-                          const std::filesystem::path& folder, std::vector<std::string>& notes) {
+                          const std::filesystem::path& folder, SoftParts& parts) {
   Result<TetFile> read = load_named_tets(folder, file);
   if (!read) return read.error();
-  notes = std::move(read->notes);
+  parts.notes = std::move(read->notes);
+  parts.groups = std::move(read->groups);
   const dmat4 m(to_object);
   TetMesh mesh;
   mesh.name = name;
   mesh.nodes = std::move(read->nodes);
   mesh.tets = std::move(read->tets);
+  mesh.group = std::move(read->group);
   for (dvec3& p : mesh.nodes) p = dvec3(m * glm::dvec4(p, 1.0));
   if (glm::determinant(dmat3(m)) < 0.0)
     for (Tet& tet : mesh.tets) std::swap(tet[2], tet[3]);
@@ -45,6 +51,23 @@ Result<TetMesh> read_tets(const std::string& name, const std::string& file, cons
                    "give the node and its parents a scale other than 0"};
   put_in_order(mesh, {});
   return mesh;
+}
+
+constexpr double kSameBody = 0.25;  // [1] of volume: tetrahedra of a file and the surface drawn over them
+
+// The tetrahedra of a file weigh what the surface over them encloses, unless that is another body.
+void weigh(const Mesh& surface, TetMesh& mesh) {
+  const MassProperties whole = mass_properties(surface);
+  const double volume = total_volume(mesh);
+  if (surface.closed && std::abs(whole.volume - volume) < kSameBody * volume) return match_mass(whole, mesh);
+  mesh.report.notes.push_back(
+      {surface.closed ? fmt::format("encloses {:.3g} m3, and its tetrahedra fill {:.3g}: these are what it weighs",
+                                    whole.volume, volume)
+                      : std::string("is an open surface over the tetrahedra of a file: these are what it weighs"),
+       surface.closed ? "take the surface that the tetrahedra were made of, or leave its mesh out"
+                      : "close it, or leave its mesh out",
+       "tissue.weight",
+       {}});
 }
 
 // [m] Mean over the edges of all tetrahedra.
@@ -112,11 +135,23 @@ Primitive boundary_primitive(const TetMesh& mesh) {
 
 namespace {
 
+// Where the tissue of each node is: the nodes of whole cells that lie outside stand for the surface next to them.
+std::vector<dvec3> tissue_places(const TetMesh& mesh, const Mesh& surface) {
+  std::vector<dvec3> places = mesh.nodes;
+  if (mesh.cells.empty()) return places;
+  const Inside inside(surface);
+  parallel_for(places.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n)
+      if (!inside(places[n])) places[n] = closest_of(surface, places[n]).place;
+  });
+  return places;
+}
+
 Result<FilledBody> fill_body(const BuiltMesh& surface, const SoftBody& body, const Handle6* handle,
                              const std::optional<LatticeFocus>& focus, const std::stop_token& stop) {
-  Result<TetMesh> tets = fill_surface(surface.mesh, {body.cell, body.fill, body.thickness, stop, focus});
+  Result<TetMesh> tets = fill_surface(surface.mesh, {body.cell, body.fill, body.thickness, stop, focus, body.elements});
   if (!tets) return tets.error();
-  Result<std::vector<NodeGroup>> group = group_nodes(tets->nodes, surface, body, handle);
+  Result<std::vector<NodeGroup>> group = group_nodes(tissue_places(*tets, surface.mesh), surface, body, handle);
   if (!group) return group.error();
   FilledBody tissue{std::move(*tets), std::move(*group)};
   const std::uint32_t kept = drop_small_parts(tissue.tets, tissue.group);
@@ -143,6 +178,7 @@ Result<FilledBody> make_tissue(const BuiltMesh& surface, const SoftBody& body, c
 }
 
 std::optional<Note> locking_doubt(const SoftBody& body, std::size_t tetrahedra) {
+  if (body.mesh.empty() && body.elements == Elements::kHexahedra) return std::nullopt;  // mean gradients do not lock
   const double bound = tetrahedra < kManyTets ? kLockingPoisson : kLockingPoissonOfMany;
   if (body.poisson < bound) return std::nullopt;
   return Note{fmt::format("has a Poisson's ratio of {:g}: from {:g} on its {} tetrahedra lock, and it is over 10 % too "
@@ -200,12 +236,13 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     parts.tets = std::move(tissue->tets);
     group = std::move(tissue->group);
   } else {
-    Result<TetMesh> tets = read_tets(node.name, body.mesh, to_object, folder, parts.notes);
+    Result<TetMesh> tets = read_tets(node.name, body.mesh, to_object, folder, parts);
     if (!tets) return tets.error();
     parts.tets = std::move(*tets);
     const Primitive boundary = boundary_primitive(parts.tets);
     if (!mesh)
       if (Status s = build({&boundary, 1}, mat4(1.0f)); !s) return s.error();
+    if (mesh) weigh(parts.surface.mesh, parts.tets);
     parts.tets.quality = measure_quality(parts.tets.nodes, parts.tets.tets);
     Result<std::vector<NodeGroup>> grouped = group_nodes(parts.tets.nodes, parts.surface, body, handle);
     if (!grouped) return grouped.error();

@@ -12,8 +12,9 @@ namespace pliant {
 
 struct SoftParts {
   BuiltMesh surface;
-  TetMesh tets;                    // nodes in the order free, handle, pinned
-  std::vector<std::string> notes;  // on the tetrahedra file
+  TetMesh tets;                     // nodes in the order free, handle, pinned
+  std::vector<std::string> notes;   // on the tetrahedra file
+  std::vector<std::string> groups;  // names of the file's physical groups: of TetMesh::group, from 1 on
 };
 
 // From this Poisson's ratio on, linear tetrahedra lock. A patch pressed into a block with the lattice's usual number of

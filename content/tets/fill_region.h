@@ -15,6 +15,8 @@ class FillRegion {
   // [m] Contains the region.
   Box box() const;
   bool operator()(dvec3 p) const;
+  // Whether it is what the surface encloses, no more and no less.
+  bool is_enclosed() const { return how_ == How::kEnclosed; }
   // Whether a box is known to be entirely inside or entirely outside.
   bool is_uniform(dvec3 low, dvec3 high) const { return how_ == How::kEnclosed && inside_.is_uniform(low, high); }
   // The boundary crossing between a point inside and one outside: share [1] of the way.

@@ -7,9 +7,11 @@
 #include <numeric>
 
 #include "content/files/limits.h"
+#include "content/tets/lattice_cells.h"
 #include "content/tets/lattice_stuffing.h"
 #include "content/tets/tet_embed.h"
 #include "content/tets/tet_findings.h"
+#include "content/tets/tet_mass.h"
 #include "content/tets/tet_order.h"
 #include "content/tets/tet_quality.h"
 #include "runtime/parallel.h"
@@ -141,20 +143,31 @@ Result<TetMesh> fill_surface(const Mesh& surface, const LatticeOptions& options)
   const FillRegion region(surface, inside, shape, options.fill, options.thickness);
   if (shape.kind == SurfaceKind::kSheet && options.fill == Fill::kWall && !(options.thickness > 0.0))
     return nothing_held(surface, shape, options);
-  Result<Found> found = options.cell > 0.0 ? stuff_cell(surface, region, options, progress)
-                                           : stuff_usual(surface, region, options, progress);
-  if (!found) return found.error();
-  if (found->stuffing.tets.empty()) return nothing_held(surface, shape, options);
   TetMesh mesh;
   mesh.name = surface.name;
-  mesh.nodes = std::move(found->stuffing.nodes);
-  mesh.tets = std::move(found->stuffing.tets);
+  if (options.elements == Elements::kHexahedra) {
+    if (options.focus)
+      return Error{"mesh `" + surface.name + "`", "has a `focus`, and hexahedra are of one size",
+                   "leave out `focus`, or take `elements` `tetrahedra`"};
+    const Result<double> cell = fill_cells(surface, region, options.cell, progress, options.stop, mesh);
+    if (!cell) return cell.error();
+    mesh.report.cell = *cell;
+  } else {
+    Result<Found> found = options.cell > 0.0 ? stuff_cell(surface, region, options, progress)
+                                             : stuff_usual(surface, region, options, progress);
+    if (!found) return found.error();
+    mesh.nodes = std::move(found->stuffing.nodes);
+    mesh.tets = std::move(found->stuffing.tets);
+    mesh.report.cell = found->cell;
+  }
+  if (mesh.tets.empty()) return nothing_held(surface, shape, options);
+  match_mass(mass_of(surface, region, region.is_enclosed()), mesh);
   put_in_order(mesh, {});
   mesh.quality = measure_quality(mesh.nodes, mesh.tets);
-  mesh.report.cell = mesh.report.coarsest = found->cell;
+  mesh.report.coarsest = mesh.report.cell;
   if (options.focus)
     for (const dvec3& node : mesh.nodes)
-      mesh.report.coarsest = std::max(mesh.report.coarsest, found->cell * options.focus->width_at(node));
+      mesh.report.coarsest = std::max(mesh.report.coarsest, mesh.report.cell * options.focus->width_at(node));
   report_wall(shape, options.fill, options.thickness, mesh.report);
   report_thin_places(shape, region, options, mesh);
   return mesh;

@@ -1,4 +1,4 @@
-// The tetrahedra of a soft body from its surface.
+// The tetrahedra or hexahedra of a soft body from its surface. Of the first:
 //
 // Isosurface stuffing (Labelle & Shewchuk, "Isosurface stuffing: fast tetrahedral meshes with good dihedral angles",
 // 2007) on a body-centred cubic lattice. Inner lattice tetrahedra are kept; those that the surface cuts are warped and
@@ -30,6 +30,7 @@ struct LatticeOptions {
   double thickness = 0.0;
   std::stop_token stop;               // cancels the filling with an error
   std::optional<LatticeFocus> focus;  // where the lattice is finer: `cell` is the size in its middle
+  Elements elements = Elements::kTetrahedra;
 };
 
 // Fills a surface (small holes do not matter) with tetrahedra, without embedding: a wall's cavity by `fill`, an open

@@ -15,6 +15,7 @@ constexpr double kFarthestNode = 1e9;  // [m]
 // Six volumes over the cube of the longest edge from a corner (0.7 for a regular tetrahedron). Below it, an element
 // counts as flat.
 constexpr double kFlat = 1e-8;
+constexpr std::size_t kMostGroups = 60'000;  // physical groups that are told apart
 
 double longest_edge(std::span<const dvec3> nodes, const Tet& t) {
   double longest = 0.0;
@@ -40,9 +41,22 @@ Result<TetFile> clean(RawTets raw, const std::string& name) {
     if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthestNode))
       return Error{name, "has a node that is not a finite number within 1e9 m", "repair it, or scale it down"};
 
+  // Groups are numbered from 1 on, in the order of their tags.
+  std::map<std::int64_t, std::uint16_t> number_of{{0, std::uint16_t{0}}};
+  std::vector<std::int64_t> tags = raw.group;
+  std::sort(tags.begin(), tags.end());
+  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+  for (const std::int64_t tag : tags) {
+    if (tag == 0 || out.groups.size() >= kMostGroups) continue;
+    const auto named = raw.names.find(tag);
+    out.groups.push_back(named == raw.names.end() ? fmt::format("{}", tag) : named->second);
+    number_of[tag] = static_cast<std::uint16_t>(out.groups.size());
+  }
+
   std::size_t flat = 0, turned = 0;
   out.tets.reserve(raw.tets.size());
-  for (Tet t : raw.tets) {
+  for (std::size_t n = 0; n < raw.tets.size(); ++n) {
+    Tet t = raw.tets[n];
     const double longest = longest_edge(raw.nodes, t), size = 6.0 * tet_volume(raw.nodes, t);
     if (!(std::abs(size) > kFlat * longest * longest * longest)) {
       ++flat;
@@ -53,6 +67,9 @@ Result<TetFile> clean(RawTets raw, const std::string& name) {
       std::swap(t[2], t[3]);
     }
     out.tets.push_back(t);
+    if (out.groups.empty()) continue;
+    const auto found = number_of.find(raw.group[n]);
+    out.group.push_back(found == number_of.end() ? std::uint16_t{0} : found->second);
   }
   if (out.tets.empty())
     return raw.tets.empty()

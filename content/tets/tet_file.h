@@ -13,9 +13,11 @@
 namespace pliant {
 
 struct TetFile {
-  std::vector<dvec3> nodes;        // finite, each used by a tetrahedron
-  std::vector<Tet> tets;           // positive volume
-  std::vector<std::string> notes;  // on skipped, turned or dropped elements
+  std::vector<dvec3> nodes;          // finite, each used by a tetrahedron
+  std::vector<Tet> tets;             // positive volume
+  std::vector<std::string> notes;    // on skipped, turned or dropped elements
+  std::vector<std::uint16_t> group;  // of each tetrahedron: its physical group, from 1 on, 0 none; empty: none
+  std::vector<std::string> groups;   // their names, or numbers as text
 };
 
 // FORMAT(word, name, endings...): read_<word> in content/tets/tet_<word>.cpp.

@@ -61,7 +61,7 @@ void report_wall(const SurfaceShape& shape, Fill fill, double thickness, TetRepo
 
 void report_thin_places(const SurfaceShape& shape, const FillRegion& region, const LatticeOptions& options,
                         TetMesh& mesh) {
-  if (shape.samples.empty()) return;
+  if (shape.samples.empty() || !mesh.cells.empty()) return;  // whole cells have the section of what is thin
   TetReport& report = mesh.report;
   const double cells = options.cell > 0.0 ? kThinCellsOfNamed : kThinCells;
   const auto width_at = [&](dvec3 place) { return options.focus ? options.focus->width_at(place) : 1.0; };

@@ -1,9 +1,13 @@
 // Gmsh's .msh, versions 2 and 4.1, ASCII and binary in either byte order ("MSH file format", gmsh.info/doc). Sections
-// are between $Name and $EndName; only $Nodes and $Elements are read. Nodes have tags, in any order.
+// are between $Name and $EndName; $PhysicalNames, $Entities, $Nodes and $Elements are read. Nodes have tags, in any
+// order. Physical groups of volumes are kept: version 2 gives one per element, version 4 one per volume's entity.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
+#include <map>
 
 #include "content/files/limits.h"
 #include "content/tets/tet_clean.h"
@@ -41,6 +45,8 @@ class Msh {
       const std::string section(word.substr(1, 60));
       end_line();
       Status status = Done{};
+      if (section == "PhysicalNames") status = physical_names();
+      if (section == "Entities" && is_four_) status = entities();
       if (section == "Nodes") status = is_four_ ? nodes_4() : nodes_2();
       if (section == "Elements") status = is_four_ ? elements_4() : elements_2();
       if (!status) return status.error();
@@ -169,6 +175,53 @@ class Msh {
     return end_nodes();
   }
 
+  // Lines of dimension, tag and "name", in ASCII in binary files, too.
+  Status physical_names() {
+    std::string_view line;
+    std::size_t left = 0;
+    if (!text_.line(line)) return Done{};
+    left = static_cast<std::size_t>(std::strtoull(std::string(line).c_str(), nullptr, 10));
+    for (; left > 0 && text_.line(line); --left) {
+      const std::string row(line.substr(0, 300));
+      char* end = nullptr;
+      const long dimension = std::strtol(row.c_str(), &end, 10);
+      const long long tag = std::strtoll(end, &end, 10);
+      const std::size_t open = row.find('"'), close = row.rfind('"');
+      if (dimension == 3 && open != std::string::npos && close > open)
+        raw_.names[tag] = row.substr(open + 1, close - open - 1);
+      if (row.rfind("$End", 0) == 0)
+        return text_.fault("has fewer $PhysicalNames than it claims", "save the mesh again");
+    }
+    return Done{};
+  }
+
+  // Of each volume: its tag, and of its physical groups the first.
+  Status entities() {
+    const auto cut = [&] { return text_.fault("has damaged $Entities", "save the mesh again"); };
+    std::array<std::uint64_t, 4> count{};
+    for (std::uint64_t& each : count)
+      if (!size(each)) return cut();
+    for (int dimension = 0; dimension < 4; ++dimension)
+      for (std::uint64_t i = 0; i < count[static_cast<std::size_t>(dimension)]; ++i) {
+        std::int64_t tag = 0, group = 0, bounding = 0;
+        double place = 0.0;
+        std::uint64_t groups = 0, bounds = 0;
+        if (!integer(tag)) return cut();
+        for (int c = 0; c < (dimension == 0 ? 3 : 6); ++c)
+          if (!coordinate(place)) return cut();
+        if (!size(groups)) return cut();
+        for (std::uint64_t g = 0; g < groups; ++g) {
+          if (!integer(group)) return cut();
+          if (dimension == 3 && g == 0) volume_group_[tag] = std::abs(group);
+        }
+        if (dimension == 0) continue;
+        if (!size(bounds)) return cut();
+        for (std::uint64_t b = 0; b < bounds; ++b)
+          if (!integer(bounding)) return cut();
+      }
+    return Done{};
+  }
+
   Error bad_node(std::uint64_t number) const {
     return text_.fault(fmt::format("node {} is not a tag and three finite coordinates", number + 1),
                        "the file is damaged");
@@ -189,7 +242,7 @@ class Msh {
 
   // The nodes of one element.
   template <class ReadTag>
-  Status element(std::int64_t type, std::uint64_t number, ReadTag read_tag) {
+  Status element(std::int64_t type, std::uint64_t number, std::int64_t group, ReadTag read_tag) {
     Tet tet{};
     for (std::size_t n = 0; n < nodes_of(type); ++n) {
       std::uint64_t tag = 0;
@@ -207,6 +260,7 @@ class Msh {
     }
     if (type != kTetTypes[0]) ++raw_.second_order;
     raw_.tets.push_back(tet);
+    raw_.group.push_back(group);
     return Done{};
   }
 
@@ -232,7 +286,7 @@ class Msh {
     };
     for (std::int64_t i = 0; i < count;) {
       // ASCII: number, type, tags, nodes. Binary: type, count, tags; then for each: number, tags, nodes.
-      std::int64_t number = 0, type = 0, follow = 1, tags = 0, ignored = 0;
+      std::int64_t number = 0, type = 0, follow = 1, tags = 0;
       const bool headed =
           text_.binary() ? integer(type) && integer(follow) && integer(tags) : integer(number) && integer(type);
       if (!headed || follow < 1 || follow > count - i) return bad_element(static_cast<std::uint64_t>(i));
@@ -244,9 +298,10 @@ class Msh {
       if (!text_.binary() && !integer(tags)) return bad_element(static_cast<std::uint64_t>(i));
       for (std::int64_t e = 0; e < follow; ++e, ++i) {
         bool good = !text_.binary() || integer(number);
-        for (std::int64_t t = 0; t < tags && good; ++t) good = integer(ignored);
+        std::int64_t group = 0, ignored = 0;  // the first tag is the physical group
+        for (std::int64_t t = 0; t < tags && good; ++t) good = integer(t == 0 ? group : ignored);
         if (!good) return bad_element(static_cast<std::uint64_t>(i));
-        if (Status s = element(type, static_cast<std::uint64_t>(i), read_tag); !s) return s;
+        if (Status s = element(type, static_cast<std::uint64_t>(i), group, read_tag); !s) return s;
       }
     }
     return Done{};
@@ -263,6 +318,8 @@ class Msh {
       if (!integer(dimension) || !integer(entity) || !integer(type) || !size(in_block) || in_block > count - read)
         return text_.fault(fmt::format("has a damaged head of element block {} of {}", b + 1, blocks));
       if (nodes_of(type) == 0) end_line();
+      const auto of_volume = volume_group_.find(entity);
+      const std::int64_t group = dimension == 3 && of_volume != volume_group_.end() ? of_volume->second : 0;
       for (std::uint64_t i = 0; i < in_block; ++i, ++read) {
         Status status = Done{};
         if (nodes_of(type) == 0)
@@ -270,7 +327,7 @@ class Msh {
         else if (!size(number))
           return bad_element(read);
         else
-          status = element(type, read, [&](std::uint64_t& tag) { return size(tag); });
+          status = element(type, read, group, [&](std::uint64_t& tag) { return size(tag); });
         if (!status) return status;
       }
     }
@@ -281,7 +338,8 @@ class Msh {
   std::string name_;
   bool is_four_ = false, wide_ = true, has_elements_ = false;
   RawTets raw_;
-  std::vector<Tag> tags_;  // by tag
+  std::vector<Tag> tags_;                              // by tag
+  std::map<std::int64_t, std::int64_t> volume_group_;  // version 4: of each volume's entity
 };
 
 }  // namespace

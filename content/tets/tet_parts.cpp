@@ -1,6 +1,7 @@
 #include "content/tets/tet_parts.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "content/tets/tet_boundary.h"
 #include "content/tets/tet_quality.h"
@@ -17,7 +18,7 @@ DisjointSets parts_of(const TetMesh& mesh) {
   return sets;
 }
 
-// Keeps the tetrahedra marked in `keep`, and their nodes.
+// Keeps the tetrahedra marked in `keep`, and their nodes, which take over the mass of the others.
 void keep_only(const std::vector<std::uint8_t>& keep, TetMesh& mesh, std::vector<NodeGroup>& group) {
   std::vector<std::uint32_t> moved(mesh.nodes.size(), 0);
   std::vector<Tet> tets;
@@ -26,18 +27,32 @@ void keep_only(const std::vector<std::uint8_t>& keep, TetMesh& mesh, std::vector
     tets.push_back(mesh.tets[t]);
     for (const std::uint32_t corner : mesh.tets[t]) moved[corner] = 1;
   }
+  const double all = std::accumulate(mesh.volume.begin(), mesh.volume.end(), 0.0);
   std::uint32_t count = 0;
   for (std::size_t n = 0; n < moved.size(); ++n) {
     if (!moved[n]) continue;
     mesh.nodes[count] = mesh.nodes[n];
+    if (!mesh.volume.empty()) mesh.volume[count] = mesh.volume[n];
     group[count] = group[n];
     moved[n] = count++;
   }
   mesh.nodes.resize(count);
+  if (!mesh.volume.empty()) {
+    mesh.volume.resize(count);
+    const double kept = std::accumulate(mesh.volume.begin(), mesh.volume.end(), 0.0);
+    for (double& each : mesh.volume) each *= all / kept;
+  }
   group.resize(count);
   for (Tet& tet : tets)
     for (std::uint32_t& corner : tet) corner = moved[corner];
   mesh.tets = std::move(tets);
+  std::vector<LatticeCell> cells;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    if (!keep[kTetsOfCell * c]) continue;
+    cells.push_back(mesh.cells[c]);
+    for (std::uint32_t& corner : cells.back().nodes) corner = moved[corner];
+  }
+  mesh.cells = std::move(cells);
   mesh.free_count = mesh.node_count();
   mesh.quality = measure_quality(mesh.nodes, mesh.tets);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace pliant {
 namespace {
@@ -50,6 +51,10 @@ double total_volume(const TetMesh& mesh) {
   double sum = 0.0;
   for (const Tet& tet : mesh.tets) sum += tet_volume(mesh.nodes, tet);
   return sum;
+}
+
+double tissue_volume(const TetMesh& mesh) {
+  return mesh.volume.empty() ? total_volume(mesh) : std::accumulate(mesh.volume.begin(), mesh.volume.end(), 0.0);
 }
 
 TetQuality measure_quality(std::span<const dvec3> nodes, std::span<const Tet> tets) {

@@ -13,5 +13,7 @@ TetQuality measure_quality(std::span<const dvec3> nodes, std::span<const Tet> te
 // [m3] signed: positive for the corner order that Tet requires.
 double tet_volume(std::span<const dvec3> nodes, const Tet& tet);
 double total_volume(const TetMesh& mesh);
+// [m3] Of tissue: what the body's mass is of.
+double tissue_volume(const TetMesh& mesh);
 
 }  // namespace pliant

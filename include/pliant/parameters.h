@@ -169,7 +169,23 @@ enum class TissueLaw : std::uint8_t {
   kFung,          // exponential: stiffens with strain
 };
 
-// Tissue: FEM on tetrahedra (P2). Keys of PLIANT_soft_body.
+// Elements of a lattice.
+enum class Elements : std::uint8_t {
+  kTetrahedra,  // fitted to the surface
+  kHexahedra,   // whole cells, weighted by their part inside the surface (content/tets/lattice_cells.h)
+};
+
+// A part of the tissue with a material of its own: a physical group of the tetrahedra file, or what a mesh inside
+// encloses.
+struct TissuePart {
+  std::string name;      // of the group, or of the node with the mesh
+  double young = 0.0;    // [Pa] 0: the body's
+  double density = 0.0;  // [kg/m3] 0: the body's
+  double damping = 1.0;  // [1] factor on rayleigh's beta
+  bool operator==(const TissuePart&) const = default;
+};
+
+// Tissue: co-rotational FEM on tetrahedra or hexahedra (P2). Keys of PLIANT_soft_body.
 struct SoftBodyParameters {
   TissueLaw law = TissueLaw::kCorotational;
   double young = 5e3;                    // [Pa] at small strain
@@ -178,13 +194,15 @@ struct SoftBodyParameters {
   double density = 1000.0;               // [kg/m3]
   std::array<double, 2> rayleigh{0, 0};  // alpha [1/s], beta [s]
   double cell = 0.0;                     // [m] lattice cell; 0: sized for some 2,000 tetrahedra
-  Box focus;                             // [m] object frame: cells have this size here and grow away from it
-  Fill fill = Fill::kSolid;              // what the lattice fills
-  double thickness = 0.0;                // [m] of a wall, inwards from the surface; 0: as modelled
-  std::string mesh;                      // tetrahedra file, instead of `cell`
-  Box pinned;                            // [m] object frame; empty: none (or the attribute _PINNED)
-  double friction_static = 0.4;          // [1]
-  double friction_sliding = 0.3;         // [1]
+  Elements elements = Elements::kTetrahedra;
+  std::vector<TissuePart> materials;  // of parts of the tissue; a later one counts where two overlap
+  Box focus;                          // [m] object frame: cells have this size here and grow away from it
+  Fill fill = Fill::kSolid;           // what the lattice fills
+  double thickness = 0.0;             // [m] of a wall, inwards from the surface; 0: as modelled
+  std::string mesh;                   // tetrahedra file, instead of `cell`
+  Box pinned;                         // [m] object frame; empty: none (or the attribute _PINNED)
+  double friction_static = 0.4;       // [1]
+  double friction_sliding = 0.3;      // [1]
   SolverKind solver = SolverKind::kAuto;
   double error = 0.0;  // [1] error budget from which unset model parameters are chosen; 0: none
   UnderGravity under_gravity = UnderGravity::kFalls;

@@ -5,6 +5,7 @@
 #include "content/level/soft_preview.h"
 #include "content/level/spawn_soft.h"
 #include "content/level_file.h"
+#include "content/tets/lattice_errors.h"
 #include "content/tets/step_cost.h"
 #include "content/tets/tet_boundary.h"
 #include "content/tets/tet_file.h"
@@ -33,7 +34,8 @@ OrderedJson describe(const TetMesh& mesh) {
           {"tetrahedra", mesh.tets.size()},
           {"boundary_triangles", boundary_triangles(mesh.tets).size()},
           {"parts", count_parts(mesh)},
-          {"volume_m3", total_volume(mesh)},
+          {"cells", mesh.cells.size()},
+          {"volume_m3", tissue_volume(mesh)},
           {"smallest_dihedral_deg", mesh.quality.smallest_dihedral * kDegrees},
           {"largest_dihedral_deg", mesh.quality.largest_dihedral * kDegrees},
           {"worst_ratio", mesh.quality.worst_ratio},
@@ -95,6 +97,16 @@ OrderedJson describe_tissue(const Level& level) {
   for (auto [entity, body] : world->registry.view<const SoftBody>()) {
     const TetMesh& tets = world->tet_meshes[body.tets];
     OrderedJson tissue = describe(tets);
+    tissue["mass_kg"] = body.density * tissue_volume(tets);
+    if (const LatticeErrors errors = expected_errors(tets, world->meshes[body.collision_mesh], body.poisson);
+        errors.across > 0.0) {
+      tissue["across"] = errors.across;
+      tissue["bending_error"] = errors.bending;
+      tissue["torsion_error"] = errors.torsion;
+      tissue["section_error"] = errors.section;
+      tissue["contact_radius_m"] = errors.contact_radius;
+      tissue["contact_error"] = errors.contact;
+    }
     tissue["problems"] = messages(tets.report.notes);
     for (const Note& finding : tets.report.findings) tissue["problems"].push_back(finding.message());
     if (const std::optional<Note> doubt = locking_doubt(body, tets.tets.size()))
@@ -123,6 +135,16 @@ void print_tissue(const OrderedJson& tissue) {
     print("    {}about {:.2g} ms a soft step (an estimate)\n",
           cells_text(body["cell_m"].get<double>(), body["coarsest_cell_m"].get<double>()),
           body["step_ms"].get<double>());
+    print("    {:.4g} kg", body["mass_kg"].get<double>());
+    if (body.contains("across"))
+      print(
+          ", {:.1f} cells across at the median: its section {:+.0f} %, bending {:+.0f} %, torsion {:+.0f} %, contacts "
+          "of {} {:+.0f} % of "
+          "the stiffness (estimates)",
+          body["across"].get<double>(), 1e2 * body["section_error"].get<double>(),
+          1e2 * body["bending_error"].get<double>(), 1e2 * body["torsion_error"].get<double>(),
+          length_text(body["contact_radius_m"].get<double>()), 1e2 * body["contact_error"].get<double>());
+    print("\n");
     for (const OrderedJson& problem : body.value("problems", OrderedJson::array()))
       print("    {}\n", problem.get<std::string>());
   }

@@ -35,18 +35,23 @@ struct Weight {
   dvec3 centre{0};
 };
 
-// Nodal masses from elements, as in Tissue.
+// Nodal masses as in Tissue.
 Weight weight_of(const SoftBody& body, const TetMesh& mesh) {
   Weight out;
-  for (const Tet& tet : mesh.tets) {
-    const dvec3 a = mesh.nodes[tet[0]];
-    const double volume = dot(cross(mesh.nodes[tet[1]] - a, mesh.nodes[tet[2]] - a), mesh.nodes[tet[3]] - a) / 6.0;
-    for (const std::uint32_t node : tet) {
-      if (node >= mesh.pinned_begin()) continue;  // pinned: carried by the world
-      out.mass += body.density * volume / 4.0;
-      out.centre += body.density * volume / 4.0 * mesh.nodes[node];
-    }
+  for (std::size_t node = 0; node < mesh.volume.size() && node < mesh.pinned_begin(); ++node) {
+    out.mass += body.density * mesh.volume[node];
+    out.centre += body.density * mesh.volume[node] * mesh.nodes[node];
   }
+  if (mesh.volume.empty())
+    for (const Tet& tet : mesh.tets) {
+      const dvec3 a = mesh.nodes[tet[0]];
+      const double volume = dot(cross(mesh.nodes[tet[1]] - a, mesh.nodes[tet[2]] - a), mesh.nodes[tet[3]] - a) / 6.0;
+      for (const std::uint32_t node : tet) {
+        if (node >= mesh.pinned_begin()) continue;  // pinned: carried by the world
+        out.mass += body.density * volume / 4.0;
+        out.centre += body.density * volume / 4.0 * mesh.nodes[node];
+      }
+    }
   if (out.mass > 0.0) out.centre /= out.mass;
   return out;
 }

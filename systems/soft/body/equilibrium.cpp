@@ -145,6 +145,9 @@ Unloaded find_unloaded(const TetMesh& tets, const SoftBody& body, dvec3 gravity,
   TetMesh guess;
   guess.nodes = tets.nodes;
   guess.tets = tets.tets;
+  guess.cells = tets.cells;
+  guess.volume = tets.volume;
+  guess.factors = tets.factors;
   guess.free_count = tets.free_count;
   guess.handle_count = tets.handle_count;
   std::vector<dvec3> way(tets.nodes.size(), dvec3(0));

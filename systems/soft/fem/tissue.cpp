@@ -64,7 +64,8 @@ void add(Vector& to, std::uint32_t node, dvec3 f) {
 
 // K' enters A with T^2 + T beta, f_el the right-hand side with T.
 struct Tissue::Scale {
-  double T, stiffness;
+  double T, beta;
+  double stiffness(double damping) const { return T * T + T * beta * damping; }
 };
 
 Tissue::Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_t moving)
@@ -73,7 +74,11 @@ Tissue::Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_
   ASSERT(mesh.pinned_begin() <= mesh.node_count());
   ASSERT(material.young > 0 && material.density > 0 && material.poisson > -1 && material.poisson < 0.5);
   set_material(material);
-  take_elements();
+  if (mesh.cells.empty())
+    take_elements();
+  else
+    hexahedra_ = make_hexahedra(mesh);
+  take_masses();
   lay_out();
   right_.setZero(3 * mesh.pinned_begin());
   force_.setZero(3 * mesh.node_count());
@@ -89,37 +94,63 @@ void Tissue::set_material(const TissueMaterial& now) {
 }
 
 void Tissue::take_elements() {
-  mass_.assign(mesh_.nodes.size(), 0.0);
-  std::vector<Tet> tets = mesh_.tets;
-  for (Tet& tet : tets) std::sort(tet.begin(), tet.end());  // a pair is then always in the upper triangle
-  std::sort(tets.begin(), tets.end());
-  double total = 0.0;
-  for (const Tet& tet : tets) {
-    ASSERT(tet[3] < mesh_.node_count());
+  struct Element {
+    Tet tet;
+    ElementFactors factors;
+  };
+  std::vector<Element> elements;
+  elements.reserve(mesh_.tets.size());
+  for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+    elements.push_back({mesh_.tets[t], mesh_.factors.empty() ? ElementFactors{} : mesh_.factors[t]});
+    std::sort(elements[t].tet.begin(), elements[t].tet.end());  // a pair is then always in the upper triangle
+  }
+  std::sort(elements.begin(), elements.end(), [](const Element& a, const Element& b) { return a.tet < b.tet; });
+  for (const Element& element : elements) {
+    ASSERT(element.tet[3] < mesh_.node_count());
     std::array<dvec3, 3> b;
-    const double volume = rest_shape(mesh_.nodes, tet, b);
+    const double volume = rest_shape(mesh_.nodes, element.tet, b);
     if (volume == 0.0) continue;
     if (packs_.empty() || packs_.back().count == kElementLanes) packs_.emplace_back();
     ElementPack& pack = packs_.back();
     const std::size_t lane = pack.count++;
-    pack.node[lane] = tet;
-    pack.volume[lane] = volume;
+    pack.node[lane] = element.tet;
+    pack.volume[lane] = element.factors.stiffness * volume;  // forces are linear in both
     for (int k = 0; k < 3; ++k)
       for (int d = 0; d < 3; ++d) pack.gradient[k][d][lane] = b[k][d];
     pack.q[0][lane] = 1.0;
-    for (const std::uint32_t node : tet) mass_[node] += material_.density * volume / 4;
-    total += material_.density * volume;
+    if (!mesh_.factors.empty()) damping_.push_back(element.factors.damping);
+  }
+}
+
+void Tissue::take_masses() {
+  std::vector<double> volume = mesh_.volume;
+  if (volume.empty()) {
+    volume.assign(mesh_.nodes.size(), 0.0);
+    std::vector<Tet> tets = mesh_.tets;
+    for (Tet& tet : tets) std::sort(tet.begin(), tet.end());
+    std::sort(tets.begin(), tets.end());
+    std::array<dvec3, 3> gradient;
+    for (const Tet& tet : tets)
+      for (const std::uint32_t node : tet) volume[node] += rest_shape(mesh_.nodes, tet, gradient) / 4;
+  }
+  double total = 0.0;
+  mass_.clear();
+  for (const double each : volume) {
+    mass_.push_back(material_.density * each);
+    total += mass_.back();
   }
   const double feather =
       total > 0 ? kFeather * total / static_cast<double>(mass_.size()) : material_.density * kFeather;
   for (double& m : mass_)
-    if (m == 0.0) m = feather;
+    if (!(m > 0.0)) m = feather;
 }
 
 void Tissue::lay_out() {
   std::vector<Tet> stiff;
   for (const ElementPack& pack : packs_)
     stiff.insert(stiff.end(), pack.node.begin(), pack.node.begin() + static_cast<std::ptrdiff_t>(pack.count));
+  for (const Hexahedron& hex : hexahedra_)
+    for (const Tet& pairs : pairs_of(hex.node)) stiff.push_back(pairs);
   inner_ = make_pattern(moving_, stiff);
   for (std::uint32_t row = 0; row < moving_; ++row)
     for (std::uint32_t k = inner_.diagonal[row] + 1; k < inner_.first[row + 1]; ++k)
@@ -149,19 +180,20 @@ void Tissue::lay_out() {
   for (const Pair& pair : corner)
     if (pair.first < pair.second)
       corner_mirror_.push_back({place(corner, pair.first, pair.second), place(corner, pair.second, pair.first)});
-  for (const Tet& tet : stiff) {
-    Slots slots;
+  const auto slots_of = [&](const auto& node, auto& slots) {
     std::size_t k = 0;
-    for (int a = 0; a < 4; ++a)
-      for (int b = a; b < 4; ++b) {
-        const std::uint32_t i = tet[a], j = tet[b];
+    for (std::size_t a = 0; a < node.size(); ++a)
+      for (std::size_t b = a; b < node.size(); ++b) {
+        const std::uint32_t i = node[a], j = node[b];
         slots[k++] = j >= end      ? kNoElement
                      : j < moving_ ? inner_.find(i, j)
                      : i < moving_ ? place(outer, i, j)
                                    : place(corner, i, j);
       }
-    slots_.push_back(slots);
-  }
+  };
+  for (const ElementPack& pack : packs_)
+    for (std::size_t lane = 0; lane < pack.count; ++lane) slots_of(pack.node[lane], slots_.emplace_back());
+  for (const Hexahedron& hex : hexahedra_) slots_of(hex.node, hex_slots_.emplace_back());
 }
 
 double* Tissue::block(std::uint32_t row, std::uint32_t column, std::uint32_t slot) {
@@ -188,7 +220,7 @@ void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) 
   for (Entry& entry : corner_) entry.value.setZero();
   right_.setZero();
   force_.setZero();
-  const Scale scale{T, T * T + T * material_.beta};
+  const Scale scale{T, material_.beta};
   if (law_) {
     assemble_law(scale, begin);
     mirror();
@@ -202,18 +234,21 @@ void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) 
   };
   ElementVisit now;
   const Slots* slots = slots_.data();
+  const double* damping = damping_.data();
   for (ElementPack& pack : packs_) {
     visit(pack, x_, now);
     std::memcpy(pack.q, now.q, sizeof now.q);
     for (std::size_t lane = 0; lane < pack.count; ++lane, ++slots) {
       add_forces(pack.node[lane], lane, now, 1.0, mesh_.node_count(), force_);
-      add_blocks(pack, lane, *slots, scale, now);
-      if (pack.node[lane][3] >= end) add_prescribed(pack, lane, scale, now);
+      const double stiffness = scale.stiffness(damping_.empty() ? 1.0 : *damping++);
+      add_blocks(pack, lane, *slots, stiffness, now);
+      if (pack.node[lane][3] >= end) add_prescribed(pack, lane, stiffness, now);
     }
     // f_el + K' (x - begin): the stress at the beginning of the step, with the rotations of the guess.
     if (begin) take_edges(pack, *begin, now), take_forces(pack, lambda_, mu_, now);
     for (std::size_t lane = 0; lane < pack.count; ++lane) add_forces(pack.node[lane], lane, now, T, end, right_);
   }
+  add_cells(scale, begin);
   mirror();
   add_masses(T, gravity);
 }
@@ -226,6 +261,7 @@ void Tissue::assemble_law(const Scale& scale, const std::vector<dvec3>* begin) {
   ElementVisit now;
   LawBlocks blocks;
   const Slots* slots = slots_.data();
+  const double* damping = damping_.data();
   for (ElementPack& pack : packs_) {
     take_edges(pack, x_, now);
     take_law_forces(pack, law_, constants, now);
@@ -234,13 +270,14 @@ void Tissue::assemble_law(const Scale& scale, const std::vector<dvec3>* begin) {
     std::memcpy(pack.q, now.q, sizeof now.q);
     for (std::size_t lane = 0; lane < pack.count; ++lane, ++slots) {
       const Tet& tet = pack.node[lane];
-      add_law_blocks(tet, lane, *slots, scale, blocks);
+      const double stiffness = scale.stiffness(damping_.empty() ? 1.0 : *damping++);
+      add_law_blocks(tet, lane, *slots, stiffness, blocks);
       std::array<dvec3, 4> shift{};  // K' times these is on the right
       if (begin)
         for (int i = 0; i < 4; ++i) shift[i] = scale.T * (x_[tet[i]] - (*begin)[tet[i]]);
       if (tet[3] >= end)
         for (int i = 0; i < 4; ++i)
-          if (tet[i] >= end) shift[i] -= scale.stiffness * v_[tet[i]];
+          if (tet[i] >= end) shift[i] -= stiffness * v_[tet[i]];
       std::array<dvec3, 4> pull{};
       if (begin || tet[3] >= end) pull = product(blocks, lane, shift);
       for (int i = 0; i < 4; ++i) {
@@ -252,14 +289,14 @@ void Tissue::assemble_law(const Scale& scale, const std::vector<dvec3>* begin) {
   }
 }
 
-void Tissue::add_law_blocks(const Tet& tet, std::size_t lane, const Slots& slots, const Scale& scale,
+void Tissue::add_law_blocks(const Tet& tet, std::size_t lane, const Slots& slots, double stiffness,
                             const LawBlocks& blocks) {
   dmat3 row[3], first(0);  // sums over the rows of nodes 1, 2, 3
   for (dmat3& sum : row) sum = dmat3(0);
   std::size_t n = 0;
   for (int k = 0; k < 3; ++k)
     for (int l = k; l < 3; ++l, ++n) {
-      const dmat3 K = scale.stiffness * block_of(blocks, n, lane);
+      const dmat3 K = stiffness * block_of(blocks, n, lane);
       row[k] += K;
       if (l > k) row[l] += transpose(K);
       if (double* const to = block(tet[k + 1], tet[l + 1], slots[4 + n])) add_block(to, K);
@@ -272,6 +309,35 @@ void Tissue::add_law_blocks(const Tet& tet, std::size_t lane, const Slots& slots
   if (double* const to = block(tet[0], tet[0], slots[0])) add_block(to, first);
 }
 
+dquat Tissue::turned(const Hexahedron& hex, const std::vector<dvec3>& x) const {
+  return material_.strain == Strain::kCorotational ? rotation_of(hex, x) : hex.q;
+}
+
+void Tissue::add_cells(const Scale& scale, const std::vector<dvec3>* begin) {
+  const std::uint32_t end = mesh_.pinned_begin();
+  HexVisit now;
+  for (std::size_t e = 0; e < hexahedra_.size(); ++e) {
+    Hexahedron& hex = hexahedra_[e];
+    hex.q = turned(hex, x_);
+    turn_cell(hex, hex.q, now);
+    find_cell_forces(hex, x_, lambda_, mu_, now);
+    find_cell_stiffness(hex, lambda_, mu_, now);
+    for (std::size_t i = 0; i < 8; ++i) add(force_, hex.node[i], now.f[i]);
+    const double stiffness = scale.stiffness(hex.damping);
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < 8; ++i)
+      for (std::size_t j = i; j < 8; ++j, ++k) {
+        const dmat3 K = stiffness * now.K[k];
+        if (double* const to = block(hex.node[i], hex.node[j], hex_slots_[e][k])) add_block(to, K);
+        // As in add_prescribed().
+        if (hex.node[i] < end && hex.node[j] >= end) add(right_, hex.node[i], -(K * v_[hex.node[j]]));
+      }
+    if (begin) find_cell_forces(hex, *begin, lambda_, mu_, now);
+    for (std::size_t i = 0; i < 8; ++i)
+      if (hex.node[i] < end) add(right_, hex.node[i], scale.T * now.f[i]);
+  }
+}
+
 void Tissue::find_forces() {
   force_.setZero();
   ElementVisit now;
@@ -281,11 +347,18 @@ void Tissue::find_forces() {
     for (std::size_t lane = 0; lane < pack.count; ++lane)
       for (int i = 0; i < 4; ++i) add(force_, pack.node[lane][i], lane_of(now.f[i], lane));
   }
+  HexVisit of_cell;
+  for (Hexahedron& hex : hexahedra_) {
+    hex.q = turned(hex, x_);
+    turn_cell(hex, hex.q, of_cell);
+    find_cell_forces(hex, x_, lambda_, mu_, of_cell);
+    for (std::size_t i = 0; i < 8; ++i) add(force_, hex.node[i], of_cell.f[i]);
+  }
 }
 
-void Tissue::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, const Scale& scale,
+void Tissue::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, double stiffness,
                         const ElementVisit& visit) {
-  const double l = scale.stiffness * pack.volume[lane] * lambda_, m = scale.stiffness * pack.volume[lane] * mu_;
+  const double l = stiffness * pack.volume[lane] * lambda_, m = stiffness * pack.volume[lane] * mu_;
   const Tet& tet = pack.node[lane];
   std::array<dvec3, 4> c;
   for (int i = 0; i < 4; ++i) c[i] = lane_of(visit.c[i], lane);
@@ -301,12 +374,12 @@ void Tissue::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& 
 
 // Pinned nodes have no rows: A times their velocities v goes to the right-hand side. sum_p K'_ip v_p is V sigma c_i of
 // the strain sym(sum_p v_p c_p^T).
-void Tissue::add_prescribed(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit) {
+void Tissue::add_prescribed(const ElementPack& pack, std::size_t lane, double stiffness, const ElementVisit& visit) {
   const Tet& tet = pack.node[lane];
   dmat3 L(0);
   for (int i = 0; i < 4; ++i)
     if (tet[i] >= mesh_.pinned_begin()) L += outerProduct(v_[tet[i]], lane_of(visit.c[i], lane));
-  const double factor = scale.stiffness * pack.volume[lane], trace = L[0][0] + L[1][1] + L[2][2];
+  const double factor = stiffness * pack.volume[lane], trace = L[0][0] + L[1][1] + L[2][2];
   const dmat3 sigma = factor * (mu_ * (L + transpose(L)) + dmat3(lambda_ * trace));
   for (int i = 0; i < 4; ++i)
     if (tet[i] < mesh_.pinned_begin()) add(right_, tet[i], -(sigma * lane_of(visit.c[i], lane)));
@@ -337,6 +410,12 @@ double Tissue::elastic_energy(const std::vector<dvec3>& position) const {
   for (const ElementPack& pack : packs_) {
     visit(pack, position, now);
     for (std::size_t lane = 0; lane < pack.count; ++lane) energy += now.energy[lane];
+  }
+  HexVisit of_cell;
+  for (const Hexahedron& hex : hexahedra_) {
+    turn_cell(hex, turned(hex, x_), of_cell);
+    find_cell_forces(hex, x_, lambda_, mu_, of_cell);
+    energy += of_cell.energy;
   }
   return energy;
 }

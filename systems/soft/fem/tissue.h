@@ -16,6 +16,7 @@
 #include "components/math.h"
 #include "components/tet_mesh.h"
 #include "systems/soft/fem/element.h"
+#include "systems/soft/fem/hexahedra.h"
 #include "systems/soft/fem/law_element.h"
 #include "systems/soft/linear/block_matrix.h"
 
@@ -88,17 +89,20 @@ class Tissue {
  private:
   // Indices of the blocks of an element's node pairs: into inner, outer or corner, depending on the nodes.
   using Slots = std::array<std::uint32_t, 10>;  // pairs (0,0) (0,1) (0,2) (0,3) (1,1) (1,2) (1,3) (2,2) (2,3) (3,3)
-  struct Scale;                                 // factors of one assemble()
+  using HexSlots = std::array<std::uint32_t, 36>;
+  struct Scale;  // factors of one assemble()
 
   void take_elements();
+  void take_masses();
   void lay_out();
   void visit(const ElementPack& pack, const std::vector<dvec3>& x, ElementVisit& out) const;
-  void add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, const Scale& scale,
+  void add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, double stiffness,
                   const ElementVisit& visit);
-  void add_prescribed(const ElementPack& pack, std::size_t lane, const Scale& scale, const ElementVisit& visit);
+  void add_prescribed(const ElementPack& pack, std::size_t lane, double stiffness, const ElementVisit& visit);
   void assemble_law(const Scale& scale, const std::vector<dvec3>* begin);
-  void add_law_blocks(const Tet& tet, std::size_t lane, const Slots& slots, const Scale& scale,
-                      const LawBlocks& blocks);
+  void add_law_blocks(const Tet& tet, std::size_t lane, const Slots& slots, double stiffness, const LawBlocks& blocks);
+  dquat turned(const Hexahedron& hex, const std::vector<dvec3>& x) const;
+  void add_cells(const Scale& scale, const std::vector<dvec3>* begin);
   void mirror();
   void add_masses(double T, dvec3 gravity);
   double* block(std::uint32_t row, std::uint32_t column, std::uint32_t slot);
@@ -110,8 +114,11 @@ class Tissue {
   std::uint32_t moving_ = 0;
   std::vector<dvec3> x_, v_;
   std::vector<double> mass_;
-  std::vector<ElementPack> packs_;  // stiff elements by their nodes, ascending, for locality of assembly
-  std::vector<Slots> slots_;        // of each element
+  std::vector<ElementPack> packs_;     // stiff elements by their nodes, ascending, for locality of assembly
+  std::vector<Slots> slots_;           // of each element
+  std::vector<double> damping_;        // [1] of each element: factor on beta; empty: 1
+  std::vector<Hexahedron> hexahedra_;  // of a lattice's cells, instead of the elements
+  std::vector<HexSlots> hex_slots_;
   std::vector<std::array<std::uint32_t, 2>> inner_mirror_, corner_mirror_;  // an upper block and its lower counterpart
   BlockMatrix inner_;
   std::vector<Entry> outer_, corner_;

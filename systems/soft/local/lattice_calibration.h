@@ -13,6 +13,10 @@ struct LatticeCompliance {
 // `radius_over_cell`: R / c, from 1.5; smaller ones as 1.5. Piecewise linear in R / c, and in ln(1/2 - nu).
 LatticeCompliance lattice_compliance(double poisson, double radius_over_cell);
 
+// Of a lattice of hexahedra, at R / c = 1.5 and 2 and nu from 0 to 0.499: they do not lock. By place and orientation it
+// varies by 3 %, along the surface by 6 %.
+inline constexpr LatticeCompliance kComplianceOfCells{1.03, 1.055};
+
 // [1] R / c that the split takes.
 inline double smearing_cells(double poisson) {
   return poisson < 0.465 ? 1.5 : 2.0;

@@ -144,7 +144,7 @@ SmearedLoad SmearingSurface::load_at(dvec3 at, dvec3 normal, double own) const {
                normal,
                own,
                radius,
-               lattice_compliance(poisson_, smearing_cells(poisson_)),
+               tets_.cells.empty() ? lattice_compliance(poisson_, smearing_cells(poisson_)) : kComplianceOfCells,
                thickness_at(at, normal, radius)};
   out.pair_radius = own;
   double sum = 0.0;
