@@ -193,7 +193,7 @@ struct Proximity::Parts {
         contacts.collision_meshes[i].fit_swept(), find_between(bodies, i, i);
       for (std::uint32_t k = i + 1; k < count; ++k) {
         if (!bodies[i]->meets(*bodies[k]) || !takes_part(k) || !may_miss(i, k)) continue;
-        if (met_by_tips(*bodies[i], *bodies[k])) continue;  // a tip is in the surface without its dent
+        if (met_split(*bodies[i], *bodies[k])) continue;
         contacts.collision_meshes[i].fit_swept(), contacts.collision_meshes[k].fit_swept();
         find_between(bodies, i, k);
       }
