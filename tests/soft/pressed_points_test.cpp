@@ -49,14 +49,17 @@ TEST(PressedPoints, TheAreasOfEveryLevelAddUpToTheSurface) {
     dvec3 moment(0);
     for (const PressedPoint& point : level.points) {
       area += point.area, moment += point.area * point.at;
-      if (level.points.size() > 100) EXPECT_LT(point.area, 2.5 * level.spacing * level.spacing);
+      if (level.points.size() > 100) {
+        EXPECT_LT(point.area, 2.5 * level.spacing * level.spacing);
+      }
     }
     EXPECT_NEAR(area, 2 * (0.1 * 0.02 + 0.1 * 0.05 + 0.02 * 0.05), 1e-8);
     EXPECT_LT(length(moment), 0.1 * level.spacing * area);
   }
 }
 
-// Of triangles of any size, and of any of its levels.
+// Of triangles of any size, and of any of its levels. Points at a sharp rim stand
+// where the pressure of their part has its centre.
 TEST(PressedPoints, ThoseOfAFlatPunchAreAFlatPunch) {
   constexpr double kPunch = 4.0;
   for (const int rings : {1, 6}) {
@@ -107,6 +110,46 @@ TEST(TipLaw, AloneItIsHertzAndInSeriesItsForceIsTheRoot) {
     const double depth = tip_law(tip, force, tissue, layer).depth;
     EXPECT_GT(depth, last);
     last = depth;
+  }
+}
+
+// Row 14 of methods.md 2.10's list: two tips near each other on a half-space, moved in depth around a loop.
+TEST(TipLaw, ClosedLoopsOfTwoTipsGiveNothing) {
+  const LocalElasticity tissue{1e4, 0.45};
+  const LayerKernel layer(0.45);
+  const double e = tissue.reduced(), smeared = 6e-3, k = .917;
+  for (const double apart : {0.2, 0.6, 1.7}) {
+    SmearedLoad tips[2];
+    const double widest = kWidestTip * smeared / k;
+    for (int i = 0; i < 2; ++i) {
+      tips[i].place = {dvec3(apart * smeared * i, 0, 0), dvec3(0, 1, 0), 1e-3, smeared, {k, .853}, 0.0};
+      tips[i].tip_radius = i == 0 ? 4e-3 : 2e-3;
+      tips[i].pair_radius = std::min(0.5 * apart * smeared, widest);
+    }
+    const double sigma = kSigmaOfRadius * smeared / k;
+    const double own = k / (2 * e * smeared), between = h0(apart * smeared, sigma) / (M_PI * e);
+    const double pair = local_compliance(pair_place(tips[0]), pair_place(tips[1]), tissue, nullptr)(1, 1);
+    double forces[2] = {0.0, 0.0};
+    const auto solve_at = [&](double d0, double d1) {
+      for (int sweep = 0; sweep < 200; ++sweep)
+        for (int i = 0; i < 2; ++i) {
+          const double depth = (i == 0 ? d0 : d1) - (between + pair) * forces[1 - i];
+          forces[i] = depth > 0.0 ? tip_force(tips[i], own, depth, tissue, layer) : 0.0;
+        }
+    };
+    constexpr int kSteps = 4000;
+    double work = 0.0, stored = 0.0, last[4] = {};
+    for (int step = 0; step <= kSteps; ++step) {
+      const double turn = 2 * M_PI * step / kSteps;
+      const double d0 = 1e-3 * (1.2 + std::cos(turn)), d1 = 1e-3 * (1.2 + std::sin(turn));
+      solve_at(d0, d1);
+      if (step > 0) {
+        const double by = 0.5 * ((forces[0] + last[2]) * (d0 - last[0]) + (forces[1] + last[3]) * (d1 - last[1]));
+        work += by, stored = std::max(stored, std::abs(work));
+      }
+      last[0] = d0, last[1] = d1, last[2] = forces[0], last[3] = forces[1];
+    }
+    EXPECT_LT(std::abs(work), 1e-5 * stored) << apart;
   }
 }
 

@@ -265,15 +265,31 @@ void SoftBodyState::add_compliance(std::span<const Side> sides, double T, Eigen:
   const auto along = [](const Side& side) -> Block {  // to the contact's axes
     return side.sign * to_block(glm::transpose(*side.axes) * side.point->smeared->turn);
   };
+  std::vector<const SmearedLoad*> loads;
+  for (const Side* side : smeared) loads.push_back(side->point->smeared.get());
+  const Eigen::MatrixXd missing = smearing_->missing(loads);
+  const auto of_anchors = [&](Eigen::Index i, Eigen::Index j) -> Block {
+    const auto normal = [&](Eigen::Index k) {
+      const dvec3 n = loads[static_cast<std::size_t>(k)]->place.normal;
+      return Eigen::Vector3d(n.x, n.y, n.z);
+    };
+    const Block across = normal(i) * normal(j).transpose();
+    const Block along_i = Block::Identity() - normal(i) * normal(i).transpose(),
+                along_j = Block::Identity() - normal(j) * normal(j).transpose();
+    return missing(i, j) / M_PI *
+           (across / tissue.reduced() + (1 - tissue.poisson / 2) / (2 * tissue.shear()) * along_i * along_j);
+  };
   for (Eigen::Index i = 0; i < n; ++i) {
     const Side& side = *smeared[static_cast<std::size_t>(i)];
     L.block<3, 3>(3 * i, 3 * i) =
-        along(side) * self_compliance(*side.point->smeared, tissue, smearing_->layer()) * along(side).transpose();
+        along(side) * (self_compliance(*side.point->smeared, tissue, smearing_->layer()) + of_anchors(i, i)) *
+        along(side).transpose();
     for (Eigen::Index j = 0; j < i; ++j) {
       const Side& other = *smeared[static_cast<std::size_t>(j)];
       const Block pair = along(side) *
-                         local_compliance(pair_place(*side.point->smeared), pair_place(*other.point->smeared), tissue,
-                                          &smearing_->layer()) *
+                         (local_compliance(pair_place(*side.point->smeared), pair_place(*other.point->smeared), tissue,
+                                           &smearing_->layer()) +
+                          of_anchors(i, j)) *
                          along(other).transpose();
       L.block<3, 3>(3 * i, 3 * j) = pair;
       L.block<3, 3>(3 * j, 3 * i) = pair.transpose();
@@ -324,7 +340,8 @@ void SoftBodyState::place(const Pose& pose) {
   refresh_surface(tissue_.position(), surface_position);
 }
 
-// Half a solve instead of a whole one, only at the contacts' nodes (LinearSolver::solve_gram). Contacts by anchors need the anchors' columns alone: W = E C E^T, E of 3 x 3 blocks.
+// Half a solve instead of a whole one, only at the contacts' nodes (LinearSolver::solve_gram). Contacts by anchors need
+// the anchors' columns alone: W = E C E^T, E of 3 x 3 blocks.
 void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const {
   pushed_.clear(tissue_.moving());
   std::map<std::uint32_t, Eigen::Index> column_of;  // anchors
@@ -384,12 +401,23 @@ void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index cont
 
 void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
                            Eigen::Ref<Rows> out) const {
-  const Block along = to_block(axes).transpose();
+  const Block along = sign * to_block(axes).transpose();
+  if (point.smeared) {  // hundreds of nodes: their motion is summed up first
+    Rows moved = Rows::Zero(3, x.cols());
+    for_each_node(point, [&](std::uint32_t node, double weight) {
+      if (node < tissue_.moving())
+        moved += weight * x.middleRows<3>(3 * node);
+      else if (slaved(node))
+        moved.noalias() += (weight * grip_matrix(arm(node))).eval() * x.bottomRows<6>();
+    });
+    out.noalias() += along * moved;
+    return;
+  }
   for_each_node(point, [&](std::uint32_t node, double weight) {
     if (node < tissue_.moving())
-      out.noalias() += (sign * weight * along) * x.middleRows<3>(3 * node);
+      out.noalias() += (weight * along) * x.middleRows<3>(3 * node);
     else if (slaved(node))
-      out.noalias() += (sign * weight * along * grip_matrix(arm(node))).eval() * x.bottomRows<6>();
+      out.noalias() += (weight * along * grip_matrix(arm(node))).eval() * x.bottomRows<6>();
   });
 }
 

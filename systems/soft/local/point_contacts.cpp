@@ -17,8 +17,8 @@ constexpr std::uint32_t kPointFeature = 0x80000000u;  // features of points in c
 constexpr std::uint32_t kPointsOfLevel = 1u << 20;
 constexpr std::size_t kMostPressed = 40, kFewPressed = 12;  // loaded points, from level to level
 constexpr std::size_t kFarTooMany = 120;                    // points that press or will
-constexpr double kFacesBody = 0.02;                            // [1] of a point's area: less of it does not face the other
-constexpr double kReadyAt = 0.5;                              // [1] of the spacing: gap of contacts that are kept ready
+constexpr double kFacesBody = 0.02;                         // [1] of a point's area: less of it does not face the other
+constexpr double kReadyAt = 0.5;                            // [1] of the spacing: gap of contacts that are kept ready
 constexpr double kAround = 3.0;                             // [1] of the spacing: points this near to known contacts
 
 double area_of(const Mesh& mesh) {
@@ -45,11 +45,11 @@ dvec3 outward_at(const Body& body, std::uint32_t triangle) {
 
 // A place where the bodies are near each other.
 struct Seed {
-  dvec3 at{0};                   // [m] world, of the pressing body
-  std::uint32_t triangle = 0;    // of the other
-  dvec3 barycentric{1, 0, 0};    // [1]
-  SurfaceFrame frame;            // of the other there
-  dvec3 outward{0};              // [1] of the other, world
+  dvec3 at{0};                 // [m] world, of the pressing body
+  std::uint32_t triangle = 0;  // of the other
+  dvec3 barycentric{1, 0, 0};  // [1]
+  SurfaceFrame frame;          // of the other there
+  dvec3 outward{0};            // [1] of the other, world
 };
 
 }  // namespace
@@ -192,7 +192,8 @@ void PointContacts::place(const std::vector<std::unique_ptr<Body>>& bodies, std:
     return tissue && tissue->smearing() ? tissue : nullptr;
   };
   const Body &of_a = *bodies[a], &of_b = *bodies[b];
-  const Body &first = of_a.kind == BodyKind::kProbe ? of_b : of_a, &second = of_b.kind == BodyKind::kProbe ? of_a : of_b;
+  const Body &first = of_a.kind == BodyKind::kProbe ? of_b : of_a,
+             &second = of_b.kind == BodyKind::kProbe ? of_a : of_b;
   Pressed pair{a,
                b,
                of_a,

@@ -1,6 +1,6 @@
-// Contacts of meshes with split tissue (methods.md 2.10). Of two bodies the one of smaller surface presses with points of
-// it (pressed_points.h), each on the other's surface without its dent, along that surface's normal. A point's part of
-// the area, seen along the normal, is its contact's. Writer: the soft clock.
+// Contacts of meshes with split tissue (methods.md 2.10). Of two bodies the one of smaller surface presses with points
+// of it (pressed_points.h), each on the other's surface without its dent, along that surface's normal. A point's part
+// of the area, seen along the normal, is its contact's. Writer: the soft clock.
 #pragma once
 
 #include <map>

@@ -3,22 +3,49 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 namespace pliant {
 namespace {
 
-constexpr double kFinest = 6000.0;     // points
-constexpr double kCoarsestCount = 40;  // points
-constexpr double kHalf = M_SQRT2;      // [1] of the spacing, from level to level
-constexpr int kMostPieces = 64;         // of a triangle's edge
-constexpr double kFacesLike = 0.8;     // [1] cosine
-constexpr double kFirstApart = 0.75;        // [1] of the spacing: between first points
-constexpr int kRelaxations = 4;        // Lloyd's
+constexpr double kFinest = 6000.0;        // points
+constexpr double kCoarsestCount = 40;     // points
+constexpr double kHalf = M_SQRT2;         // [1] of the spacing, from level to level
+constexpr int kMostPieces = 64;           // of a triangle's edge
+constexpr double kFacesLike = 0.8;        // [1] cosine
+constexpr double kFirstApart = 0.75;      // [1] of the spacing: between first points
+constexpr std::size_t kMostSharp = 4000;  // sharp edges; with more the rims are not looked for
+constexpr int kRelaxations = 4;           // Lloyd's
 
 struct Piece {
   PressedPoint point;
-  dvec3 normal{0};  // [1]
+  dvec3 normal{0};   // [1]
+  double rim = 0.0;  // [m] distance from the nearest sharp edge
 };
+
+// Ends of edges between faces that do not face alike.
+std::vector<std::pair<dvec3, dvec3>> sharp_edges(const Mesh& mesh) {
+  std::vector<std::pair<dvec3, dvec3>> out;
+  const auto normal = [&](std::uint32_t t) {
+    const uvec3 c = mesh.triangles[t];
+    const dvec3 a(mesh.position(c.x)), n = cross(dvec3(mesh.position(c.y)) - a, dvec3(mesh.position(c.z)) - a);
+    const double size = length(n);
+    return size > 0.0 ? n / size : dvec3(0.0);
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t next = mesh.across[t][k];
+      if (next == kBorder || (t < next && dot(normal(t), normal(next)) < kFacesLike))
+        out.emplace_back(mesh.position(mesh.triangles[t][k]), mesh.position(mesh.triangles[t][(k + 1) % 3]));
+    }
+  return out;
+}
+
+double distance_from(const std::pair<dvec3, dvec3>& edge, dvec3 at) {
+  const dvec3 along = edge.second - edge.first;
+  const double share = std::clamp(dot(at - edge.first, along) / std::max(dot(along, along), 1e-300), 0.0, 1.0);
+  return length(at - edge.first - share * along);
+}
 
 std::vector<Piece> pieces_of(const Mesh& mesh) {
   double whole = 0.0;
@@ -38,8 +65,8 @@ std::vector<Piece> pieces_of(const Mesh& mesh) {
     const int parts = std::clamp(static_cast<int>(std::ceil(longest / (1.5 * spacing) - 1e-9)), 1, kMostPieces);
     const auto add = [&](double x, double y) {
       const dvec3 w(1 - (x + y) / parts, x / parts, y / parts);
-      out.push_back({{static_cast<std::uint32_t>(t), w, a + w.y * e + w.z * f, 0.5 * twice / (parts * parts)},
-                     n / twice});
+      out.push_back(
+          {{static_cast<std::uint32_t>(t), w, a + w.y * e + w.z * f, 0.5 * twice / (parts * parts)}, n / twice, 1e300});
     };
     for (int i = 0; i < parts; ++i)
       for (int k = 0; i + k < parts; ++k) {
@@ -47,6 +74,10 @@ std::vector<Piece> pieces_of(const Mesh& mesh) {
         if (i + k + 1 < parts) add(i + 2.0 / 3, k + 2.0 / 3);
       }
   }
+  const std::vector<std::pair<dvec3, dvec3>> sharp = sharp_edges(mesh);
+  if (sharp.size() > kMostSharp) return out;
+  for (Piece& piece : out)
+    for (const auto& edge : sharp) piece.rim = std::min(piece.rim, distance_from(edge, piece.point.at));
   return out;
 }
 
@@ -122,7 +153,17 @@ PointLevel cluster(const std::vector<Piece>& pieces, double spacing) {
       area[best] += pieces[i].point.area;
       moment[best] += pieces[i].point.area * pieces[i].point.at;
     }
-    if (round + 1 == kRelaxations) break;
+    // At last by the pressure under a sharp rim, one over the root of the distance from it.
+    const bool last = round + 1 == kRelaxations;
+    if (last) {
+      std::vector<double> sum(chosen.size(), 0.0);
+      std::fill(moment.begin(), moment.end(), dvec3(0));
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const double weight = pieces[i].point.area / std::sqrt(std::min(pieces[i].rim, spacing));
+        moment[of[i]] += weight * pieces[i].point.at, sum[of[i]] += weight;
+      }
+      for (std::size_t c = 0; c < chosen.size(); ++c) moment[c] *= area[c] / std::max(sum[c], 1e-300);
+    }
     std::vector<double> nearest(chosen.size(), 1e300);
     std::vector<std::uint32_t> next = chosen;
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -17,7 +17,7 @@ struct SmearedNode {
 };
 
 struct SmearedLoad {
-  LocalPlace place;  // object frame, undeformed
+  LocalPlace place;                // object frame, undeformed
   std::vector<SmearedNode> nodes;  // weights of the load and of the motion that is read; they sum to 1
   // The same by anchors (smearing_surface.h), which sum to 1.
   std::vector<std::pair<std::uint32_t, double>> anchors;

@@ -15,14 +15,14 @@ constexpr double kCut = 3.0;           // [1] standard deviations
 constexpr double kFacingAlike = 0.5;   // [1] cosine between the normals of a contact and of what it is smeared over
 constexpr double kEvenLattice = 1.01;  // [1] coarsest over finest cell: an even lattice
 constexpr double kBehind = 1.0;        // [1] of a cell: nodes this close to the contact's axis are behind it
-constexpr double kAnchorsApart = 0.9;  // [1] of R
+constexpr double kAnchorsApart = 0.7;  // [1] of R
 constexpr double kFacesAnchor = 0.8;   // [1] cosine: an anchor stands for what faces like it
-constexpr double kAnchorReach = 1.65;  // [1] of R: anchors of a contact,
+constexpr double kAnchorReach = 1.5;   // [1] of R: anchors of a contact,
 constexpr double kFadesOut = 0.05;     // [1] whose shares fade there
 constexpr double kConditions = 1e3;    // [1] weight of the conditions on the shares
 constexpr std::uint32_t kNoPlace = 0xffffffffu;
-constexpr double kLayer = 4.0;         // [1] of R: thicker tissue is a half-space
-constexpr double kThinLayer = 0.5;     // [1] of R: thinner ones as this
+constexpr double kLayer = 4.0;      // [1] of R: thicker tissue is a half-space
+constexpr double kThinLayer = 0.5;  // [1] of R: thinner ones as this
 
 double longest_edge_of(const TetMesh& tets, const Tet& tet) {
   double longest = 0.0;
@@ -69,6 +69,7 @@ SmearingSurface::SmearingSurface(const TetMesh& tets, double poisson)
   }
   sum_place_.assign(tets.nodes.size(), kNoPlace);
   const bool even = tets.report.cell > 0.0 && tets.report.coarsest < kEvenLattice * tets.report.cell;
+  if (even) even_ = tets.report.cell;
   const std::vector<double> cells = even ? std::vector<double>() : cells_of(tets);
   dvec3 high(-1e300);
   low_ = dvec3(1e300);
@@ -92,7 +93,8 @@ void SmearingSurface::choose_anchors() {
     for_boxes_near(position_[i], anchor_boxes_, [&](std::uint32_t a) {
       const dvec3 apart = anchors_[a].at - position_[i];
       const double least = kAnchorsApart * radius;
-      taken = taken || (dot(apart, apart) < least * least && dot(anchors_[a].normal, tets_.samples[i].normal) > kFacesAnchor);
+      taken = taken ||
+              (dot(apart, apart) < least * least && dot(anchors_[a].normal, tets_.samples[i].normal) > kFacesAnchor);
     });
     if (taken) continue;
     anchor_boxes_[box_of(position_[i])].push_back(static_cast<std::uint32_t>(anchors_.size()));
@@ -106,6 +108,7 @@ const SmearingSurface::Anchor& SmearingSurface::loaded_anchor(std::uint32_t anch
     SmearedLoad load = load_alone(out.at, out.normal, 1.0);
     out.nodes = std::move(load.nodes);
     out.mean = load.mean;
+    out.thickness = load.place.thickness;
   }
   return out;
 }
@@ -144,9 +147,9 @@ void SmearingSurface::for_boxes_near(dvec3 at,
         if (box.x < 0 || box.y < 0 || box.x >= static_cast<double>(across_[0]) ||
             box.y >= static_cast<double>(across_[1]))
           continue;
-        const auto found = boxes.find(
-            (static_cast<std::int64_t>(box.z) * across_[1] + static_cast<std::int64_t>(box.y)) * across_[0] +
-            static_cast<std::int64_t>(box.x));
+        const auto found =
+            boxes.find((static_cast<std::int64_t>(box.z) * across_[1] + static_cast<std::int64_t>(box.y)) * across_[0] +
+                       static_cast<std::int64_t>(box.x));
         if (found == boxes.end()) continue;
         for (const std::uint32_t i : found->second) use(i);
       }
@@ -163,6 +166,7 @@ void SmearingSurface::for_samples_near(dvec3 at, double reach, Use use) const {
 
 // The cell of the nearest sample decides, so that R is the same for the whole of an even lattice.
 double SmearingSurface::radius_at(dvec3 at) const {
+  if (even_ > 0.0) return smearing_cells(poisson_) * even_;
   double nearest = 1e300, cell = 0.0;
   for_samples_near(at, widest_, [&](std::uint32_t i, double square) {
     if (square < nearest) nearest = square, cell = cell_[i];
@@ -183,17 +187,13 @@ double SmearingSurface::thickness_at(dvec3 at, dvec3 normal, double radius) cons
 
 LocalPlace SmearingSurface::place_at(dvec3 at, dvec3 normal, double own) const {
   const double radius = radius_at(at);
-  return {at,
-          normal,
-          own,
-          radius,
-          lattice_compliance(poisson_, smearing_cells(poisson_)),
-          thickness_at(at, normal, radius)};
+  return {at, normal, own, radius, lattice_compliance(poisson_, smearing_cells(poisson_)), 0.0};
 }
 
 SmearedLoad SmearingSurface::load_alone(dvec3 at, dvec3 normal, double own) const {
   SmearedLoad out;
   out.place = place_at(at, normal, own);
+  out.place.thickness = thickness_at(at, normal, out.place.smeared);
   out.pair_radius = own;
   const double sigma = kSigmaOfRadius * out.place.smeared;
   double sum = 0.0;
@@ -251,14 +251,53 @@ SmearedLoad SmearingSurface::load_at(dvec3 at, dvec3 normal, double own) const {
   right += kConditions * most * P.col(0);
   const Vector phi = K.ldlt().solve(right);
   const double total = phi.sum();
+  double thin = 0.0;  // [1/m]
   for (Eigen::Index a = 0; a < count; ++a) {
     auto& part = out.anchors[static_cast<std::size_t>(a)];
     part.second = phi[a] / total;
     const Anchor& one = anchor(a);
     collect(one.nodes, part.second, out.nodes);
     out.mean += part.second * one.mean;
+    if (one.thickness > 0.0) thin += part.second / one.thickness;
   }
+  if (thin > 1.0 / (kLayer * radius)) out.place.thickness = 1.0 / std::min(thin, 1.0 / (kThinLayer * radius));
   finish(1.0, out.nodes);
+  return out;
+}
+
+Eigen::MatrixXd SmearingSurface::missing(std::span<const SmearedLoad* const> loads) const {
+  const auto count = static_cast<Eigen::Index>(loads.size());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(count, count);
+  std::vector<std::uint32_t> anchors;
+  for (const SmearedLoad* load : loads)
+    for (const auto& part : load->anchors) anchors.push_back(part.first);
+  std::sort(anchors.begin(), anchors.end());
+  anchors.erase(std::unique(anchors.begin(), anchors.end()), anchors.end());
+  if (anchors.empty()) return out;
+  const LocalPlace& first = loads.front()->place;
+  const double sigma = kSigmaOfRadius * first.smeared / first.lattice.normal;
+  const auto size = static_cast<Eigen::Index>(anchors.size());
+  Eigen::MatrixXd K(size, size), phi = Eigen::MatrixXd::Zero(count, size);
+  for (Eigen::Index a = 0; a < size; ++a)
+    for (Eigen::Index b = 0; b <= a; ++b) {
+      const Anchor &one = anchors_[anchors[static_cast<std::size_t>(a)]],
+                   &other = anchors_[anchors[static_cast<std::size_t>(b)]];
+      K(a, b) = K(b, a) = h0(length(one.at - other.at), sigma) * dot(one.normal, other.normal);
+    }
+  for (Eigen::Index i = 0; i < count; ++i)
+    for (const auto& part : loads[static_cast<std::size_t>(i)]->anchors)
+      phi(i, std::lower_bound(anchors.begin(), anchors.end(), part.first) - anchors.begin()) = part.second;
+  const Eigen::MatrixXd half = phi * K;
+  out.noalias() = half * phi.transpose();
+  for (Eigen::Index i = 0; i < count; ++i)
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const SmearedLoad &one = *loads[static_cast<std::size_t>(i)], &other = *loads[static_cast<std::size_t>(j)];
+      if (one.anchors.empty() || other.anchors.empty())
+        out(i, j) = 0.0;
+      else
+        out(i, j) =
+            h0(length(one.place.at - other.place.at), sigma) * dot(one.place.normal, other.place.normal) - out(i, j);
+    }
   return out;
 }
 

@@ -7,6 +7,7 @@
 // of the half-space, h0(s; sigma_c), under the conditions that they sum to 1 and act in i's place.
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -26,6 +27,9 @@ class SmearingSurface {
   SmearedLoad load_at(dvec3 at, dvec3 normal, double own) const;
   // The same without anchors.
   SmearedLoad load_alone(dvec3 at, dvec3 normal, double own) const;
+  // [1/m] pi E* times what the lattice lacks along the normals between loads, as sums of anchors are not quite the
+  // loads: h0(s_ij; sigma_c) n_i n_j - phi_i^T K phi_j.
+  Eigen::MatrixXd missing(std::span<const SmearedLoad* const> loads) const;
   // Of an anchor.
   const std::vector<SmearedNode>& anchor_nodes(std::uint32_t anchor) const { return loaded_anchor(anchor).nodes; }
   // Of nodes at these positions [m]: rotation and place in this step.
@@ -42,13 +46,14 @@ class SmearingSurface {
                       Use use) const;
   double thickness_at(dvec3 at, dvec3 normal, double radius) const;
   std::int64_t box_of(dvec3 at) const;
-  LocalPlace place_at(dvec3 at, dvec3 normal, double own) const;
+  LocalPlace place_at(dvec3 at, dvec3 normal, double own) const;  // without thickness
   void choose_anchors();
   struct Anchor {
     dvec3 at{0}, normal{0, 1, 0};
     double smeared = 0.0;            // [m] R
     std::vector<SmearedNode> nodes;  // empty until its first use
     dvec3 mean{0};                   // [m]
+    double thickness = 0.0;          // [m] LocalPlace's
   };
   const Anchor& loaded_anchor(std::uint32_t anchor) const;
   void collect(std::span<const SmearedNode> nodes, double factor, std::vector<SmearedNode>& sum) const;
@@ -60,6 +65,7 @@ class SmearingSurface {
   LayerKernel layer_;
   std::vector<dvec3> position_;  // [m] of the samples, as embedded
   std::vector<double> cell_;     // [m] of the lattice there
+  double even_ = 0.0;            // [m] cell of an even lattice
   double widest_ = 0.0;          // [m] edge of the grid's boxes
   dvec3 low_{0};
   std::int64_t across_[2] = {1, 1};

@@ -18,9 +18,9 @@ constexpr std::uint32_t kMostWalls = 4;             // contacts of one tip
 constexpr double kOneWall = 0.7;                    // [1] cosine between the normals of one contact
 constexpr double kNotYet = 0.1;                     // [1] of the tip's radius: gap of contacts that are kept ready
 constexpr double kWrongSide = 1.0;                  // [1] of the tip's radius: a new contact's centre is not deeper
-constexpr double kLeastBend = -0.5;      // [1] of 1 / R_s: a hollow as narrow as the tip touches elsewhere
-constexpr double kNarrowestPair = 0.05;  // [1] of R: pair terms of coincident tips stay finite
-constexpr int kTipRounds = 3;            // place -> frame -> place
+constexpr double kLeastBend = -0.5;                 // [1] of 1 / R_s: a hollow as narrow as the tip touches elsewhere
+constexpr double kNarrowestPair = 0.05;             // [1] of R: pair terms of coincident tips stay finite
+constexpr int kTipRounds = 3;                       // place -> frame -> place
 
 const SoftBodyState* split_tissue(const Body& body) {
   const SoftBodyState* tissue = body.as_tissue();

@@ -11,8 +11,7 @@ SurfaceFrame frame_of_triangle(const Body& body, std::uint32_t triangle) {
   };
   const std::vector<dvec3>& x = body.surface_position;
   const dvec3 a(mesh.position(t.x));
-  return {axes(x[t.x], x[t.y], x[t.z]) *
-              glm::transpose(axes(a, dvec3(mesh.position(t.y)), dvec3(mesh.position(t.z)))),
+  return {axes(x[t.x], x[t.y], x[t.z]) * glm::transpose(axes(a, dvec3(mesh.position(t.y)), dvec3(mesh.position(t.z)))),
           a, x[t.x]};
 }
 
