@@ -265,13 +265,13 @@ void SoftBodyState::add_compliance(std::span<const Side> sides, double T, Eigen:
   const auto along = [](const Side& side) -> Block {  // to the contact's axes
     return side.sign * to_block(glm::transpose(*side.axes) * side.point->smeared->turn);
   };
-  std::vector<const SmearedLoad*> loads;
-  for (const Side* side : smeared) loads.push_back(side->point->smeared.get());
-  const Eigen::MatrixXd missing = smearing_->missing(loads);
+  std::vector<const SmearedLoad*> spread_loads;
+  for (const Side* side : smeared) spread_loads.push_back(side->point->smeared.get());
+  const Eigen::MatrixXd missing = smearing_->missing(spread_loads);
   const auto of_anchors = [&](Eigen::Index i, Eigen::Index j) -> Block {
     const auto normal = [&](Eigen::Index k) {
-      const dvec3 n = loads[static_cast<std::size_t>(k)]->place.normal;
-      return Eigen::Vector3d(n.x, n.y, n.z);
+      const dvec3 out = spread_loads[static_cast<std::size_t>(k)]->place.normal;
+      return Eigen::Vector3d(out.x, out.y, out.z);
     };
     const Block across = normal(i) * normal(j).transpose();
     const Block along_i = Block::Identity() - normal(i) * normal(i).transpose(),
