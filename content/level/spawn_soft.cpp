@@ -196,6 +196,10 @@ std::optional<Note> soft_fault(const LevelNode& node) {
   if (node.soft_body && node.deformable)
     return fault("level.soft_and_deformable", "has both PLIANT_soft_body and PLIANT_deformable",
                  "keep one, a node is a soft body or a deformable surface");
+  if (node.soft_body && node.soft_body->mesh.empty() && node.soft_body->elements == Elements::kHexahedra &&
+      node.soft_body->law != TissueLaw::kCorotational)
+    return fault("level.law_of_hexahedra", "has a `law` of large strain, and hexahedra are co-rotational",
+                 "leave out `law`, or take `elements` `tetrahedra`");
   if (node.soft_body && node.rigid_body)
     return fault("level.soft_and_rigid", "has both PLIANT_soft_body and PLIANT_rigid_body",
                  "keep one, or mark the rigid part with PLIANT_handle");

@@ -8,6 +8,7 @@
 #include "components/probe_shape.h"
 #include "components/soft_body.h"
 #include "components/varying.h"
+#include "content/level/spawn_soft.h"
 #include "content/level/varying_keys.h"
 #include "engine/session/live_keys.h"
 #include "engine/session/scene_check.h"
@@ -210,6 +211,7 @@ Result<SessionChange> change_of(SessionRun& p, const std::string& name, const st
                                 const Extension& extension, const Key& key, LevelNode& node) {
   if (extension.name == "deformable") return change_surface(p, name, where, *node.deformable);
   if (extension.name == "rigid_body") return change_rigid(p, name, node);
+  if (const std::optional<Note> fault = soft_fault(node)) return Error{where, fault->what, fault->cure};
   if (extension.name == "soft_body") return change_soft(p, name, *node.soft_body);
   if (extension.name == "probe") return change_probe(p, name, where, *node.probe);
   if (extension.name == "effect") return change_effect(p, name, where, key.name, *node.effect);

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "components/bonded_layer.h"
 #include "content/mesh/mesh_build.h"
 #include "content/tets/lattice.h"
 #include "content/tets/surface_samples.h"
@@ -82,7 +85,7 @@ class LatticeHalfSpace {
   dvec3 place(double x, double z) const { return centre_ + turn_ * dvec3(x, 0, z); }
   dvec3 axis(int k) const { return turn_[k]; }  // 1: the outward normal
 
-  SmearedLoad load_at(double x, double z, double own) const { return surface_->load_at(place(x, z), axis(1), own); }
+  SmearedLoad load_at(double x, double z, double own) const { return surface_->load_alone(place(x, z), axis(1), own); }
   // [m per N] Of the nodes, under a unit force along axis k (1: outward).
   std::vector<dvec3> under(const SmearedLoad& load, int k) const {
     std::vector<dvec3>& v = body_->velocity();
@@ -91,9 +94,9 @@ class LatticeHalfSpace {
       v[i] = exact(tets_.nodes[i] - load.place.at, k) / kStatic;
     body_->assemble(kStatic, dvec3(0));
     Rows right = body_->right().head(3 * body_->moving());
-    for (const auto& part : load.nodes)
-      if (part.first < body_->moving())
-        for (int d = 0; d < 3; ++d) right(3 * part.first + d, 0) += kStatic * part.second * axis(k)[d];
+    for (const SmearedNode& part : load.nodes)
+      if (part.node < body_->moving())
+        for (int d = 0; d < 3; ++d) right(3 * part.node + d, 0) += kStatic * part.weight * axis(k)[d];
     solver_->solve_many(right);
     std::vector<dvec3> u(tets_.node_count());
     for (std::uint32_t i = 0; i < tets_.node_count(); ++i)
@@ -102,7 +105,7 @@ class LatticeHalfSpace {
   }
   static dvec3 read(const SmearedLoad& load, const std::vector<dvec3>& u) {
     dvec3 sum(0);
-    for (const auto& part : load.nodes) sum += part.second * u[part.first];
+    for (const SmearedNode& part : load.nodes) sum += part.weight * u[part.node];
     return sum;
   }
 
@@ -231,8 +234,129 @@ TEST(Smearing, UnderRigidMotionThePlaceOfACurvedBodyIsExact) {
   EXPECT_LT(length(load.to_world(at) - (q * at + by)), 1e-11);
   EXPECT_LT(length(load.to_rest(q * at + by) - at), 1e-11);
   double sum = 0.0;
-  for (const auto& part : load.nodes) sum += part.second;
+  for (const SmearedNode& part : load.nodes) sum += part.weight;
   EXPECT_NEAR(sum, 1.0, 1e-12);
+}
+
+// Row 12: a punch of half a cell's radius, slid over two cells. Force and drag are those of its energy d^2 / 2 W(s).
+TEST(Smearing, ASlidPunchNeitherRipplesNorDrags) {
+  const LatticeHalfSpace half(0.45, 4);
+  constexpr double kOwn = 0.5, kStep = 0.05;
+  std::vector<double> whole;
+  for (int i = 0; i <= 40; ++i) {
+    const dvec3 at = half.place(-1.0 + kStep * i, 0.37 * (-1.0 + kStep * i));
+    const SmearedLoad load = half.surface().load_at(at, half.axis(1), kOwn);
+    const SmearedLoad* const one = &load;
+    whole.push_back(dot(half.axis(1), half.read(load, half.under(load, 1))) +
+                    local_normal_compliance(load.place, half.tissue(), nullptr) +
+                    half.surface().missing({&one, 1})(0, 0) / (M_PI * half.tissue().reduced()));
+  }
+  const auto [least, most] = std::minmax_element(whole.begin(), whole.end());
+  EXPECT_LT(*most / *least - 1.0, 0.005);
+  double drag = 0.0;
+  const double along = kStep * std::hypot(1.0, 0.37);
+  for (std::size_t i = 1; i + 1 < whole.size(); ++i)
+    drag = std::max(drag, std::abs(0.5 * kOwn * (whole[i + 1] - whole[i - 1]) / (2 * along) / whole[i]));
+  EXPECT_LT(drag, 0.005);
+}
+
+// Rows 9 and 17: a flat punch of points on the lattice, by anchors and by one column for each of them.
+TEST(Smearing, APunchOfPointsIsAPunchAndAnchorsDoNotChangeIt) {
+  const LatticeHalfSpace half(0.45, 6);
+  for (const auto& [punch, rings] : {std::pair{0.5, 2}, {1.0, 2}, {2.0, 4}}) {
+    std::vector<dvec2> at;
+    std::vector<double> area;
+    for (int r = 0; r < rings; ++r) {  // rings of equal areas
+      const int count = r == 0 ? 4 : 8 * r;
+      const auto edge = [&](int ring) {
+        double points = 0;
+        for (int q = 0; q < ring; ++q) points += q == 0 ? 4 : 8 * q;
+        double all = 0;
+        for (int q = 0; q < rings; ++q) all += q == 0 ? 4 : 8 * q;
+        return punch * std::sqrt(points / all);
+      };
+      const double inner = edge(r), outer = edge(r + 1), mean = std::sqrt(0.5 * (inner * inner + outer * outer));
+      for (int i = 0; i < count; ++i) {
+        const double turn = 2 * M_PI * (i + 0.5 * r) / count;
+        at.push_back(mean * dvec2(std::cos(turn), std::sin(turn)));
+        area.push_back(M_PI * (outer * outer - inner * inner) / count);
+      }
+    }
+    const auto count = static_cast<Eigen::Index>(at.size());
+    const auto force = [&](bool by_anchors) {
+      std::vector<SmearedLoad> loads;
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        const double own = kFlatOfDisc * std::sqrt(area[i] / M_PI);
+        const dvec3 x = half.place(at[i].x, at[i].y);
+        loads.push_back(by_anchors ? half.surface().load_at(x, half.axis(1), own)
+                                   : half.surface().load_alone(x, half.axis(1), own));
+      }
+      std::vector<const SmearedLoad*> all;
+      for (const SmearedLoad& load : loads) all.push_back(&load);
+      const Eigen::MatrixXd missing = half.surface().missing(all) / (M_PI * half.tissue().reduced());
+      Eigen::MatrixXd W(count, count);
+      for (Eigen::Index j = 0; j < count; ++j) {
+        const SmearedLoad& from = loads[static_cast<std::size_t>(j)];
+        const std::vector<dvec3> u = half.under(from, 1);
+        for (Eigen::Index i = 0; i < count; ++i) {
+          const SmearedLoad& to = loads[static_cast<std::size_t>(i)];
+          const Block local = i == j ? local_self_compliance(to.place, half.tissue(), nullptr)
+                                     : local_compliance(to.place, from.place, half.tissue(), nullptr);
+          W(i, j) = dot(half.axis(1), half.read(to, u)) + missing(i, j);
+          for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) W(i, j) += half.axis(1)[r] * local(r, c) * half.axis(1)[c];
+        }
+      }
+      return W.lu().solve(Vector::Ones(count)).sum();
+    };
+    const double truth = 2 * half.tissue().reduced() * punch, alone = force(false), anchored = force(true);
+    EXPECT_NEAR(anchored, alone, 0.005 * alone) << punch;
+    EXPECT_NEAR(anchored, truth, 0.035 * truth) << punch;  // 3 % are the points' own: rings of equal areas
+  }
+}
+
+// Row 6: a flat punch on a layer bonded to a rigid base, with the layer's kernel.
+TEST(Smearing, OnBondedLayersThePunchIsHayesPunch) {
+  constexpr double kOwn = 0.5, kWide = 14.0, kNu = 0.45;
+  for (const double thickness : {2.25, 3.0, 6.0}) {
+    Primitive block;
+    for (int i = 0; i < 8; ++i)
+      block.position.emplace_back(i & 1 ? 0.5 * kWide + 0.03 : -0.5 * kWide, i & 2 ? 0.0 : -thickness,
+                                  i & 4 ? 0.5 * kWide : -0.5 * kWide - 0.05);
+    block.index = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 4, 2, 2, 4, 6,
+                   1, 3, 5, 3, 7, 5, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7};
+    Result<BuiltMesh> mesh = build_mesh("layer", {&block, 1}, mat4(1.0f));
+    ASSERT_TRUE(mesh.ok());
+    Result<TetMesh> tets = fill_surface(mesh->mesh, {.cell = kCellOfBall});
+    ASSERT_TRUE(tets.ok());
+    std::vector<NodeGroup> group;
+    for (const dvec3 p : tets->nodes) group.push_back(p.y < -thickness + 1e-6 ? NodeGroup::kPinned : NodeGroup::kFree);
+    put_in_order(*tets, group);
+    tets->samples = sample_surface(mesh->mesh, *tets);
+    const SmearingSurface surface(*tets, kNu);
+    Tissue body(*tets, TissueMaterial{.young = 1.0, .poisson = kNu, .density = 1e-9, .strain = Strain::kLinear},
+                tets->free_count);
+    body.assemble(kStatic, dvec3(0));
+    const std::unique_ptr<LinearSolver> solver = make_solver(SolverKind::kBlockCholesky, body.moving());
+    solver->analyse(body.inner());
+    ASSERT_TRUE(solver->factorise(body.inner()));
+    const LocalElasticity tissue{1.0, kNu};
+    for (const dvec2 place : {dvec2(0.0, 0.0), dvec2(0.41, -0.63)}) {
+      const SmearedLoad load = surface.load_at(dvec3(place.x, 0, place.y), dvec3(0, 1, 0), kOwn);
+      const SmearedLoad* const one = &load;
+      EXPECT_NEAR(load.place.thickness, thickness < 6.0 ? thickness : 0.0, 1e-6);
+      Rows right = Rows::Zero(3 * body.moving(), 1);
+      for (const SmearedNode& part : load.nodes)
+        if (part.node < body.moving()) right(3 * part.node + 1, 0) += kStatic * part.weight;
+      solver->solve_many(right);
+      double whole = local_normal_compliance(load.place, tissue, &surface.layer()) +
+                     surface.missing({&one, 1})(0, 0) / (M_PI * tissue.reduced());
+      for (const SmearedNode& part : load.nodes)
+        if (part.node < body.moving()) whole += kStatic * part.weight * right(3 * part.node + 1, 0);
+      const double truth = 2 * tissue.reduced() * kOwn * bonded_layer_factor(kOwn / thickness, kNu);
+      EXPECT_NEAR(1 / whole, truth, 0.02 * truth) << thickness;
+    }
+  }
 }
 
 }  // namespace

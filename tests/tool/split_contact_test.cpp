@@ -1,6 +1,7 @@
 // Split contacts through the engine: probes and tools on tissue of coarse lattices, against closed forms.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "components/bonded_layer.h"
@@ -181,6 +182,102 @@ TEST(SplitContact, AFlatPunchOnABlockOfCellsOfItsRadiusHasHayesForce) {
     else
       EXPECT_GT(force, 1.7 * truth);
   }
+}
+
+// A ball of triangles.
+Primitive ball_of_triangles(double radius, std::uint32_t around) {
+  Primitive p;
+  const std::uint32_t rings = around / 2;
+  p.position.emplace_back(0.0f, static_cast<float>(-radius), 0.0f);
+  for (std::uint32_t r = 1; r < rings; ++r)
+    for (std::uint32_t i = 0; i < around; ++i) {
+      const double down = M_PI * r / rings, turn = 2 * M_PI * i / around;
+      p.position.push_back(
+          vec3(radius * dvec3(std::sin(down) * std::cos(turn), -std::cos(down), std::sin(down) * std::sin(turn))));
+    }
+  p.position.emplace_back(0.0f, static_cast<float>(radius), 0.0f);
+  const auto at = [&](std::uint32_t r, std::uint32_t i) { return 1 + (r - 1) * around + i % around; };
+  const auto last = static_cast<std::uint32_t>(p.position.size()) - 1;
+  for (std::uint32_t i = 0; i < around; ++i) {
+    p.index.insert(p.index.end(), {0, at(1, i), at(1, i + 1), last, at(rings - 1, i + 1), at(rings - 1, i)});
+    for (std::uint32_t r = 1; r + 1 < rings; ++r)
+      p.index.insert(p.index.end(),
+                     {at(r, i), at(r + 1, i), at(r, i + 1), at(r, i + 1), at(r + 1, i), at(r + 1, i + 1)});
+  }
+  return p;
+}
+
+// Forces of a tool's mesh, held by its device, soft step by soft step.
+struct MeshPress {
+  ToolStage stage{kSplitStep};
+  Entity tissue, tool;
+  double depth = 0.0;                      // [m] of the tool's origin below where it began to touch
+  std::vector<double> force, aside, deep;  // [N], [N], [m] per soft step
+
+  MeshPress(const SplitBlock& block, const Primitive& mesh, dvec2 at) {
+    tissue = add_block(stage, block);
+    Handle6 handle;
+    handle.translation = {1e5, 50.0};
+    handle.rotation = {100.0, 0.1};
+    handle.max_force = 1000, handle.max_torque = 100;
+    tool = stage.add_rigid(mesh, RigidBody{}, Pose{dvec3(at.x, 0, at.y)}, &handle);
+  }
+  void go(dvec3 to, double seconds) {
+    force.clear(), aside.clear(), deep.clear();
+    double next = 0.0, time = 0.0;
+    stage.lead(tool, to, seconds, [&] {
+      time += stage.dt();
+      if (time < next) return;
+      next += kSplitStep;
+      const dvec3 on = stage.contact_force(tool, tissue);
+      force.push_back(on.y), aside.push_back(std::hypot(on.x, on.z));
+      deep.push_back(-stage.body(tool).as_tool()->handle().object_pose().position.y);
+    });
+  }
+  double ripple() const {  // [1] of the mean
+    const auto [low, high] = std::minmax_element(force.begin(), force.end());
+    return (*high - *low) / (0.5 * (*high + *low));
+  }
+};
+
+// F / E* r^2 of a ball at the depth d / r on a half-space (Sneddon 1965).
+double sneddon_ball(double depth) {
+  double low = 0.0, high = 0.999;
+  for (int i = 0; i < 60; ++i) {
+    const double a = 0.5 * (low + high);
+    (0.5 * a * std::log((1 + a) / (1 - a)) < depth ? low : high) = a;
+  }
+  return 0.5 * (1 + low * low) * std::log((1 + low) / (1 - low)) - low;
+}
+
+// A ball of triangles: pressed in steadily to 0.45 of its radius its force is that of a ball on a
+// layer all the way, and at rest it is steady.
+TEST(SplitContact, ABallOfTrianglesPressedDeepIsSteadyAndAsHeavyAsABall) {
+  constexpr double kBallRadius = 0.01;
+  SplitBlock block{.half_width = 0.06, .thickness = 0.05, .cell = 0.012, .squares = 12};
+  Primitive mesh = ball_of_triangles(kBallRadius, 64);
+  for (vec3& p : mesh.position) p.y += static_cast<float>(kBallRadius);
+  MeshPress press(block, mesh, dvec2(0.0023, -0.0031));
+  const double unit = block.thickness * block.thickness / kBallRadius;
+  const auto law = [&](double depth) {  // of a paraboloid on a layer, by a ball's share of it on a half-space
+    const double paraboloid = 4.0 / 3.0 * std::pow(depth / kBallRadius, 1.5);
+    return block.reduced() * kBallRadius * kBallRadius * sneddon_ball(depth / kBallRadius) / paraboloid * 4.0 / 3.0 *
+           std::pow(unit / kBallRadius, 1.5) * layer_sphere(block.poisson).at(depth / unit).value;
+  };
+  press.stage.prepare();
+  press.go(dvec3(0.0023, 5e-4, -0.0031), 0.05);
+  press.go(dvec3(0.0023, -0.0045, -0.0031), 1.0);
+  int compared = 0;
+  for (std::size_t i = 0; i < press.force.size(); ++i) {
+    if (press.deep[i] < 0.06 * kBallRadius) continue;  // facets
+    EXPECT_NEAR(press.force[i], law(press.deep[i]), 0.03 * law(press.deep[i])) << press.deep[i];
+    ++compared;
+  }
+  EXPECT_GT(compared, 40);
+  press.go(dvec3(0.0023, -0.0045, -0.0031), 0.3);
+  press.go(dvec3(0.0023, -0.0045, -0.0031), 0.5);
+  EXPECT_LT(press.ripple(), 0.001);
+  EXPECT_LT(press.aside.back(), 0.01 * press.force.back());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "runtime/assert.h"
 #include "runtime/long_work.h"
@@ -249,7 +250,7 @@ void SoftBodyState::refresh_surface(const std::vector<dvec3>& of_nodes, std::vec
 template <class Use>
 void SoftBodyState::for_each_node(const SurfacePoint& point, Use use) const {
   if (point.smeared) {
-    for (const auto& part : point.smeared->nodes) use(part.first, part.second);
+    for (const SmearedNode& part : point.smeared->nodes) use(part.node, part.weight);
     return;
   }
   for (int corner = 0; corner < 3; ++corner) {
@@ -266,7 +267,7 @@ LocalElasticity SoftBodyState::elasticity() const {
 
 dvec3 SoftBodyState::free_velocity(const SmearedLoad& load) const {
   dvec3 sum(0);
-  for (const auto& part : load.nodes) sum += part.second * node_velocity(part.first, free_velocity_);
+  for (const SmearedNode& part : load.nodes) sum += part.weight * node_velocity(part.node, free_velocity_);
   return sum;
 }
 
@@ -291,15 +292,31 @@ void SoftBodyState::add_compliance(std::span<const Side> sides, double T, Eigen:
   const auto along = [](const Side& side) -> Block {  // to the contact's axes
     return side.sign * to_block(glm::transpose(*side.axes) * side.point->smeared->turn);
   };
+  std::vector<const SmearedLoad*> spread_loads;
+  for (const Side* side : smeared) spread_loads.push_back(side->point->smeared.get());
+  const Eigen::MatrixXd missing = smearing_->missing(spread_loads);
+  const auto of_anchors = [&](Eigen::Index i, Eigen::Index j) -> Block {
+    const auto normal = [&](Eigen::Index k) {
+      const dvec3 out = spread_loads[static_cast<std::size_t>(k)]->place.normal;
+      return Eigen::Vector3d(out.x, out.y, out.z);
+    };
+    const Block across = normal(i) * normal(j).transpose();
+    const Block along_i = Block::Identity() - normal(i) * normal(i).transpose(),
+                along_j = Block::Identity() - normal(j) * normal(j).transpose();
+    return missing(i, j) / M_PI *
+           (across / tissue.reduced() + (1 - tissue.poisson / 2) / (2 * tissue.shear()) * along_i * along_j);
+  };
   for (Eigen::Index i = 0; i < n; ++i) {
     const Side& side = *smeared[static_cast<std::size_t>(i)];
     L.block<3, 3>(3 * i, 3 * i) =
-        along(side) * self_compliance(*side.point->smeared, tissue, smearing_->layer()) * along(side).transpose();
+        along(side) * (self_compliance(*side.point->smeared, tissue, smearing_->layer()) + of_anchors(i, i)) *
+        along(side).transpose();
     for (Eigen::Index j = 0; j < i; ++j) {
       const Side& other = *smeared[static_cast<std::size_t>(j)];
       const Block pair = along(side) *
-                         local_compliance(pair_place(*side.point->smeared), pair_place(*other.point->smeared), tissue,
-                                          &smearing_->layer()) *
+                         (local_compliance(pair_place(*side.point->smeared), pair_place(*other.point->smeared), tissue,
+                                           &smearing_->layer()) +
+                          of_anchors(i, j)) *
                          along(other).transpose();
       L.block<3, 3>(3 * i, 3 * j) = pair;
       L.block<3, 3>(3 * j, 3 * i) = pair.transpose();
@@ -350,18 +367,57 @@ void SoftBodyState::place(const Pose& pose) {
   refresh_surface(tissue_.position(), surface_position);
 }
 
-// Half a solve instead of a whole one, only at the contacts' nodes (LinearSolver::solve_gram).
+// Half a solve instead of a whole one, only at the contacts' nodes (LinearSolver::solve_gram). Contacts by anchors need
+// the anchors' columns alone: W = E C E^T, E of 3 x 3 blocks.
 void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const {
   pushed_.clear(tissue_.moving());
+  std::map<std::uint32_t, Eigen::Index> column_of;  // anchors
+  for (const PushedSide& side : sides)
+    if (side.point->smeared)
+      for (const auto& part : side.point->smeared->anchors) column_of.emplace(part.first, 0);
+  const bool by_anchors = !column_of.empty();
+  for (auto& [anchor, column] : column_of) {
+    column = pushed_.count();
+    for (const SmearedNode& part : smearing_->anchor_nodes(anchor))
+      if (part.node < tissue_.moving()) pushed_.entries.push_back({part.node, part.weight * Block::Identity()});
+    pushed_.close();
+  }
+  const Eigen::Index anchors = pushed_.count();
+  std::vector<Eigen::Index> alone;  // contact of each further column
   for (const PushedSide& side : sides) {
-    while (pushed_.count() < side.contact) pushed_.close();
+    if (side.point->smeared && !side.point->smeared->anchors.empty()) continue;
+    if (by_anchors) {
+      if (alone.empty() || alone.back() != side.contact) {
+        if (!alone.empty()) pushed_.close();
+        alone.push_back(side.contact);
+      }
+    } else {
+      while (pushed_.count() < side.contact) pushed_.close();
+    }
     const Block axes = to_block(*side.axes);
     for_each_node(*side.point, [&](std::uint32_t node, double weight) {
       if (node < tissue_.moving()) pushed_.entries.push_back({node, side.sign * weight * axes});
     });
   }
-  while (pushed_.count() < contacts) pushed_.close();
-  solver_.gram_held(pushed_, out.held);
+  if (by_anchors) {
+    if (!alone.empty()) pushed_.close();
+    Eigen::MatrixXd of_columns;
+    solver_.gram_held(pushed_, of_columns);
+    Rows expand = Rows::Zero(3 * contacts, of_columns.rows());
+    for (std::size_t k = 0; k < alone.size(); ++k)
+      expand.block<3, 3>(3 * alone[k], 3 * (anchors + static_cast<Eigen::Index>(k))).setIdentity();
+    for (const PushedSide& side : sides)
+      if (side.point->smeared)
+        for (const auto& [anchor, share] : side.point->smeared->anchors)
+          expand.block<3, 3>(3 * side.contact, 3 * column_of.at(anchor)) +=
+              side.sign * share * to_block(*side.axes).transpose();
+    of_columns.triangularView<Eigen::StrictlyUpper>() = of_columns.transpose();
+    const Rows half = expand * of_columns;
+    out.held.noalias() = half * expand.transpose();
+  } else {
+    while (pushed_.count() < contacts) pushed_.close();
+    solver_.gram_held(pushed_, out.held);
+  }
 
   Rows moved = Rows::Zero(3 * contacts, handle_ ? 6 : 0);
   if (handle_)
@@ -372,12 +428,23 @@ void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index cont
 
 void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
                            Eigen::Ref<Rows> out) const {
-  const Block along = to_block(axes).transpose();
+  const Block along = sign * to_block(axes).transpose();
+  if (point.smeared) {  // hundreds of nodes: their motion is summed up first
+    Rows moved = Rows::Zero(3, x.cols());
+    for_each_node(point, [&](std::uint32_t node, double weight) {
+      if (node < tissue_.moving())
+        moved += weight * x.middleRows<3>(3 * node);
+      else if (slaved(node))
+        moved.noalias() += (weight * grip_matrix(arm(node))).eval() * x.bottomRows<6>();
+    });
+    out.noalias() += along * moved;
+    return;
+  }
   for_each_node(point, [&](std::uint32_t node, double weight) {
     if (node < tissue_.moving())
-      out.noalias() += (sign * weight * along) * x.middleRows<3>(3 * node);
+      out.noalias() += (weight * along) * x.middleRows<3>(3 * node);
     else if (slaved(node))
-      out.noalias() += (sign * weight * along * grip_matrix(arm(node))).eval() * x.bottomRows<6>();
+      out.noalias() += (weight * along * grip_matrix(arm(node))).eval() * x.bottomRows<6>();
   });
 }
 

@@ -89,6 +89,9 @@ struct Proximity::Parts {
     const auto known = touching.find(pair_key(i, k));
     PairPast past = known != touching.end() ? known->second : PairPast{};
     if (!late && !(seen[i] && seen[k])) past.deepest = std::numeric_limits<double>::infinity();
+    // Points that pressed split tissue before stay by themselves (point_contacts.h): only new places are looked for.
+    const bool by_points = met_split(*bodies[i], *bodies[k]) && bodies[i]->tips.empty() && bodies[k]->tips.empty();
+    if (by_points && !late && seen[i] && seen[k]) past.deepest = 0.0;
     const PairView pair = view_of(i, k, past);
     const MeetingSide a{i, *bodies[i], contacts.collision_meshes[i]}, b{k, *bodies[k], contacts.collision_meshes[k]};
     const std::size_t first = contacts.found.size();
@@ -193,7 +196,7 @@ struct Proximity::Parts {
         contacts.collision_meshes[i].fit_swept(), find_between(bodies, i, i);
       for (std::uint32_t k = i + 1; k < count; ++k) {
         if (!bodies[i]->meets(*bodies[k]) || !takes_part(k) || !may_miss(i, k)) continue;
-        if (met_by_tips(*bodies[i], *bodies[k])) continue;  // a tip is in the surface without its dent
+        if (met_split(*bodies[i], *bodies[k])) continue;
         contacts.collision_meshes[i].fit_swept(), contacts.collision_meshes[k].fit_swept();
         find_between(bodies, i, k);
       }

@@ -90,7 +90,7 @@ void Tissue::set_material(const TissueMaterial& now) {
   material_.density = density;
   mu_ = now.young / (2 * (1 + now.poisson));
   lambda_ = now.young * now.poisson / ((1 + now.poisson) * (1 - 2 * now.poisson));
-  law_ = now.strain == Strain::kLinear ? nullptr : elastic_law(now.law);
+  law_ = now.strain == Strain::kLinear || !mesh_.cells.empty() ? nullptr : elastic_law(now.law);
 }
 
 void Tissue::take_elements() {

@@ -10,12 +10,18 @@
 
 namespace pliant {
 
+struct SmearedNode {
+  std::uint32_t node = 0;
+  double weight = 0.0;  // [1]
+  dvec3 gradient{0};    // [1/m] <w, grad N>, so that <w, F> = sum of x gradient^T over the nodes
+};
+
 struct SmearedLoad {
-  LocalPlace place;  // object frame, undeformed
-  // Nodes and their weights [1]: of the load and of the motion that is read. They sum to 1.
-  std::vector<std::pair<std::uint32_t, double>> nodes;
-  std::vector<std::pair<std::uint32_t, double>> tets;  // the same of tetrahedra, for their rotation
-  dvec3 mean{0};                                       // [m] <w, X>: of the nodes at rest
+  LocalPlace place;                // object frame, undeformed
+  std::vector<SmearedNode> nodes;  // weights of the load and of the motion that is read; they sum to 1
+  // The same by anchors (smearing_surface.h), which sum to 1.
+  std::vector<std::pair<std::uint32_t, double>> anchors;
+  dvec3 mean{0};  // [m] <w, X>: of the nodes at rest
 
   // In this step:
   dmat3 turn{1};   // Q: rotation of the tissue there

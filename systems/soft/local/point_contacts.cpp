@@ -1,0 +1,263 @@
+#include "systems/soft/local/point_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/soft/body/soft_body_state.h"
+#include "systems/soft/local/smearing_surface.h"
+#include "systems/soft/local/surface_frame.h"
+#include "systems/soft/local/tip_law.h"
+#include "systems/touch/collide/foot.h"
+#include "systems/touch/collide/virtual_vertex.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::uint32_t kPointFeature = 0x80000000u;  // features of points in contact keys: beyond all vertices
+constexpr std::uint32_t kPointsOfLevel = 1u << 20;
+constexpr std::size_t kMostPressed = 40, kFewPressed = 12;  // loaded points, from level to level
+constexpr std::size_t kFarTooMany = 120;                    // points that press or will
+constexpr double kFacesBody = 0.02;                         // [1] of a point's area: less of it does not face the other
+constexpr double kReadyAt = 0.5;                            // [1] of the spacing: gap of contacts that are kept ready
+constexpr double kAround = 3.0;                             // [1] of the spacing: points this near to known contacts
+
+double area_of(const Mesh& mesh) {
+  double twice = 0.0;
+  for (const uvec3 t : mesh.triangles)
+    twice += length(cross(dvec3(mesh.position(t.y)) - dvec3(mesh.position(t.x)),
+                          dvec3(mesh.position(t.z)) - dvec3(mesh.position(t.x))));
+  return 0.5 * twice;
+}
+
+template <class Of>
+dvec3 on_mesh(const Body& body, const std::vector<dvec3>& of, std::uint32_t triangle, const Of& barycentric) {
+  const uvec3 t = body.collision_mesh->triangles[triangle];
+  return barycentric.x * of[t.x] + barycentric.y * of[t.y] + barycentric.z * of[t.z];
+}
+
+dvec3 outward_at(const Body& body, std::uint32_t triangle) {
+  const uvec3 t = body.collision_mesh->triangles[triangle];
+  const std::vector<dvec3>& x = body.surface_position;
+  const dvec3 n = cross(x[t.y] - x[t.x], x[t.z] - x[t.x]);
+  const double size = length(n);
+  return size > 0.0 ? n / size : dvec3(0.0);
+}
+
+// A place where the bodies are near each other.
+struct Seed {
+  dvec3 at{0};                 // [m] world, of the pressing body
+  std::uint32_t triangle = 0;  // of the other
+  dvec3 barycentric{1, 0, 0};  // [1]
+  SurfaceFrame frame;          // of the other there
+  dvec3 outward{0};            // [1] of the other, world
+};
+
+}  // namespace
+
+// One pair in one step: body a presses on body b.
+struct PointContacts::Pressed {
+  std::uint32_t a, b;
+  const Body &of_a, &of_b;
+  const SoftBodyState *tissue_a, *tissue_b;  // split; else null
+  double T;
+  double mu_static, mu_sliding;
+  std::vector<Seed> seeds;
+  std::vector<ContactPoint> last;  // contacts of the last step
+  dvec3 low{1e300}, high{-1e300};  // [m] around the seeds
+  Surface& surface;
+};
+
+void PointContacts::remember(const std::vector<ContactPoint>& contacts) {
+  points_.clear();
+  for (const ContactPoint& c : contacts)
+    if ((c.a.smeared || c.b.smeared) && !(c.b.smeared && c.b.smeared->tip_radius > 0.0)) points_.push_back(c);
+  last_.take(points_);
+}
+
+PointContacts::Surface& PointContacts::surface_of(const std::vector<std::unique_ptr<Body>>& bodies,
+                                                  std::uint32_t body) {
+  if (surfaces_.size() < bodies.size()) surfaces_.resize(bodies.size());
+  Surface& out = surfaces_[body];
+  if (out.area == 0.0) out.area = area_of(*bodies[body]->collision_mesh);
+  return out;
+}
+
+// The contacts of a level's points. Returns how many press without a dent, or will at the end of the step.
+std::size_t PointContacts::press(const Pressed& pair, std::size_t level, std::vector<ContactPoint>& out) {
+  out.clear();
+  std::size_t pressing = 0;
+  const PointLevel& points = pair.surface.levels[level];
+  std::vector<std::shared_ptr<const SmearedLoad>>& loads = pair.surface.loads[level];
+  const double around = kAround * points.spacing;
+  for (std::uint32_t i = 0; i < points.points.size(); ++i) {
+    const PressedPoint& point = points.points[i];
+    dvec3 x = on_mesh(pair.of_a, pair.of_a.surface_position, point.triangle, point.barycentric);
+    if (glm::any(glm::lessThan(x, pair.low - around)) || glm::any(glm::greaterThan(x, pair.high + around))) continue;
+    const dvec3 out_of_a = outward_at(pair.of_a, point.triangle);
+    const Seed* nearest = nullptr;
+    double least = 1e300;
+    for (const Seed& seed : pair.seeds) {
+      const dvec3 d = seed.at - x;
+      if (dot(d, d) < least && dot(out_of_a, seed.outward) < 0.0) least = dot(d, d), nearest = &seed;
+    }
+    if (!nearest) continue;
+    const Mesh& mesh = *pair.of_b.collision_mesh;
+    Foot foot = descend(mesh, nearest->triangle, nearest->barycentric, nearest->frame.to_rest(x));
+    if (!foot.valid() || foot.at_border) continue;
+    SurfaceFrame frame = nearest->frame;
+    if (!pair.tissue_b) frame = frame_of_triangle(pair.of_b, foot.triangle);
+    ContactPoint c;
+    c.body_a = pair.a, c.body_b = pair.b;
+    c.a.triangle = point.triangle, c.a.barycentric = point.barycentric, c.a.position = x;
+    const auto facing = [&] { return -dot(out_of_a, frame.turn * foot.normal); };
+    const auto closing = [&] {
+      return pair.T * dot(frame.turn * foot.normal,
+                          on_mesh(pair.of_b, pair.of_b.surface_velocity, foot.triangle, foot.barycentric) -
+                              on_mesh(pair.of_a, pair.of_a.surface_velocity, c.a.triangle, c.a.barycentric));
+    };
+    const double far = kReadyAt * points.spacing + std::max(0.0, closing());
+    if (facing() < kFacesBody || foot.height > 2.0 * far) continue;
+    if (pair.tissue_a) {
+      if (!loads[i]) {
+        const Corner3 corner = corners(*pair.of_a.collision_mesh, point.triangle);
+        const SurfaceFoot at = surface_point(corner, point.triangle, point.barycentric, 0.0);
+        loads[i] = std::make_shared<SmearedLoad>(pair.tissue_a->smearing()->load_at(point.at, at.normal, 1.0));
+      }
+      if (loads[i]->nodes.empty()) continue;
+      auto load = std::make_shared<SmearedLoad>(*loads[i]);
+      pair.tissue_a->smearing()->follow(pair.tissue_a->tissue().position(), *load);
+      x = load->to_world(point.at);
+      c.a.smeared = std::move(load);
+    }
+    std::shared_ptr<SmearedLoad> under;
+    if (pair.tissue_b) {
+      const SmearingSurface& smearing = *pair.tissue_b->smearing();
+      under = std::make_shared<SmearedLoad>(smearing.load_at(foot.p, foot.normal, 1.0));
+      if (under->nodes.empty()) continue;
+      smearing.follow(pair.tissue_b->tissue().position(), *under);
+      frame = {under->turn, under->mean, under->moved};
+    }
+    if (pair.tissue_a || pair.tissue_b) {
+      foot = descend(mesh, foot.triangle, foot.barycentric, frame.to_rest(x));
+      if (!foot.valid() || foot.at_border) continue;
+      if (!pair.tissue_b) frame = frame_of_triangle(pair.of_b, foot.triangle);
+    }
+    c.gap = foot.height;
+    pressing += c.gap - closing() < 0.0;
+    if (facing() < kFacesBody || c.gap > far) continue;
+    c.normal = frame.turn * foot.normal;
+    c.b.triangle = foot.triangle, c.b.barycentric = foot.barycentric, c.b.position = frame.to_world(foot.p);
+    const double own = kFlatOfDisc * std::sqrt(facing() * point.area / M_PI);
+    const auto give = [&](SmearedLoad& load, dvec3 outward) {
+      load.place.normal = outward * load.turn;
+      load.place.own = load.pair_radius = std::min(own, kWidestTip * load.place.smeared / load.place.lattice.normal);
+    };
+    if (c.a.smeared) {
+      auto load = std::make_shared<SmearedLoad>(*c.a.smeared);
+      give(*load, -c.normal);
+      c.a.smeared = std::move(load);
+    }
+    if (under) {
+      under->place.at = foot.p;
+      give(*under, c.normal);
+      c.b.smeared = std::move(under);
+    }
+    c.over_b = dmat2(1.0);
+    c.reach = around;
+    c.mu_static = pair.mu_static, c.mu_sliding = pair.mu_sliding;
+    c.key = vertex_key(pair.a, pair.b, kPointFeature + static_cast<std::uint32_t>(level) * kPointsOfLevel + i, 0);
+    const ContactPoint* before = last_.find(c.key);
+    carry_over(before, c);
+    if (!before && !pair.last.empty()) {  // of another level
+      const ContactPoint* like = nullptr;
+      double least_apart = 4.0 * points.spacing * points.spacing;
+      for (const ContactPoint& old : pair.last) {
+        const dvec3 d = old.a.position - c.a.position;
+        if (dot(d, d) < least_apart) least_apart = dot(d, d), like = &old;
+      }
+      if (like) c.strained = like->strained - dot(like->strained, c.normal) * c.normal, c.sliding = like->sliding;
+    }
+    out.push_back(std::move(c));
+  }
+  return pressing;
+}
+
+void PointContacts::place(const std::vector<std::unique_ptr<Body>>& bodies, std::uint32_t i, std::uint32_t k, double T,
+                          std::vector<ContactPoint>& contacts) {
+  const auto between = [&](const ContactPoint& c) { return std::minmax(c.body_a, c.body_b) == std::minmax(i, k); };
+  const double area_i = surface_of(bodies, i).area, area_k = surface_of(bodies, k).area;
+  const std::uint32_t a = area_i <= area_k ? i : k, b = a == i ? k : i;
+  const auto split = [&](std::uint32_t body) {
+    const SoftBodyState* tissue = bodies[body]->as_tissue();
+    return tissue && tissue->smearing() ? tissue : nullptr;
+  };
+  const Body &of_a = *bodies[a], &of_b = *bodies[b];
+  const Body &first = of_a.kind == BodyKind::kProbe ? of_b : of_a,
+             &second = of_b.kind == BodyKind::kProbe ? of_a : of_b;
+  Pressed pair{a,
+               b,
+               of_a,
+               of_b,
+               split(a),
+               split(b),
+               T,
+               std::sqrt(first.friction_static * second.friction_static),
+               std::sqrt(first.friction_sliding * second.friction_sliding),
+               {},
+               {},
+               dvec3(1e300),
+               dvec3(-1e300),
+               surface_of(bodies, a)};
+  const auto add_seed = [&](const SurfacePoint& on_a, const SurfacePoint& on_b) {
+    Seed seed;
+    seed.at = on_mesh(of_a, of_a.surface_position, on_a.triangle, on_a.barycentric);
+    seed.triangle = on_b.triangle, seed.barycentric = on_b.barycentric;
+    seed.outward = outward_at(of_b, on_b.triangle);
+    if (on_b.smeared) {
+      SmearedLoad load = *on_b.smeared;
+      pair.tissue_b->smearing()->follow(pair.tissue_b->tissue().position(), load);
+      seed.frame = {load.turn, load.mean, load.moved};
+    } else {
+      seed.frame = frame_of_triangle(of_b, on_b.triangle);
+    }
+    pair.low = glm::min(pair.low, seed.at), pair.high = glm::max(pair.high, seed.at);
+    pair.seeds.push_back(seed);
+  };
+  std::size_t loaded = 0;
+  for (const ContactPoint& c : points_)
+    if (c.body_a == a && c.body_b == b) {
+      pair.last.push_back(c);
+      add_seed(c.a, c.b);
+      loaded += c.impulse.x > 0.0;
+    }
+  std::erase_if(contacts, [&](const ContactPoint& c) {
+    if (!between(c)) return false;
+    c.body_a == a ? add_seed(c.a, c.b) : add_seed(c.b, c.a);
+    return true;
+  });
+  if (pair.seeds.empty()) return;
+  if (pair.surface.levels.empty()) {
+    pair.surface.levels = pressed_points(*of_a.collision_mesh);
+  }
+  if (const double poisson = pair.tissue_a ? pair.tissue_a->elasticity().poisson : 0.0;
+      pair.surface.poisson != poisson) {
+    pair.surface.poisson = poisson;
+    pair.surface.loads.clear();
+    for (const PointLevel& level : pair.surface.levels) pair.surface.loads.emplace_back(level.points.size());
+  }
+  if (pair.surface.levels.empty()) return;
+  const std::size_t coarsest = pair.surface.levels.size() - 1;
+  const auto known = level_.find({a, b});
+  std::size_t level = known == level_.end() ? coarsest : known->second;
+  if (loaded > kMostPressed && level < coarsest) ++level;
+  if (loaded > 0 && loaded < kFewPressed && level > 0) --level;
+  std::vector<ContactPoint> found;
+  std::size_t pressing = press(pair, level, found);
+  if (loaded == 0)
+    while (level > 0 && pressing < 2 * kFewPressed) pressing = press(pair, --level, found);
+  while (level < coarsest && pressing > kFarTooMany) pressing = press(pair, ++level, found);
+  level_[{a, b}] = level;
+  contacts.insert(contacts.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
+}
+
+}  // namespace pliant
