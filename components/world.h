@@ -45,6 +45,7 @@ enum DroppedBit : std::uint32_t {  // 8 was used by an earlier bit and stays unu
   kDroppedHoles = 4096,   // a surface was broken in more places than it remembers: the last ones close again
   kDroppedSets = 8192,    // a surface yielded in more places than it remembers: there it stays elastic
   kDroppedRim = 16384,    // a probe slipped round the rim of a part thinner than its depth, and was let go
+  kDroppedGain = 32768,   // tissue with a law for large strain moved less in a step than it should: reduce `soft_step`
   kDroppedSetBack = 512,  // a tool got away from its device and was set back to it: reduce `soft_step`
 };
 

@@ -36,7 +36,7 @@ struct Tasks {
   std::size_t count = 0;
   detail::TaskCall call{};
   unsigned threads = 1;              // that may take part
-  std::atomic<std::size_t> next{0};  // first task that nobody has begun
+  std::atomic<std::size_t> next{0};  // first task that has not begun
   std::atomic<unsigned> entered{1};  // threads that have taken part; the caller is number 0
   std::atomic<unsigned> inside{0};   // helpers that take part now
   std::exception_ptr thrown;         // guarded by the team's mutex
@@ -80,7 +80,7 @@ class Team {
     tasks.work(0, mutex_);
     {
       const std::lock_guard lock(mutex_);
-      now_ = nullptr;  // nobody enters any more
+      now_ = nullptr;  // closed to threads
     }
     for (int i = 0; i < kSpins && tasks.inside > 0; ++i) relax();
     std::unique_lock lock(mutex_);

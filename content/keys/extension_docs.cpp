@@ -150,10 +150,7 @@ std::string extension_tables() {
         extension.on_scene ? "Scene" : "Node", extension.name, extension.doc);
     for (const Key& key : extension.keys) out += table_row(key.name, key, key.get(defaults.owner));
     for (const Key& key : extension.keys)
-      for (const Key& of : key.items) {
-        const Layer usual;
-        out += table_row(key.name + "[]." + of.name, of, of.get(&usual));
-      }
+      for (const Key& of : key.items) out += table_row(key.name + "[]." + of.name, of, of.get(key.usual_item));
     out += "\n";
   }
   return out;

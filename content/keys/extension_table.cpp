@@ -184,7 +184,8 @@ Key layers_key() {
     for (const Layer& layer : static_cast<const LevelNode*>(owner)->deformable->layers) {
       Json item = Json::object();
       for (const Key& key : items)
-        if (Json value = key.get(&layer); value != key.get(&usual) || key.name == "thickness") item[key.name] = value;
+        if (Json value = key.get(&layer); !(value == key.get(&usual)) || key.name == "thickness")
+          item[key.name] = value;
       list.push_back(std::move(item));
     }
     return list;
@@ -234,7 +235,7 @@ Key materials_key() {
     for (const TissuePart& part : static_cast<const LevelNode*>(owner)->soft_body->materials) {
       Json item = Json::object();
       for (const Key& key : items)
-        if (Json value = key.get(&part); value != key.get(&usual) || key.name == "name") item[key.name] = value;
+        if (Json value = key.get(&part); !(value == key.get(&usual)) || key.name == "name") item[key.name] = value;
       list.push_back(std::move(item));
     }
     return list;

@@ -42,7 +42,7 @@ void visit_members(auto& io, auto& of, const DrawMesh*) {
 void visit_members(auto& io, auto& of, const TetMesh*) {
   auto& [name, nodes, free_count, handle_count, tets, cells, volume, factors, group, embedding, samples, parts, start,
          quality, report] = of;
-  // What it carries, how it is touched and what parts of it are made of belongs to a World.
+  // Carried nodes, contact keys and materials of parts belong to a World.
   ASSERT(parts.empty() && samples.empty() && factors.empty());
   io(name, nodes, free_count, handle_count, tets, cells, volume, group, embedding, start, quality, report);
 }

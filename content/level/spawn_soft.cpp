@@ -189,6 +189,14 @@ std::optional<Note> locking_doubt(const SoftBody& body, std::size_t tetrahedra) 
               {}};
 }
 
+std::optional<Note> law_fault(const LevelNode& node) {
+  if (!node.soft_body || !node.soft_body->mesh.empty() || node.soft_body->elements != Elements::kHexahedra ||
+      node.soft_body->law == TissueLaw::kCorotational)
+    return std::nullopt;
+  return Note{"has a `law` for large strain, and hexahedra are co-rotational",
+              "leave out `law`, or take `elements` `tetrahedra`", "level.law_of_hexahedra", node.name};
+}
+
 std::optional<Note> soft_fault(const LevelNode& node) {
   const auto fault = [&](const char* code, const char* what, const char* cure) {
     return Note{what, cure, code, node.name};
@@ -196,10 +204,7 @@ std::optional<Note> soft_fault(const LevelNode& node) {
   if (node.soft_body && node.deformable)
     return fault("level.soft_and_deformable", "has both PLIANT_soft_body and PLIANT_deformable",
                  "keep one, a node is a soft body or a deformable surface");
-  if (node.soft_body && node.soft_body->mesh.empty() && node.soft_body->elements == Elements::kHexahedra &&
-      node.soft_body->law != TissueLaw::kCorotational)
-    return fault("level.law_of_hexahedra", "has a `law` of large strain, and hexahedra are co-rotational",
-                 "leave out `law`, or take `elements` `tetrahedra`");
+  if (std::optional<Note> of_law = law_fault(node)) return of_law;
   if (node.soft_body && node.rigid_body)
     return fault("level.soft_and_rigid", "has both PLIANT_soft_body and PLIANT_rigid_body",
                  "keep one, or mark the rigid part with PLIANT_handle");

@@ -27,6 +27,8 @@ std::optional<Note> locking_doubt(const SoftBody& body, std::size_t tetrahedra);
 
 // Conflicting extensions of a node, as text that follows "node X"; "": none.
 std::optional<Note> soft_fault(const LevelNode& node);
+// The part of it that depends on keys that may change while a session runs.
+std::optional<Note> law_fault(const LevelNode& node);
 
 // Fills a surface with tetrahedra as the body specifies, without embedding. Groups the nodes (handle, pinned), drops
 // small parts (tet_parts.h), and fills TetReport. Errors: those of fill_surface and group_nodes, and if most of the

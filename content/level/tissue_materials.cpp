@@ -87,7 +87,7 @@ void paint_factors(const Mesh& surface, TetMesh& mesh) {
   });
 }
 
-// Share [1] of each element in the part `name`; empty: there is no such part.
+// Share [1] of each element in the part `name`; empty: the part is missing.
 Result<std::vector<double>> shares_of(const std::string& name, const Level& level, const dmat4& to_object,
                                       const std::vector<dmat4>& world, const SoftParts& parts) {
   const TetMesh& mesh = parts.tets;

@@ -1,4 +1,4 @@
-// What the parts of a soft body are made of: paint on its surface, physical groups of its file, and closed meshes
+// Materials of the parts of a soft body: paint on its surface, physical groups of its file, and closed meshes
 // inside of it (TissuePart).
 #pragma once
 

@@ -1,7 +1,7 @@
 // A lattice of whole hexahedra over a surface (LatticeCell). Its cells are those that hold tissue, each with its share
 // and the moments of it: nothing is cut, so a section has the area and second moments of the surface's, and no element
 // is thin. The lattice spans the box of the region with a whole number of cells along each axis, so that a box is met
-// exactly. What a gap narrower than a cell parts is joined.
+// exactly. A gap narrower than a cell is closed.
 #pragma once
 
 #include <stop_token>

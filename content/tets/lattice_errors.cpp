@@ -31,7 +31,7 @@ LatticeErrors expected_errors(const TetMesh& mesh, const Mesh& surface, double p
   if (!cells && tissue > 0.0) out.section = total_volume(mesh) / tissue - 1.0;
   const auto stiffer = [](double nu) { return 2 * nu / (1 - 2 * nu); };  // lambda / mu
   const double locking = cells ? 1.0 : 1.0 + kLockingGrowth * std::max(0.0, stiffer(poisson) - stiffer(kUsualPoisson));
-  // What is missing lies at the edges of a section.
+  // The missing part lies at the edges of a section.
   const double square = out.across * out.across, section = 1.0 + 2.0 * out.section;
   out.bending = section * (1.0 + (cells ? kBendsOfCells : kBendsOfTets) * locking / square) - 1.0;
   out.torsion = section * (1.0 + (cells ? kTwistsOfCells : kTwistsOfTets) * locking / square) - 1.0;

@@ -1,4 +1,4 @@
-// What a lattice will be off by, before it is run: estimates from measurements on bars and blocks.
+// Errors to expect of a lattice: estimates from measurements on bars and blocks.
 #pragma once
 
 #include "components/mesh.h"

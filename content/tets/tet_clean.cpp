@@ -15,7 +15,7 @@ constexpr double kFarthestNode = 1e9;  // [m]
 // Six volumes over the cube of the longest edge from a corner (0.7 for a regular tetrahedron). Below it, an element
 // counts as flat.
 constexpr double kFlat = 1e-8;
-constexpr std::size_t kMostGroups = 60'000;  // physical groups that are told apart
+constexpr std::size_t kMostGroups = 60'000;  // physical groups that are distinguished
 
 double longest_edge(std::span<const dvec3> nodes, const Tet& t) {
   double longest = 0.0;

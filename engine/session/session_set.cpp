@@ -211,8 +211,10 @@ Result<SessionChange> change_of(SessionRun& p, const std::string& name, const st
                                 const Extension& extension, const Key& key, LevelNode& node) {
   if (extension.name == "deformable") return change_surface(p, name, where, *node.deformable);
   if (extension.name == "rigid_body") return change_rigid(p, name, node);
-  if (const std::optional<Note> fault = soft_fault(node)) return Error{where, fault->what, fault->cure};
-  if (extension.name == "soft_body") return change_soft(p, name, *node.soft_body);
+  if (extension.name == "soft_body") {
+    if (const std::optional<Note> fault = law_fault(node)) return Error{where, fault->what, fault->cure};
+    return change_soft(p, name, *node.soft_body);
+  }
   if (extension.name == "probe") return change_probe(p, name, where, *node.probe);
   if (extension.name == "effect") return change_effect(p, name, where, key.name, *node.effect);
   if (extension.name == "handle") return change_handle(p, name, *node.handle);

@@ -146,8 +146,11 @@ void advance_bodies(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   const double dt = soft.share * tick.dt;
-  for (const std::unique_ptr<Body>& body : soft.bodies)
-    if (!body->taken_out) body->advance(dt);
+  for (const std::unique_ptr<Body>& body : soft.bodies) {
+    if (body->taken_out) continue;
+    body->advance(dt);
+    if (body->shortened()) soft.dropped |= kDroppedGain;
+  }
   for (const std::uint32_t i : soft.yielding) soft.surface(i).yield(soft.contacts, dt);
 }
 

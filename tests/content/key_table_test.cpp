@@ -70,6 +70,7 @@ Json other_value(const Key& key, const Json& other) {
                                      Json::array({Json::array({0.5, 0.25, 0.125})}),
                                      Json::array({{{"thickness", 0.5}, {"force", 0.25}}}),
                                      Json::array({Json::array({0.0, 0.0}), Json::array({0.5, 0.25})}),
+                                     Json::array({{{"name", "a"}, {"young", 9}, {"density", 8}, {"damping", 7}}}),
                                      {{"min", {0, 0, 0}}, {"max", {0.5, 1, 2}}},
                                      Json::array({"some text"}),
                                      !key.choices ? Json() : Json(key.choices().front()),

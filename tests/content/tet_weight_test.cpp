@@ -1,4 +1,4 @@
-// What a soft body weighs, against closed forms: mass, centre of mass, inertia.
+// Weight of a soft body, against closed forms: mass, centre of mass, inertia.
 #include <gtest/gtest.h>
 
 #include <cmath>

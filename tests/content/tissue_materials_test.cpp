@@ -1,4 +1,4 @@
-// What parts of a soft body are made of: paint, physical groups, a mesh inside.
+// Materials of the parts of a soft body: paint, physical groups, a mesh inside.
 #include "content/level/tissue_materials.h"
 
 #include <gtest/gtest.h>

@@ -61,7 +61,7 @@ TEST(EffectEdit, AnAddedEffectIsSelectedAndDrawnWhereItActs) {
 
 // Read from its file, in the node's frame without its scale, whatever the file's length.
 TEST(EffectEdit, ARailIsDrawnAlongItsPath) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pliant_rail";
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "pliant_rail";
   std::filesystem::create_directories(folder);
   Path path;
   for (int i = 0; i < 10001; ++i) path.rows.push_back({0.01 * i, {1e-5 * i, 0, 0}, dquat(1, 0, 0, 0)});

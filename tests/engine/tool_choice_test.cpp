@@ -69,10 +69,8 @@ TEST(ToolChoice, ThePressIsFeltAndContactsSolvedAgainComeToSoftStepsAtTheTouchRa
   }
   EXPECT_GT(truth.back()[1] - truth.front()[1], 0.2) << "[N] up, from the plate below";
   EXPECT_LT(truth.back()[0], -0.02) << "[N] friction, against the way along the plate";
-  // With short steps, the difference of the handle's motion between a tick and a soft step of the same length remains.
-  EXPECT_LT(errors[1], errors[0]);
-  EXPECT_LT(errors[1], 0.05);
-  EXPECT_LT(errors[2], 0.05);
+  // With any step, the difference of the handle's motion between a tick and a soft step of the same length remains.
+  for (const double error : errors) EXPECT_LT(error, 0.015);
 }
 
 TEST(ToolChoice, ATightBudgetSolvesContactsAgainAndALooseOneHoldsTheForce) {

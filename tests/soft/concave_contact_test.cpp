@@ -59,6 +59,14 @@ struct Rest {
       if (dot(normal(c), wall) > 0.999) sum += c.impulse.x / kConcaveStep;
     return sum;
   }
+  double tilted() const {  // [N] at most, off the walls: contacts with a tissue's facets lean by up to some mrad
+    double sum = 0;
+    for (const ContactPoint& c : loop.contacts) {
+      const dvec3 n = glm::abs(normal(c));
+      sum += c.impulse.x / kConcaveStep * std::sqrt(std::max(0.0, 1 - std::pow(std::max({n.x, n.y, n.z}), 2)));
+    }
+    return sum;
+  }
   double pressed() const {  // [N] along all normals
     double sum = 0;
     for (const ContactPoint& c : loop.contacts) sum += c.impulse.x / kConcaveStep;
@@ -154,7 +162,8 @@ TEST(ConcaveContact, ACornersWallsBearTheComponentsOfTheWeight) {
         dvec3 normal(0);
         normal[wall] = 1.0;
         const double component = -rest.weight * down[wall];
-        if (friction == 0.0) EXPECT_NEAR(rest.pressed_by(normal), component, 1e-3 * rest.weight) << wall;
+        if (friction == 0.0)
+          EXPECT_NEAR(rest.pressed_by(normal), component, rest.tilted() + 1e-4 * rest.weight) << wall;
         for (const dvec3& x : rest.body->surface_position) ASSERT_GT(x[wall], -2e-5);
       }
     }

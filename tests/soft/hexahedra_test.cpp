@@ -99,7 +99,7 @@ class CutBar {
   std::vector<bool> end_;
 };
 
-// The clamp, which keeps the section from widening, is no part of beam theory: it is worth 2 %, which a bar of twelve
+// The clamp, which keeps the section from widening, is missing in beam theory: it is worth 2 %, which a bar of twelve
 // cells across shows.
 TEST(Hexahedra, ABarOfThreeToFiveCellsAcrossIsWithinFivePercentHoweverItIsCut) {
   const CutBar fine(1.0 / 12, 0.0, 0.3);
@@ -168,8 +168,8 @@ TEST(Hexahedra, MatrixForceAndEnergyAgree) {
     }
 }
 
-// Discs pressed into a bonded layer without friction, F = 2 E a kappa d / (1 - nu^2). What the nodes below a disc are
-// the disc of is taken from the force at 0.3, by the table of Hayes et al. (1972); then the force at 0.499 is compared.
+// Discs pressed into a bonded layer without friction, F = 2 E a kappa d / (1 - nu^2). The radius that its nodes stand for
+// is taken from the force at 0.3, by the table of Hayes et al. (1972); then the force at 0.499 is compared.
 // ln kappa by the cubic through a / h = 0.2, 0.4, 1 and 2.
 double hayes(const double (&kappa)[4], double a) {
   constexpr double kAt[] = {0.2, 0.4, 1.0, 2.0};

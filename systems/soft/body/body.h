@@ -110,6 +110,8 @@ class Body {
   virtual void free_step(double T, dvec3 gravity) = 0;
   // False: the step's A could not be factorised; solve() must not be called.
   virtual bool solvable() const { return true; }
+  // True: the last advance() shortened the step's motion (passive_step.h).
+  virtual bool shortened() const { return false; }
   // Between steps: changes the mass of a rigid body, or the law, elasticity and damping of tissue. Pose and velocity
   // are kept.
   virtual void set_mass(const RigidMass& mass) { (void)mass; }

@@ -205,10 +205,12 @@ void SoftBodyState::keep_passive(double T) {
   for (Eigen::Index i = 0; i < rows; ++i) rigid[i] = carried[static_cast<std::size_t>(i / 3)][static_cast<int>(i % 3)];
   const Vector d = velocity_.head(rows) - rigid;
   const double share = passive_share(tissue_, carried, d, handle_ ? tets_.free_count : tissue_.moving(), T);
-  if (share < 1.0) velocity_.head(rows) = rigid + share * d;
+  shortened_ = share < 1.0;
+  if (shortened_) velocity_.head(rows) = rigid + share * d;
 }
 
 void SoftBodyState::advance(double T) {
+  shortened_ = false;
   if (tissue_.large_strain() && solvable_ && velocity_.allFinite()) keep_passive(T);
   std::vector<dvec3>&x = tissue_.position(), &v = tissue_.velocity();
   for (std::uint32_t i = 0; i < tissue_.moving(); ++i) {

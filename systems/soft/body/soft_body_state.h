@@ -63,9 +63,9 @@ class SoftBodyState final : public ToolBody {
   dvec3 free_velocity(const SmearedLoad& load) const;
   bool yields() const override { return smearing_ != nullptr; }
   void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const override;
-  bool solvable() const override {
-    return solvable_;
-  }  // false: the last step's matrix could not be factorised; nothing moved
+  // False: the last step's matrix could not be factorised; nothing moved.
+  bool solvable() const override { return solvable_; }
+  bool shortened() const override { return shortened_; }
 
   // Tissue of a tool left in its rest shape would fall and sway, and this work would reach the hand.
   void settle(dvec3 gravity) override;
@@ -99,7 +99,7 @@ class SoftBodyState final : public ToolBody {
   Vector free_velocity_;      // v* of the step; only of a body with smearing
   dquat placed_{1, 0, 0, 0};  // object frame to world at the start
   std::vector<const std::vector<uvec3>*> part_triangles_;
-  bool solvable_ = true;
+  bool solvable_ = true, shortened_ = false;
 };
 
 }  // namespace pliant

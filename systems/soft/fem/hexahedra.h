@@ -2,7 +2,7 @@
 //
 // With B_i the gradient of the trilinear shape function i, averaged over the tissue of volume V, in the world frame
 // c_i = R B_i, and eps = sym(sum x_i c_i^T) - I, the mean strain acts as in a linear tetrahedron (tissue.h). Mean
-// gradients do not lock where nu nears 1/2 (Flanagan and Belytschko 1981). What is left of the motion has no linear
+// gradients do not lock where nu nears 1/2 (Flanagan and Belytschko 1981). The rest of the motion has no linear
 // part: q_a = sum g_ai R^T x_i for a = yz, zx, xy, xyz in the cell's own coordinates,
 //   g_ai = (h_ai - (sum_j h_aj x_j) . B_i) / 8,   h_a the product of the corner's coordinates.
 // It bends and twists the cell. Its strain is assumed (Belytschko and Bindeman 1993): eps_d grows along e as in a

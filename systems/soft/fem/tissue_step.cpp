@@ -29,7 +29,8 @@ Vector right_side(const Tissue& tissue, double h, const std::vector<dvec3>* push
   return right;
 }
 
-// What a step of h with a law for large strain minimises (without stiffness damping), at the current positions [J]:
+// The function that a step of h with a law for large strain minimises (without stiffness damping), at the current
+// positions [J]:
 //   |x - begin - h v0|^2_M / 2h^2 (1 + h alpha) + E(x) - x . (M g + push).
 class StepEnergy {
  public:

@@ -13,7 +13,7 @@ struct TouchState;
 
 // Of this tick. Does not allocate.
 void add_event(TouchState& touch, const TouchEvent& event);
-// What the run had to leave out so far. Not while the touch clock runs.
+// Parts that the run had to drop so far. Not while the touch clock runs.
 std::optional<Note> explain_events(const World& world);
 
 }  // namespace pliant

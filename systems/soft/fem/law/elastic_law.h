@@ -23,7 +23,7 @@ struct Density {
 
 using ElasticLaw = Density (*)(const LawConstants& material, double I, double J);
 
-// Null: co-rotational (element.h), which is no function of F alone.
+// Null: co-rotational (element.h), which depends on more than F.
 ElasticLaw elastic_law(TissueLaw law);
 
 }  // namespace pliant
