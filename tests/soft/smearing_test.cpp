@@ -268,7 +268,7 @@ TEST(Smearing, APunchOfPointsIsAPunchAndAnchorsDoNotChangeIt) {
     std::vector<double> area;
     for (int r = 0; r < rings; ++r) {  // rings of equal areas
       const int count = r == 0 ? 4 : 8 * r;
-      const auto edge = [&](int ring) {
+      const auto edge = [rings = rings, punch = punch](int ring) {
         double points = 0;
         for (int q = 0; q < ring; ++q) points += q == 0 ? 4 : 8 * q;
         double all = 0;
