@@ -255,9 +255,9 @@ RunFigures LevelRun::figures(std::uint64_t hash) {
 
 // Findings of the run, for stderr and the report.
 void LevelRun::add_findings(RunFigures& figures) {
-  std::vector<Note> notes;
+  std::vector<Note> notes = std::exchange(figures.notes, {});
   try {
-    notes = explain_run(figures, devices_);
+    for (Note& found : explain_run(figures, devices_)) notes.push_back(std::move(found));
     for (Note& found : devices_.findings()) notes.push_back(std::move(found));
   } catch (const std::exception& error) {  // the figures are written without them
     figures.misses.resize(journal_->probes().size());
