@@ -135,6 +135,7 @@ void print_tissue(const OrderedJson& tissue) {
     print("    {}about {:.2g} ms a soft step (an estimate)\n",
           cells_text(body["cell_m"].get<double>(), body["coarsest_cell_m"].get<double>()),
           body["step_ms"].get<double>());
+    if (!body.contains("mass_kg")) continue;  // a file of tetrahedra alone has no density
     print("    {:.4g} kg", body["mass_kg"].get<double>());
     if (body.contains("across"))
       print(

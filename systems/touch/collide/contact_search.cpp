@@ -66,7 +66,8 @@ void begin_contact(const ContactSearch& s, const ProbeTip& tip, const TipContact
   contact.effects = {};
   contact.damage = {};
   put_contact(*source, contact, at);
-  source->side = source->place.normal;
+  source->side = source->entered = source->place.normal;
+  source->in = source->place.p;
   HeightState surface = recovering(s, at.place.main());
   // Beside others of its tip the surface does not recover: the tip is on it, and has left that dent itself.
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {

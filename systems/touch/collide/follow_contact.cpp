@@ -7,6 +7,7 @@
 #include "systems/touch/collide/collision.h"
 #include "systems/touch/collide/over_seams.h"
 #include "systems/touch/collide/seams.h"
+#include "systems/touch/collide/surface_query.h"
 #include "systems/touch/collide/triangle_tree.h"
 #include "systems/touch/model/seam_dents.h"
 
@@ -21,6 +22,8 @@ constexpr double kUnexplained = 0.1;
 constexpr double kTurnsWith = 1.0;
 // A normal farther from the side is the other side's. [rad] 100 degrees
 constexpr double kSlips = 1.7453292519943295;
+// Cosine between a wall's normal here and where the tip came in, from which on they are one wall. [1]
+constexpr double kSameWall = 0.5;
 // Two feet of a tip closer than this are the same. [1] of the mean edge
 constexpr double kSameFoot = 1e-6;
 
@@ -38,16 +41,35 @@ double depth_of_tip(const ContactSearch& s, const SourceState& source, const Con
 
 // Turns the side towards the contact's normal, as far as the tip's way lets it: a tip strokes round a body that is
 // thick against its depth. False: the foot is on the other side of a part that is thin against it.
-bool keeps_side(SourceState& source, double depth, double way) {
-  const dvec3 normal = source.place.normal;
-  const double lag = std::acos(std::clamp(dot(source.side, normal), -1.0, 1.0));
+bool turn_to(dvec3& side, dvec3 normal, double depth, double way) {
+  const double lag = std::acos(std::clamp(dot(side, normal), -1.0, 1.0));
   if (!(depth > 0) || lag * depth <= kTurnsWith * way) {
-    source.side = normal;
+    side = normal;
     return true;
   }
   if (lag > kSlips) return false;
-  source.side = normalize(glm::mix(source.side, normal, kTurnsWith * way / (lag * depth)));
+  side = normalize(glm::mix(side, normal, kTurnsWith * way / (lag * depth)));
   return true;
+}
+
+// Whether the tip goes out through the wall that it came in by while its contact gets deeper: the foot walked over to
+// another wall. Strokes turn the normal of that wall with the contact's; a press, by at most 45 degrees oblique, does not.
+bool goes_out(const ContactSearch& s, SourceState& source, const Contact& contact, dvec3 from, dvec3 to) {
+  const dvec3 step = to - from;
+  const double out = dot(step, source.entered), aside = length(step - out * source.entered);
+  const double stroke = std::max(0.0, aside - std::abs(out));
+  turn_to(source.entered, source.place.normal, -contact.height, stroke);
+  if (source.entered == source.place.normal)
+    source.in = source.place.p;
+  else if (stroke > 0)
+    source.in += stroke / aside * (step - out * source.entered);
+  if (!(out > 0) || !(source.place.height < 0) || contact.height >= contact.previous_height) return false;
+  const Entry wall = first_entry(s.mesh, to, from);  // backwards
+  if (!wall.valid()) return false;
+  const uvec3 t = s.mesh.triangles[wall.triangle];
+  const dvec3 a(s.mesh.position(t.x)), b(s.mesh.position(t.y)), c(s.mesh.position(t.z));
+  const dvec3 outward = cross(b - a, c - a);
+  return dot(outward, source.entered) > kSameWall * length(outward);
 }
 
 // Whether the contact is with the back of a part that its tip is pressed through: in front of it, behind the part.
@@ -65,7 +87,7 @@ bool is_back(const ContactSearch& s, const SourceState& source, const Contact& c
 
 // The foot slipped round a rim from p: nothing holds the tip any more, and it comes back through the part.
 void slip(const ContactSearch& s, SourceState& source, Contact& contact, dvec3 p, double height) {
-  source.held = {s.tick.index + 1, contact.probe, contact.tip, p, source.side, source.tip.radius - height, true};
+  source.held = {s.tick.index + 1, contact.probe, contact.tip, p, source.side, source.tip.radius - height, true, source.in, source.entered};
   drop_contact(source, contact);
 }
 
@@ -101,6 +123,7 @@ AtSeam carry_over(const ContactSearch& s, const SideFoot& side, SourceState& sou
     after.load = before.load;
     after.effects = before.effects;
     after.damage = before.damage;
+    to->entered = turn * source.entered;
     hand_over_dents(touch, static_cast<std::uint32_t>(&s.object - touch.objects.data()), source, side.object, *to);
   }
   drop_contact(source, contact);
@@ -141,7 +164,7 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
   const Foot before = source.place.main();
   const double last = source.place.height;
   if (last < s.early())
-    source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal, 0.0, false};
+    source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal, 0.0, false, {}, {}};
   const dvec3 step = x - source.x, slope = source.place.gradient, place = source.place.p;
   const TipPlace was{source.x - source.axis.along * source.axis.axis, source.axis.axis};
   Foot foot = follow_foot(s, before, source.x, x);
@@ -163,7 +186,8 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
       foot.height > radius * (1 + 2 * kAhead))
     return beyond && last < 0 ? slip(s, source, contact, place, last) : drop_contact(source, contact);
   put_contact(source, contact, deepest_on_tip(s, tip, radius, foot, source.axis.along, &source.place));
-  if (!keeps_side(source, depth_of_tip(s, source, contact), length(source.x - x + step))) {
+  if (!turn_to(source.side, source.place.normal, depth_of_tip(s, source, contact), length(source.x - x + step)) ||
+      goes_out(s, source, contact, was.at(source.axis.along), source.x)) {
     s.world.dropped |= kDroppedRim;
     return slip(s, source, contact, place, last);
   }

@@ -30,7 +30,8 @@ bool pressed_through(const ContactSearch& s, const ProbeTip& tip, dvec3 p, dvec3
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
     const HeldFoot& held = s.object.sources[i].held;
     if (held.tick == s.tick.index + 1 && held.probe == tip.probe && held.tip == tip.index &&
-        (dot(p - held.p, outward) >= -s.early() * size || dot(held.normal, outward) < 0 || joined(held)))
+        (dot(p - held.p, outward) >= -s.early() * size || dot(held.normal, outward) < 0 ||
+         dot(held.entered, outward) < 0 || joined(held)))
       return true;
   }
   return false;
@@ -232,7 +233,7 @@ void find_near(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, d
 }
 
 // Walls that a tip was pressed through before it slipped round a rim stay open for it until it is clear: in front of
-// the place where it slipped, on the side that it came from, or away from there.
+// the place where it slipped, on the side that it came from, and of the place where it came in; or away from there.
 void keep_open(const ContactSearch& s, const ProbeTip& tip, const TipPlace& to) {
   constexpr double kFree = 0.5;  // [1] of the depth at which it slipped
   constexpr double kAway = 4.0;  // [1] sideways, of the depth at which it slipped, or of the depth now
@@ -240,10 +241,13 @@ void keep_open(const ContactSearch& s, const ProbeTip& tip, const TipPlace& to) 
     SourceState& source = s.object.sources[i];
     HeldFoot& held = source.held;
     if (!s.slipped(source) || held.probe != tip.probe || held.tip != tip.index) continue;
-    const dvec3 way = to.at(source.axis.along) - held.p;
-    const double up = dot(way, held.normal), aside = length(way - up * held.normal);
-    if (up <= std::max(tip.tip.radius * (1 + kAhead), kFree * held.depth) &&
-        aside <= kAway * std::clamp(-up, held.depth, kAway * held.depth))
+    const auto near = [&](dvec3 p, dvec3 normal, double free) {
+      const dvec3 way = to.at(source.axis.along) - p;
+      const double up = dot(way, normal), aside = length(way - up * normal);
+      return up <= std::max(tip.tip.radius * (1 + kAhead), free) &&
+             aside <= kAway * std::clamp(-up, held.depth, kAway * held.depth);
+    };
+    if (near(held.p, held.normal, kFree * held.depth) || near(held.in, held.entered, 0.0))
       held.tick = s.tick.index + 1;
   }
 }

@@ -67,6 +67,8 @@ struct HeldFoot {
   dvec3 normal{0};       // [1] of the contact
   double depth = 0.0;    // [m] of the contact
   bool slipped = false;  // its contact slipped round a rim, and its tip is not clear yet
+  dvec3 in{0};           // [m] where that tip came in,
+  dvec3 entered{0};      // [1] and the normal of the wall there
 };
 
 // One entry of an object's pool: a contact, its place, and its part in the object's field.
@@ -80,6 +82,8 @@ struct SourceState {
   AxisPlace axis;                    // of a capsule
   FootBlend place;                   // of the tip's centre
   dvec3 side{0};                     // [1] from which the tip came, object frame: follows the normal (follow_contact.h)
+  dvec3 in{0};                       // [m] where the tip came in: follows strokes alone
+  dvec3 entered{0};                  // [1] normal of the wall there
   HeldFoot held;                     // written where its contact is tracked
   bool active = false;               // the contact dented the surface in the last tick
   FieldSource now, before;           // of this tick and of the last: their difference is the target's rate
