@@ -53,7 +53,8 @@ bool turn_to(dvec3& side, dvec3 normal, double depth, double way) {
 }
 
 // Whether the tip goes out through the wall that it came in by while its contact gets deeper: the foot walked over to
-// another wall. Strokes turn the normal of that wall with the contact's; a press, by at most 45 degrees oblique, does not.
+// another wall. Strokes turn the normal of that wall with the contact's; a press, by at most 45 degrees oblique, does
+// not.
 bool goes_out(const ContactSearch& s, SourceState& source, const Contact& contact, dvec3 from, dvec3 to) {
   const dvec3 step = to - from;
   const double out = dot(step, source.entered), aside = length(step - out * source.entered);
@@ -87,7 +88,8 @@ bool is_back(const ContactSearch& s, const SourceState& source, const Contact& c
 
 // The foot slipped round a rim from p: nothing holds the tip any more, and it comes back through the part.
 void slip(const ContactSearch& s, SourceState& source, Contact& contact, dvec3 p, double height) {
-  source.held = {s.tick.index + 1, contact.probe, contact.tip, p, source.side, source.tip.radius - height, true, source.in, source.entered};
+  source.held = {s.tick.index + 1, contact.probe, contact.tip, p, source.side, source.tip.radius - height, true,
+                 source.in,        source.entered};
   drop_contact(source, contact);
 }
 
@@ -164,7 +166,8 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
   const Foot before = source.place.main();
   const double last = source.place.height;
   if (last < s.early())
-    source.held = {s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal, 0.0, false, {}, {}};
+    source.held = {
+        s.tick.index + 1, contact.probe, contact.tip, source.place.p, source.place.normal, 0.0, false, {}, {}};
   const dvec3 step = x - source.x, slope = source.place.gradient, place = source.place.p;
   const TipPlace was{source.x - source.axis.along * source.axis.axis, source.axis.axis};
   Foot foot = follow_foot(s, before, source.x, x);

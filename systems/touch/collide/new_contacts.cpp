@@ -247,8 +247,7 @@ void keep_open(const ContactSearch& s, const ProbeTip& tip, const TipPlace& to) 
       return up <= std::max(tip.tip.radius * (1 + kAhead), free) &&
              aside <= kAway * std::clamp(-up, held.depth, kAway * held.depth);
     };
-    if (near(held.p, held.normal, kFree * held.depth) || near(held.in, held.entered, 0.0))
-      held.tick = s.tick.index + 1;
+    if (near(held.p, held.normal, kFree * held.depth) || near(held.in, held.entered, 0.0)) held.tick = s.tick.index + 1;
   }
 }
 
