@@ -32,6 +32,14 @@ inline constexpr std::size_t kTetsOfCell = 6;
 // Factors on the body's material.
 struct ElementFactors {
   double stiffness = 1.0, damping = 1.0;  // [1] on young; on rayleigh's beta
+  double relaxation = 1.0;                // [1] on the shares of prony's arms
+};
+
+// A hollow inside the tetrahedra: its wall's faces, counter-clockwise seen from the tissue, so that they enclose a
+// positive volume.
+struct TetCavity {
+  std::vector<uvec3> wall;            // nodes
+  double pressure = 0.0, bulk = 0.0;  // [Pa] of pliant/parameters.h's Cavity
 };
 
 // Embedding of a point of the collision mesh in the tetrahedra: sum of weight[i] * node[tets[tet][i]]. Weights sum to
@@ -92,6 +100,7 @@ struct TetMesh {
   std::vector<Embedding> embedding;     // of each vertex of the body's touch mesh (SoftBody::collision_mesh)
   std::vector<SurfaceSample> samples;  // of the touch mesh, a quarter of a cell apart; empty unless SoftContact::kSplit
   std::vector<CarriedPart> parts;
+  std::vector<TetCavity> cavities;
   // [m] Initial positions of the nodes, if not at rest (UnderGravity). Writer: prepare_soft.
   std::vector<dvec3> start;
   TetQuality quality;

@@ -69,7 +69,7 @@ Json schema_of(const Key& key, const Json& standard) {
       for (const Key& of : key.items) properties[of.name] = schema_of(of, of.get(key.usual_item));
       out["type"] = "array";
       out["items"] = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
-      out["maxItems"] = kMostItems;
+      out["maxItems"] = key.most;
       break;
     }
     case KeyType::kTable:

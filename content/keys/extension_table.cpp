@@ -143,14 +143,16 @@ Key vector(std::string name, std::string unit, Ranges ranges, Access access, std
   return out;
 }
 
+// Accessor of an item's member.
+template <class Item, class Member>
+auto of_item(Member Item::*member) {
+  return [member](void* owner) -> Member& { return static_cast<Item*>(owner)->*member; };
+}
+
 // Keys of an item of `layers`; their owner is a Layer.
 std::vector<Key> layer_keys() {
   using R = DeformableRange;
-  const auto l = [](auto member) {
-    return [member](void* owner) -> auto& {
-      return static_cast<Layer*>(owner)->*member;
-    };
-  };
+  const auto l = [](auto member) { return of_item<Layer>(member); };
   std::vector<Key> keys;
   keys.push_back(text("name", KeyType::kText, l(&Layer::name), "what its breaking is reported as"));
   keys.push_back(number("thickness", "m", {R::kLayerThickness, {1e-4, 0.1}}, l(&Layer::thickness),
@@ -168,45 +170,50 @@ std::vector<Key> layer_keys() {
   return keys;
 }
 
-Key layers_key() {
+// A list of objects of type Item. `always`: the key that is saved even at its default.
+template <class Item, class Get, class Set>
+Key items_key(std::string name, std::string doc, std::vector<Key> items, std::string always, Get list_of,
+              Set set_list) {
   Key out;
-  out.name = "layers";
+  out.name = std::move(name);
   out.type = KeyType::kItems;
-  out.doc = fmt::format(
-      "layers that a probe breaks through, from the surface down, at most {}; below the last one is the law of "
-      "`stiffness`",
-      kMostLayers);
-  static const Layer usual;
+  out.doc = std::move(doc);
+  static const Item usual;
   out.usual_item = &usual;
-  out.items = layer_keys();
-  out.get = [items = out.items](const void* owner) {
+  out.items = std::move(items);
+  out.get = [items = out.items, always, list_of](const void* owner) {
     Json list = Json::array();
-    for (const Layer& layer : static_cast<const LevelNode*>(owner)->deformable->layers) {
+    for (const Item& each : list_of(*static_cast<const LevelNode*>(owner))) {
       Json item = Json::object();
       for (const Key& key : items)
-        if (Json value = key.get(&layer); !(value == key.get(&usual)) || key.name == "thickness")
-          item[key.name] = value;
+        if (Json value = key.get(&each); !(value == key.get(&usual)) || key.name == always) item[key.name] = value;
       list.push_back(std::move(item));
     }
     return list;
   };
-  out.set = [items = out.items](void* owner, const Json& value) {
-    std::vector<Layer> layers(value.size());
-    for (std::size_t i = 0; i < layers.size(); ++i)
+  out.set = [items = out.items, set_list](void* owner, const Json& value) {
+    std::vector<Item> list(value.size());
+    for (std::size_t i = 0; i < list.size(); ++i)
       for (const Key& key : items)
-        if (value[i].contains(key.name)) key.set(&layers[i], value[i][key.name]);
-    static_cast<LevelNode*>(owner)->deformable->layers = Layers(std::move(layers));
+        if (value[i].contains(key.name)) key.set(&list[i], value[i][key.name]);
+    set_list(*static_cast<LevelNode*>(owner), std::move(list));
   };
   return out;
 }
 
+Key layers_key() {
+  return items_key<Layer>(
+      "layers",
+      fmt::format("layers that a probe breaks through, from the surface down, at most {}; below the last one is the "
+                  "law of `stiffness`",
+                  kMostLayers),
+      layer_keys(), "thickness", [](const LevelNode& node) -> const Layers& { return node.deformable->layers; },
+      [](LevelNode& node, std::vector<Layer> layers) { node.deformable->layers = Layers(std::move(layers)); });
+}
+
 // Keys of an item of `materials`; their owner is a TissuePart.
 std::vector<Key> tissue_part_keys() {
-  const auto p = [](auto member) {
-    return [member](void* owner) -> auto& {
-      return static_cast<TissuePart*>(owner)->*member;
-    };
-  };
+  const auto p = [](auto member) { return of_item<TissuePart>(member); };
   const Range young{0.0, SoftBodyRange::kYoung.max}, density{0.0, SoftBodyRange::kDensity.max};
   std::vector<Key> keys;
   keys.push_back(text("name", KeyType::kText, p(&TissuePart::name),
@@ -217,37 +224,77 @@ std::vector<Key> tissue_part_keys() {
       number("density", "kg/m3", {density, {10.0, 25e3}}, p(&TissuePart::density), "its density; 0: the body's"));
   keys.push_back(number("damping", "1", {{0.0, 1e6}, {0.1, 100.0}}, p(&TissuePart::damping),
                         "factor on the body's `rayleigh` beta"));
+  keys.push_back(number("relaxation", "1", {{0.0, 1e3}, {0.01, 10.0}}, p(&TissuePart::relaxation),
+                        "factor on the shares of the body's `prony`; 0: it does not relax"));
   return keys;
 }
 
 Key materials_key() {
-  Key out;
-  out.name = "materials";
-  out.type = KeyType::kItems;
-  out.doc =
+  return items_key<TissuePart>(
+      "materials",
       "parts of the tissue with a material of their own (a lump, a group of the file); where two overlap the later "
-      "one counts";
-  static const TissuePart usual;
-  out.usual_item = &usual;
-  out.items = tissue_part_keys();
-  out.get = [items = out.items](const void* owner) {
-    Json list = Json::array();
-    for (const TissuePart& part : static_cast<const LevelNode*>(owner)->soft_body->materials) {
-      Json item = Json::object();
-      for (const Key& key : items)
-        if (Json value = key.get(&part); !(value == key.get(&usual)) || key.name == "name") item[key.name] = value;
-      list.push_back(std::move(item));
-    }
-    return list;
-  };
-  out.set = [items = out.items](void* owner, const Json& value) {
-    std::vector<TissuePart> parts(value.size());
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      for (const Key& key : items)
-        if (value[i].contains(key.name)) key.set(&parts[i], value[i][key.name]);
-    static_cast<LevelNode*>(owner)->soft_body->materials = std::move(parts);
-  };
+      "one counts",
+      tissue_part_keys(), "name",
+      [](const LevelNode& node) -> const std::vector<TissuePart>& { return node.soft_body->materials; },
+      [](LevelNode& node, std::vector<TissuePart> parts) { node.soft_body->materials = std::move(parts); });
+}
+
+Key prony_key() {
+  std::vector<Key> keys;
+  keys.push_back(number("share", "1", {{0.0, 1.0}, {0.01, 0.99}}, of_item(&Prony::Arm::share),
+                        "of the stress at once, which relaxes; all shares together are below 1"));
+  keys.push_back(number("time", "s", {{0.0, 1e6, true}, {1e-3, 1e3}}, of_item(&Prony::Arm::time), "relaxation time"));
+  Key out = items_key<Prony::Arm>(
+      "prony",
+      fmt::format("relaxation, at most {} arms: after a step of strain the stress is 1 - sum share (1 - exp(-t/time)) "
+                  "of that at once, whose modulus is `young`",
+                  Prony::kMost),
+      std::move(keys), "share",
+      [](const LevelNode& node) {
+        const Prony& prony = node.soft_body->prony;
+        return std::vector<Prony::Arm>(prony.arms.begin(),
+                                       prony.arms.begin() + static_cast<std::ptrdiff_t>(prony.count));
+      },
+      [](LevelNode& node, const std::vector<Prony::Arm>& arms) {
+        Prony& prony = node.soft_body->prony;
+        prony = {};
+        prony.count = std::min(arms.size(), Prony::kMost);
+        std::copy_n(arms.begin(), prony.count, prony.arms.begin());
+      });
+  out.most = Prony::kMost;
   return out;
+}
+
+Key cavities_key() {
+  std::vector<Key> keys;
+  keys.push_back(text("name", KeyType::kText, of_item(&Cavity::name),
+                      "a node whose closed mesh encloses the hollow; left out: every remaining hollow of the tissue"));
+  keys.push_back(number("pressure", "Pa", {{-1e7, 1e7}, {-5e4, 5e4}}, of_item(&Cavity::pressure),
+                        "over that outside, of the hollow at its volume at rest"));
+  keys.push_back(number("bulk", "Pa", {{0.0, 1e12}, {1e3, 1e10}}, of_item(&Cavity::bulk),
+                        "rise of its pressure per relative loss of volume; large, 1e9 for a liquid: its volume stays"));
+  return items_key<Cavity>(
+      "cavities", "closed hollows in the tissue, filled with gas or liquid", std::move(keys), "pressure",
+      [](const LevelNode& node) -> const std::vector<Cavity>& { return node.soft_body->cavities; },
+      [](LevelNode& node, std::vector<Cavity> cavities) { node.soft_body->cavities = std::move(cavities); });
+}
+
+void add_fibre_keys(std::vector<Key>& keys) {
+  const auto f = [](auto member) {
+    return [member](void* owner) -> auto& {
+      return static_cast<LevelNode*>(owner)->soft_body->fibres.*member;
+    };
+  };
+  keys.push_back(number("fibres.young", "Pa", {{0.0, 1e12}, {50.0, 1e9}}, f(&Fibres::young),
+                        "fibres in the tissue add this modulus along their direction; 0: none"));
+  keys.push_back(vector("fibres.direction", "1", {{-1e6, 1e6}, {-1e6, 1e6}}, f(&Fibres::direction),
+                        "of the fibres, in the object frame"));
+  keys.push_back(
+      flag("fibres.only_tension", f(&Fibres::only_tension), "whether they bear tension alone, not compression"));
+  keys.push_back(number("fibres.contraction", "1", {{0.0, 0.9}, {0.01, 0.5}}, f(&Fibres::contraction),
+                        "their rest length is 1 - contraction times that of the unloaded tissue"));
+  keys.push_back(number("fibres.period", "s", {{0.0, 1e6}, {0.05, 100.0}}, f(&Fibres::period),
+                        "of a contraction that comes and goes, from none; 0: it stays"));
 }
 
 std::vector<Key> deformable_keys() {
@@ -531,6 +578,9 @@ std::vector<Key> soft_body_keys() {
                         "exponent b of the law `fung`, whose shear stress grows with exp(b (I1 - 3))"));
   keys.push_back(number("density", "kg/m3", {SoftBodyRange::kDensity, {10.0, 25e3}}, s(&S::density), "density"));
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
+  keys.push_back(prony_key());
+  keys.push_back(cavities_key());
+  add_fibre_keys(keys);
   keys.push_back(number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell),
                         fmt::format("lattice cell; 0: sized for some {} tetrahedra", kUsualTets)));
   keys.push_back(choice("elements", s(&S::elements),
@@ -719,6 +769,25 @@ std::optional<Note> settle_friction(const T& it) {
   return Note{"friction_sliding is above friction_static", "lower it", "key.value", "friction_sliding"};
 }
 
+// Something of the stress of every part stays.
+std::optional<Note> settle_prony(const SoftBody& it) {
+  double most = 1.0;
+  for (const TissuePart& part : it.materials) most = std::max(most, part.relaxation);
+  const double lost = 1.0 - it.prony.remains();
+  if (most * lost < 1.0) return std::nullopt;
+  return Note{fmt::format("loses all of its stress: its shares are {:g} together{}", lost,
+                          most > 1.0 ? fmt::format(", and a part has {:g} times these", most) : std::string()),
+              "lower them, so that they are below 1 together", "key.value", "prony"};
+}
+
+std::optional<Note> settle_soft_body(void* owner) {
+  const SoftBody& it = *static_cast<LevelNode*>(owner)->soft_body;
+  if (std::optional<Note> fault = settle_friction(it)) return fault;
+  if (it.fibres.young > 0.0 && !(length(it.fibres.direction) > 0.0))
+    return Note{"has no direction", "give a vector other than zero", "key.value", "fibres.direction"};
+  return settle_prony(it);
+}
+
 std::optional<Note> settle_motion(void* owner) {
   const NodeMotion& it = *static_cast<LevelNode*>(owner)->motion;
   if (it.script.empty() || it.animation.empty()) return std::nullopt;
@@ -735,7 +804,7 @@ std::vector<Extension> make_table() {
   table.back().settle = settle_device;
   table.push_back(
       extension("soft_body", "The node's mesh is tissue with inertia.", &LevelNode::soft_body, soft_body_keys()));
-  table.back().settle = [](void* owner) { return settle_friction(*static_cast<LevelNode*>(owner)->soft_body); };
+  table.back().settle = settle_soft_body;
   table.push_back(extension("handle", "The rigid part of a tool: of a soft body a part, of a rigid one the whole.",
                             &LevelNode::handle, handle_keys()));
   table.push_back(extension("rigid_body", "The node's mesh is rigid.", &LevelNode::rigid_body, rigid_body_keys()));

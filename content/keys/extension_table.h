@@ -43,6 +43,7 @@ struct Key {
   std::vector<std::string> (*choices)() = nullptr;  // of a choice: its words, including registered ones
   std::string doc;
   std::vector<Key> items;            // of a list of objects: their keys
+  std::size_t most = kMostItems;     // of these objects
   const void* usual_item = nullptr;  // the owner of these, with its defaults
   bool alias = false;                // sets other keys; never saved
   bool whole = false;                // a number without a fraction

@@ -58,8 +58,8 @@ std::optional<Note> check_items(const Key& key, const Json& value) {
   const auto fault = [&](std::string what, std::string cure = {}) {
     return Note{std::move(what), std::move(cure), "key.value", key.name};
   };
-  if (!value.is_array() || value.size() > kMostItems)
-    return fault(fmt::format("must be a list of at most {} objects", kMostItems));
+  if (!value.is_array() || value.size() > key.most)
+    return fault(fmt::format("must be a list of at most {} objects", key.most));
   std::vector<std::string> names;
   for (const Key& of : key.items) names.push_back(of.name);
   for (std::size_t i = 0; i < value.size(); ++i) {

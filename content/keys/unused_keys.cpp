@@ -155,6 +155,22 @@ const UnusedRow kRows[] = {
      "density",
      [](const LevelNode& n) { return n.rigid_body->mass > 0.0; },
      {"is not needed where `mass` is given", "remove one of them"}},
+    {"soft_body",
+     "fibres.direction",
+     [](const LevelNode& n) { return !(n.soft_body->fibres.young > 0.0); },
+     {"is read with `fibres.young` only", kGiveOrRemove}},
+    {"soft_body",
+     "fibres.only_tension",
+     [](const LevelNode& n) { return !(n.soft_body->fibres.young > 0.0); },
+     {"is read with `fibres.young` only", kGiveOrRemove}},
+    {"soft_body",
+     "fibres.contraction",
+     [](const LevelNode& n) { return !(n.soft_body->fibres.young > 0.0); },
+     {"is read with `fibres.young` only", kGiveOrRemove}},
+    {"soft_body",
+     "fibres.period",
+     [](const LevelNode& n) { return !(n.soft_body->fibres.young > 0.0); },
+     {"is read with `fibres.young` only", kGiveOrRemove}},
 };
 
 // Keys of an effect that its kind, region, target or detents do not read.

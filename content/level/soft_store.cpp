@@ -40,10 +40,10 @@ void visit_members(auto& io, auto& of, const DrawMesh*) {
   io(vertices, indices, parts);
 }
 void visit_members(auto& io, auto& of, const TetMesh*) {
-  auto& [name, nodes, free_count, handle_count, tets, cells, volume, factors, group, embedding, samples, parts, start,
-         quality, report] = of;
-  // Carried nodes, contact keys and materials of parts belong to a World.
-  ASSERT(parts.empty() && samples.empty() && factors.empty());
+  auto& [name, nodes, free_count, handle_count, tets, cells, volume, group, factors, embedding, samples, parts,
+         cavities, start, quality, report] = of;
+  // Carried nodes, contact keys, materials of parts and cavities belong to a World.
+  ASSERT(parts.empty() && samples.empty() && factors.empty() && cavities.empty());
   io(name, nodes, free_count, handle_count, tets, cells, volume, group, embedding, start, quality, report);
 }
 void visit_members(auto& io, auto& of, const TetReport*) {

@@ -15,8 +15,9 @@
 #include "content/level/spawn_relief.h"
 #include "content/level/spawn_soft.h"
 #include "content/level/spawn_state.h"
-#include "content/level/tissue_materials.h"
 #include "content/level/spawn_varying.h"
+#include "content/level/tissue_cavities.h"
+#include "content/level/tissue_materials.h"
 #include "content/tets/surface_samples.h"
 
 namespace pliant {
@@ -149,6 +150,8 @@ class Spawner {
     Result<SoftParts> parts = find_soft_parts(node, mesh, mat4(world_to(pose) * to_world), state_.folder);
     if (!parts) return state_.around(n, parts.error());
     if (Status s = set_materials(level_, node, world_to(pose), state_.motions.world, *parts); !s)
+      return state_.around(n, s.error());
+    if (Status s = set_cavities(level_, node, world_to(pose), state_.motions.world, *parts); !s)
       return state_.around(n, s.error());
     tetrahedra_ += static_cast<double>(parts->tets.tets.size());
     if (Status s = state_.within(n, LevelBudget::ask(limits::kTets, tetrahedra_)); !s) return s;

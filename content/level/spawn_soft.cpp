@@ -190,11 +190,18 @@ std::optional<Note> locking_doubt(const SoftBody& body, std::size_t tetrahedra) 
 }
 
 std::optional<Note> law_fault(const LevelNode& node) {
-  if (!node.soft_body || !node.soft_body->mesh.empty() || node.soft_body->elements != Elements::kHexahedra ||
-      node.soft_body->law == TissueLaw::kCorotational)
-    return std::nullopt;
-  return Note{"has a `law` for large strain, and hexahedra are co-rotational",
-              "leave out `law`, or take `elements` `tetrahedra`", "level.law_of_hexahedra", node.name};
+  if (!node.soft_body) return std::nullopt;
+  const SoftBody& body = *node.soft_body;
+  if (body.mesh.empty() && body.elements == Elements::kHexahedra && body.law != TissueLaw::kCorotational)
+    return Note{"has a `law` for large strain, and hexahedra are co-rotational",
+                "leave out `law`, or take `elements` `tetrahedra`", "level.law_of_hexahedra", node.name};
+  if (body.mesh.empty() && body.elements == Elements::kHexahedra && (body.fibres.young > 0.0 || !body.cavities.empty()))
+    return Note{"has `fibres` or `cavities`, which are of tetrahedra", "leave out `elements` `hexahedra`",
+                "level.not_of_hexahedra", node.name};
+  if ((body.prony.count > 0 || body.fibres.young > 0.0) && body.contact == SoftContact::kSplit)
+    return Note{"has `prony` or `fibres`, and the analytic dent of `contact` `split` neither relaxes nor has fibres",
+                "take `contact` `lattice`", "level.not_with_split", node.name};
+  return std::nullopt;
 }
 
 std::optional<Note> soft_fault(const LevelNode& node) {
@@ -211,6 +218,9 @@ std::optional<Note> soft_fault(const LevelNode& node) {
   if (node.rigid_body && node.deformable)
     return fault("level.rigid_and_deformable", "has both PLIANT_rigid_body and PLIANT_deformable",
                  "keep one, a deformable surface does not move");
+  if (node.handle && node.soft_body && !node.soft_body->cavities.empty())
+    return fault("level.cavities_of_tool", "has PLIANT_handle and `cavities`, which a tool's tissue does not have",
+                 "leave out one of them");
   if (node.handle && !node.soft_body && !node.rigid_body)
     return fault("level.handle_of_nothing", "has PLIANT_handle but neither PLIANT_soft_body nor PLIANT_rigid_body",
                  "add what the handle holds, or remove it");

@@ -98,14 +98,10 @@ Result<std::vector<double>> shares_of(const std::string& name, const Level& leve
     for (std::size_t e = 0; e < share.size(); ++e) share[e] = mesh.group[e] == number ? 1.0 : 0.0;
     return share;
   }
-  const auto found = std::find_if(level.nodes.begin(), level.nodes.end(),
-                                  [&](const LevelNode& n) { return n.name == name && n.mesh >= 0 && n.in_scene; });
-  if (found == level.nodes.end()) return std::vector<double>{};
-  const auto n = static_cast<std::size_t>(found - level.nodes.begin());
-  const Result<BuiltMesh> lump = build_mesh(name, level.meshes[static_cast<std::size_t>(found->mesh)].primitives,
-                                            mat4(to_object * world[n]), {0.0, {}, true});
+  Result<std::optional<BuiltMesh>> lump = mesh_in_body(name, level, to_object, world);
   if (!lump) return lump.error();
-  const Inside inside(lump->mesh);
+  if (!*lump) return std::vector<double>{};
+  const Inside inside((*lump)->mesh);
   parallel_for(share.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
       const std::vector<dvec3> samples = samples_of(mesh, e, kPartSamples);
@@ -149,6 +145,18 @@ void weigh_parts(const std::vector<double>& density, TetMesh& mesh) {
 }
 
 }  // namespace
+
+Result<std::optional<BuiltMesh>> mesh_in_body(const std::string& name, const Level& level, const dmat4& to_object,
+                                              const std::vector<dmat4>& world) {
+  const auto found = std::find_if(level.nodes.begin(), level.nodes.end(),
+                                  [&](const LevelNode& n) { return n.name == name && n.mesh >= 0 && n.in_scene; });
+  if (found == level.nodes.end()) return std::optional<BuiltMesh>();
+  const auto n = static_cast<std::size_t>(found - level.nodes.begin());
+  Result<BuiltMesh> built = build_mesh(name, level.meshes[static_cast<std::size_t>(found->mesh)].primitives,
+                                       mat4(to_object * world[n]), {0.0, {}, true});
+  if (!built) return built.error();
+  return std::optional<BuiltMesh>(std::move(*built));
+}
 
 Status set_materials(const Level& level, const LevelNode& node, const dmat4& to_object, const std::vector<dmat4>& world,
                      SoftParts& parts) {
@@ -194,6 +202,7 @@ Status set_materials(const Level& level, const LevelNode& node, const dmat4& to_
       ElementFactors& own = mesh.factors[e];
       if (part.young > 0.0) own.stiffness += s * (part.young / body.young - own.stiffness);
       own.damping += s * (part.damping - own.damping);
+      own.relaxation += s * (part.relaxation - own.relaxation);
       if (part.density > 0.0) density[e] += s * (part.density / body.density - density[e]);
     }
     weighs = weighs || part.density > 0.0;

@@ -14,4 +14,8 @@ namespace pliant {
 Status set_materials(const Level& level, const LevelNode& node, const dmat4& to_object, const std::vector<dmat4>& world,
                      SoftParts& parts);
 
+// The mesh of the node of this name in the body's frame; empty: no such node.
+Result<std::optional<BuiltMesh>> mesh_in_body(const std::string& name, const Level& level, const dmat4& to_object,
+                                              const std::vector<dmat4>& world);
+
 }  // namespace pliant

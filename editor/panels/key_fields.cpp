@@ -196,7 +196,7 @@ bool items_field(Editor& editor, const Key& key, Json& value) {
     }
     ImGui::PopID();
   }
-  if (next.size() < kMostItems && ui::button(fmt::format("Add##{}", key.name).c_str())) {
+  if (next.size() < key.most && ui::button(fmt::format("Add##{}", key.name).c_str())) {
     next.push_back({{"thickness", usual.thickness}, {"force", 1.0}});
     changed = true;
   }

@@ -100,6 +100,7 @@ Result<Lattice> make_lattice(Level& alone, std::size_t node, double cell, Patche
 TissueMaterial material_of(const SoftBody& body, Strain strain) {
   TissueMaterial material = material_of(body);
   material.strain = strain;
+  material.prony = {};
   return material;
 }
 

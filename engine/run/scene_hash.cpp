@@ -48,6 +48,11 @@ void add_animation(Hash& hash, const LevelAnimation& animation) {
 
 // Keeps the hash of scenes older than these keys.
 bool is_newer_default(const Extension& extension, const Key& key, const Json& value) {
+  if (key.name == "prony" || key.name == "cavities" || key.name.starts_with("fibres.")) {
+    LevelNode fresh;
+    extension.add(&fresh);
+    return value == key.get(&fresh);
+  }
   return (key.name == "under_gravity" && value == "falls") || (key.name == "contact" && value == "lattice") ||
          (key.name == "law" && value == "corotational") ||
          (key.name == "velocity" && value == Json::array({0.0, 0.0, 0.0})) ||

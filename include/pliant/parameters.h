@@ -178,11 +178,51 @@ enum class Elements : std::uint8_t {
 // A part of the tissue with a material of its own: a physical group of the tetrahedra file, or what a mesh inside
 // encloses.
 struct TissuePart {
-  std::string name;      // of the group, or of the node with the mesh
-  double young = 0.0;    // [Pa] 0: the body's
-  double density = 0.0;  // [kg/m3] 0: the body's
-  double damping = 1.0;  // [1] factor on rayleigh's beta
+  std::string name;         // of the group, or of the node with the mesh
+  double young = 0.0;       // [Pa] 0: the body's
+  double density = 0.0;     // [kg/m3] 0: the body's
+  double damping = 1.0;     // [1] factor on rayleigh's beta
+  double relaxation = 1.0;  // [1] factor on the shares of `prony`; 0: it does not relax
   bool operator==(const TissuePart&) const = default;
+};
+
+// Relaxation of tissue: after a step of strain its stress is
+//   1 - sum_i share_i (1 - e^(-t / time_i))
+// of that at once (a Prony series relative to the modulus at once).
+struct Prony {
+  static constexpr std::size_t kMost = 3;
+  struct Arm {
+    double share = 0.3;  // [1] of the stress at once, which relaxes
+    double time = 0.5;   // [s]
+    bool operator==(const Arm&) const = default;
+  };
+  std::size_t count = 0;
+  std::array<Arm, kMost> arms{};
+  double remains() const {  // [1] of the stress at once, that stays
+    double left = 1.0;
+    for (std::size_t i = 0; i < count; ++i) left -= arms[i].share;
+    return left;
+  }
+  bool operator==(const Prony&) const = default;
+};
+
+// A closed hollow in tissue, filled with gas or liquid. Its pressure is `pressure` + `bulk` (1 - volume / that at
+// rest).
+struct Cavity {
+  std::string name;       // of a node whose closed mesh encloses the hollow; "": every hollow of the tissue
+  double pressure = 0.0;  // [Pa] over that outside
+  double bulk = 0.0;      // [Pa] large: its volume stays
+  bool operator==(const Cavity&) const = default;
+};
+
+// Fibres in tissue, along one direction: a stress young (stretch - rest) along them, besides that of the law.
+struct Fibres {
+  double young = 0.0;         // [Pa] 0: none
+  dvec3 direction{1, 0, 0};   // object frame, of any length
+  bool only_tension = false;  // they do not resist shortening
+  double contraction = 0.0;   // [1] rest = 1 - contraction
+  double period = 0.0;        // [s] of a contraction that comes and goes as (1 - cos) / 2; 0: it is constant
+  bool operator==(const Fibres&) const = default;
 };
 
 // Tissue: co-rotational FEM on tetrahedra or hexahedra (P2). Keys of PLIANT_soft_body.
@@ -193,7 +233,10 @@ struct SoftBodyParameters {
   double stiffening = 1.0;               // [1] exponent of the law `fung`
   double density = 1000.0;               // [kg/m3]
   std::array<double, 2> rayleigh{0, 0};  // alpha [1/s], beta [s]
-  double cell = 0.0;                     // [m] lattice cell; 0: sized for some 2,000 tetrahedra
+  Prony prony;                           // none: elastic
+  Fibres fibres;
+  std::vector<Cavity> cavities;
+  double cell = 0.0;  // [m] lattice cell; 0: sized for some 2,000 tetrahedra
   Elements elements = Elements::kTetrahedra;
   std::vector<TissuePart> materials;  // of parts of the tissue; a later one counts where two overlap
   Box focus;                          // [m] object frame: cells have this size here and grow away from it

@@ -11,8 +11,8 @@
 
 #include "content/keys/enum_words.h"
 #include "content/keys/extension_table.h"
-#include "content/level/varying_keys.h"
 #include "content/keys/extensions.h"
+#include "content/level/varying_keys.h"
 #include "content/level_file.h"
 #include "systems/touch/model/local_model.h"
 
@@ -71,6 +71,8 @@ Json other_value(const Key& key, const Json& other) {
                                      Json::array({{{"thickness", 0.5}, {"force", 0.25}}}),
                                      Json::array({Json::array({0.0, 0.0}), Json::array({0.5, 0.25})}),
                                      Json::array({{{"name", "a"}, {"young", 9}, {"density", 8}, {"damping", 7}}}),
+                                     Json::array({{{"share", 0.5}, {"time", 0.25}}}),
+                                     Json::array({{{"name", "a"}, {"pressure", 9.0}, {"bulk", 8.0}}}),
                                      {{"min", {0, 0, 0}}, {"max", {0.5, 1, 2}}},
                                      Json::array({"some text"}),
                                      !key.choices ? Json() : Json(key.choices().front()),

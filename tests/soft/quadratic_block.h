@@ -1,9 +1,11 @@
-// The slower twin of tissue: a block of quadratic tetrahedra (ten nodes, four Gauss points) between bonded plates, with
-// the elastic laws and their exact tangent, by Newton in small steps of the load.
+// The slower twin of tissue: a block of quadratic tetrahedra (ten nodes, four Gauss points) between two bonded plates,
+// with the elastic laws and their exact tangent, by Newton in small steps of the load.
 #pragma once
 
 #include <Eigen/Sparse>
+#include <functional>
 #include <map>
+#include <optional>
 
 #include "scenes/tet_shapes.h"
 #include "systems/soft/fem/law/elastic_law.h"
@@ -14,8 +16,11 @@ class QuadraticBlock {
  public:
   // A cube of [m] `size` in n^3 cells, its faces x = 0 and x = size bonded to plates.
   QuadraticBlock(int n, double size, ElasticLaw law, const LawConstants& material)
-      : law_(law), material_(material), size_(size) {
-    const TetMesh mesh = tets::box(n, n, n, dvec3(0), dvec3(size));
+      : QuadraticBlock({n, n, n}, dvec3(size), law, material) {}
+  // A bar with so many cells along each axis.
+  QuadraticBlock(std::array<int, 3> cells, dvec3 size, ElasticLaw law, const LawConstants& material)
+      : law_(law), material_(material), size_(size.x) {
+    const TetMesh mesh = tets::box(cells[0], cells[1], cells[2], dvec3(0), size);
     rest_ = mesh.nodes;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
     for (const Tet& t : mesh.tets) {
@@ -28,18 +33,28 @@ class QuadraticBlock {
       }
       elements_.push_back(nodes);
     }
-    for (const dvec3 p : rest_) row_.push_back(p.x > 1e-9 && p.x < size - 1e-9 ? free_++ : -1);
+    for (const dvec3 p : rest_) row_.push_back(p.x > 1e-9 && p.x < size_ - 1e-9 ? free_++ : -1);
     x_ = rest_;
   }
 
-  // [N] on the far plate when it is moved by `way` from rest, in steps of a twelfth or less; empty if Newton fails.
+  struct Load {
+    dvec3 force{0}, torque{0};  // [N], [N m] on the far plate, the latter about the origin
+  };
+  // The far plate is moved by `way` from rest, in steps of a twelfth or less; empty if Newton fails.
   std::optional<dvec3> press(dvec3 way) {
+    const std::optional<Load> load = carry([&](dvec3 p, double share) { return p + share * way; });
+    if (!load) return std::nullopt;
+    return load->force;
+  }
+  // The same by any motion: place(rest, share) of the plate's points, share [1] from 0 to 1.
+  std::optional<Load> carry(const std::function<dvec3(dvec3, double)>& place) {
     x_ = rest_;
     double done = 0.0, step = 1.0 / 12;
     while (done < 1.0 - 1e-9) {
       const std::vector<dvec3> before = x_;
       step = std::min(step, 1.0 - done);
-      for (std::size_t k = 0; k < x_.size(); ++k) x_[k] += step * rest_[k].x / size_ * way;
+      for (std::size_t k = 0; k < x_.size(); ++k)
+        x_[k] += rest_[k].x / size_ * (place(rest_[k], done + step) - place(rest_[k], done));
       if (settle()) {
         done += step;
         continue;
@@ -47,10 +62,10 @@ class QuadraticBlock {
       x_ = before, step *= 0.5;
       if (step < 1e-3) return std::nullopt;
     }
-    dvec3 plate(0);
+    Load on;
     for (std::size_t k = 0; k < x_.size(); ++k)
-      if (rest_[k].x > size_ - 1e-9) plate += force_[k];
-    return -plate;
+      if (rest_[k].x > size_ - 1e-9) on.force -= force_[k], on.torque -= cross(x_[k], force_[k]);
+    return on;
   }
 
  private:

@@ -51,7 +51,7 @@ double volume_of(const std::vector<dvec3>& x, const Tet& t) {
 }
 
 std::unique_ptr<LinearSolver> solver_for(const Tissue& tissue, std::uint32_t moving) {
-  std::unique_ptr<LinearSolver> solver = make_solver(SolverKind::kAuto, moving);
+  std::unique_ptr<LinearSolver> solver = solver_of(tissue, make_solver(SolverKind::kAuto, moving));
   solver->analyse(tissue.inner());
   return solver;
 }
@@ -105,6 +105,7 @@ Equilibrium find_equilibrium(const TetMesh& tets, const SoftBody& body, dvec3 gr
   out.held = any_free(tets);
   if (!out.held) return out;
   Tissue tissue(tets, static_tissue(body), tets.free_count);
+  tissue.keep_relaxed(true);
   tissue.position() = begin ? *begin : tets.nodes;
   const std::vector<dvec3> from = tissue.position();
   const auto solver = solver_for(tissue, tets.free_count);
@@ -148,6 +149,7 @@ Unloaded find_unloaded(const TetMesh& tets, const SoftBody& body, dvec3 gravity,
   guess.cells = tets.cells;
   guess.volume = tets.volume;
   guess.factors = tets.factors;
+  guess.cavities = tets.cavities;
   guess.free_count = tets.free_count;
   guess.handle_count = tets.handle_count;
   std::vector<dvec3> way(tets.nodes.size(), dvec3(0));
@@ -162,6 +164,7 @@ Unloaded find_unloaded(const TetMesh& tets, const SoftBody& body, dvec3 gravity,
     std::vector<dvec3> sagged;
     if (shaped) {
       Tissue tissue(guess, static_tissue(body), guess.free_count);
+      tissue.keep_relaxed(true);
       tissue.position() = tets.nodes;
       const auto solver = solver_for(tissue, guess.free_count);
       sagged = step_from_rest(tissue, *solver, kLongestStep, gravity);

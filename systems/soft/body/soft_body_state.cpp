@@ -65,7 +65,7 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& surface, const Sof
     : tets_(tets),
       damping_{body.rayleigh[0], body.rayleigh[1]},
       tissue_(tets, material_of(body), moving_nodes(tets, handle)),
-      solver_(std::move(solver), tissue_.inner(), has_handle_nodes(tets, handle)) {
+      solver_(solver_of(tissue_, std::move(solver)), tissue_.inner(), has_handle_nodes(tets, handle)) {
   ASSERT(tets.embedding.size() == surface.vertex_count);
   placed_ = placement.rotation;
   collision_mesh = &surface;
@@ -88,6 +88,7 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& surface, const Sof
     tissue_.position()[i] = placement.to_world(tets.start.empty() ? tets.nodes[i] : tets.start[i]);
     tissue_.velocity()[i] = dvec3(0);
   }
+  tissue_.rest_here();
   velocity_ = Vector::Zero(size());
   if (body.contact == SoftContact::kSplit) smear();
   refresh_surface(tissue_.position(), surface_position);
@@ -159,6 +160,7 @@ void SoftBodyState::halt() {
 void SoftBodyState::settle(dvec3 gravity) {
   if (!handle_) return;
   const RigidMotion there = handle_->motion();
+  tissue_.keep_relaxed(true);
   const double small = kSettled * length(box_size(tets_));
   for (int i = 0; i < kSettleSteps; ++i) {
     check_in();
@@ -171,12 +173,14 @@ void SoftBodyState::settle(dvec3 gravity) {
     if (moved < small) break;
   }
   halt();
+  tissue_.keep_relaxed(false);
   prescribed_.reset();
 }
 
 void SoftBodyState::unsettle() {
   const Pose pose = handle_->object_pose();
   for (std::size_t i = 0; i < tets_.nodes.size(); ++i) tissue_.position()[i] = pose.to_world(tets_.nodes[i]);
+  tissue_.rest_here();
   refresh_surface(tissue_.position(), surface_position);
 }
 
@@ -226,6 +230,7 @@ void SoftBodyState::advance(double T) {
       v[i] = node_velocity(i, velocity_);
     }
   }
+  tissue_.end_step(T);
   refresh_surface(x, surface_position);
 }
 
@@ -365,6 +370,7 @@ void SoftBodyState::load(dvec3 force, dvec3 torque, Rows& column) const {
 
 void SoftBodyState::place(const Pose& pose) {
   for (std::size_t i = 0; i < tets_.nodes.size(); ++i) tissue_.position()[i] = pose.to_world(tets_.nodes[i]);
+  tissue_.rest_here();
   halt();
   refresh_surface(tissue_.position(), surface_position);
 }

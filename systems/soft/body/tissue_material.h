@@ -13,7 +13,9 @@ inline TissueMaterial material_of(const SoftBodyParameters& body) {
           .alpha = body.rayleigh[0],
           .beta = body.rayleigh[1],
           .law = body.law,
-          .stiffening = body.stiffening};
+          .stiffening = body.stiffening,
+          .prony = body.prony,
+          .fibres = body.fibres};
 }
 
 }  // namespace pliant

@@ -131,6 +131,10 @@ void take_edges(const ElementPack& pack, const std::vector<dvec3>& x, ElementVis
   }
 }
 
+void take_gradients(const ElementPack& pack, ElementVisit& visit) {
+  deform(pack, visit);
+}
+
 void take_rotations(const ElementPack& pack, ElementVisit& visit) {
   deform(pack, visit);
   std::memcpy(visit.q, pack.q, sizeof visit.q);

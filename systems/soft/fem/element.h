@@ -38,6 +38,7 @@ struct alignas(64) ElementVisit {
 double rest_shape(const std::vector<dvec3>& nodes, const Tet& tet, std::array<dvec3, 3>& gradient);
 
 void take_edges(const ElementPack& pack, const std::vector<dvec3>& x, ElementVisit& visit);
+void take_gradients(const ElementPack& pack, ElementVisit& visit);  // F from the edges
 // F from the edges, then R from F (polar.h), starting from the pack's: Newton on all lanes at once, individually where
 // that is uncertain.
 void take_rotations(const ElementPack& pack, ElementVisit& visit);

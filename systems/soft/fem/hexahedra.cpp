@@ -54,6 +54,40 @@ dmat3 mean_deformation(const Hexahedron& hex, const std::vector<dvec3>& x) {
   return F;
 }
 
+// eps in the world frame, q_a in the cell's.
+struct CellStrain {
+  dmat3 mean;
+  std::array<dvec3, 4> q{};
+};
+
+CellStrain cell_strain(const Hexahedron& hex, const std::vector<dvec3>& x, const HexVisit& v) {
+  CellStrain out;
+  dmat3 G(0.0);
+  for (std::size_t i = 1; i < 8; ++i) {
+    const dvec3 edge = x[hex.node[i]] - x[hex.node[0]];
+    G += outerProduct(edge, v.c[i]);
+    for (std::size_t a = 0; a < 4; ++a) out.q[a] += hex.rest[a][i] * edge;
+  }
+  out.mean = 0.5 * (G + transpose(G)) - dmat3(1.0);
+  for (dvec3& each : out.q) each = each * v.R;
+  return out;
+}
+
+// Of q_a, in the cell's frame.
+std::array<dvec3, 4> rest_forces(const RestStiffness& rest, const std::array<dvec3, 4>& q) {
+  std::array<dvec3, 4> force{};
+  for (int d = 0; d < 3; ++d) {
+    for (std::size_t a = 0; a < 4; ++a) force[a][d] += rest.own[d][a] * q[a][d];
+    for (int f = 0; f < 3; ++f) {
+      if (f == d) continue;
+      const auto ad = static_cast<std::size_t>(d), af = static_cast<std::size_t>(f);
+      force[af][d] += rest.bend[d][f] * q[ad][f];
+      force[ad][d] += rest.twist[d][f] * q[af][f];
+    }
+  }
+  return force;
+}
+
 }  // namespace
 
 std::array<Tet, 6> pairs_of(const std::array<std::uint32_t, 8>& n) {
@@ -91,6 +125,7 @@ std::vector<Hexahedron> make_hexahedra(const TetMesh& mesh) {
     Hexahedron hex;
     hex.volume = volume * (mesh.factors.empty() ? 1.0 : mesh.factors[c].stiffness);
     hex.damping = mesh.factors.empty() ? 1.0 : mesh.factors[c].damping;
+    hex.relaxation = mesh.factors.empty() ? 1.0 : mesh.factors[c].relaxation;
     hex.spread = cell.spread;
     for (int d = 0; d < 3; ++d) hex.over[d] = 1.0 / length(J[d]);
     for (int a = 0; a < 4; ++a) {
@@ -122,36 +157,48 @@ void turn_cell(const Hexahedron& hex, const dquat& q, HexVisit& visit) {
 }
 
 void find_cell_forces(const Hexahedron& hex, const std::vector<dvec3>& x, double lambda, double mu, HexVisit& v) {
-  dmat3 G(0.0);
-  std::array<dvec3, 4> q{};
-  for (std::size_t i = 1; i < 8; ++i) {
-    const dvec3 edge = x[hex.node[i]] - x[hex.node[0]];
-    G += outerProduct(edge, v.c[i]);
-    for (std::size_t a = 0; a < 4; ++a) q[a] += hex.rest[a][i] * edge;
-  }
-  const dmat3 eps = 0.5 * (G + transpose(G)) - dmat3(1.0);
+  const CellStrain strain = cell_strain(hex, x, v);
+  const dmat3& eps = strain.mean;
   const double trace = eps[0][0] + eps[1][1] + eps[2][2];
   const dmat3 sigma = 2 * mu * eps + dmat3(lambda * trace);
   v.energy = 0.0;
   for (int k = 0; k < 3; ++k) v.energy += 0.5 * hex.volume * dot(sigma[k], eps[k]);
-  const RestStiffness rest = rest_stiffness(hex, lambda, mu);
-  std::array<dvec3, 4> force{};  // of the rest, in the cell's frame
-  for (dvec3& each : q) each = each * v.R;
-  for (int d = 0; d < 3; ++d) {
-    for (std::size_t a = 0; a < 4; ++a) force[a][d] += rest.own[d][a] * q[a][d];
-    for (int f = 0; f < 3; ++f) {
-      if (f == d) continue;
-      const auto ad = static_cast<std::size_t>(d), af = static_cast<std::size_t>(f);
-      force[af][d] += rest.bend[d][f] * q[ad][f];
-      force[ad][d] += rest.twist[d][f] * q[af][f];
-    }
-  }
+  std::array<dvec3, 4> force = rest_forces(rest_stiffness(hex, lambda, mu), strain.q);
   for (std::size_t a = 0; a < 4; ++a) {
-    v.energy += 0.5 * dot(force[a], q[a]);
+    v.energy += 0.5 * dot(force[a], strain.q[a]);
     force[a] = v.R * force[a];
   }
   for (std::size_t i = 0; i < 8; ++i) {
     v.f[i] = -hex.volume * (sigma * v.c[i]);
+    for (std::size_t a = 0; a < 4; ++a) v.f[i] -= hex.rest[a][i] * force[a];
+  }
+}
+
+void find_cell_stress(const Hexahedron& hex, const std::vector<dvec3>& x, double lambda, double mu, const HexVisit& v,
+                      double* stress) {
+  const CellStrain strain = cell_strain(hex, x, v);
+  const dmat3 eps = transpose(v.R) * strain.mean * v.R;
+  const dmat3 S = 2 * mu * eps + dmat3(lambda * (eps[0][0] + eps[1][1] + eps[2][2]));
+  const double mean[6] = {S[0][0], S[1][1], S[2][2], S[1][0], S[2][0], S[2][1]};
+  std::copy(mean, mean + 6, stress);
+  const std::array<dvec3, 4> force = rest_forces(rest_stiffness(hex, lambda, mu), strain.q);
+  for (int a = 0; a < 4; ++a)
+    for (int d = 0; d < 3; ++d) stress[6 + 3 * a + d] = force[static_cast<std::size_t>(a)][d];
+}
+
+void add_cell_history(const Hexahedron& hex, const std::vector<dvec3>& x, const double* h, double share, HexVisit& v) {
+  const CellStrain strain = cell_strain(hex, x, v);
+  const dmat3 H = v.R * dmat3(h[0], h[3], h[4], h[3], h[1], h[5], h[4], h[5], h[2]) * transpose(v.R);
+  v.energy *= share;
+  for (int k = 0; k < 3; ++k) v.energy += hex.volume * dot(H[k], strain.mean[k]);
+  std::array<dvec3, 4> force;
+  for (std::size_t a = 0; a < 4; ++a) {
+    force[a] = dvec3(h[6 + 3 * a], h[7 + 3 * a], h[8 + 3 * a]);
+    v.energy += dot(force[a], strain.q[a]);
+    force[a] = v.R * force[a];
+  }
+  for (std::size_t i = 0; i < 8; ++i) {
+    v.f[i] = share * v.f[i] - hex.volume * (H * v.c[i]);
     for (std::size_t a = 0; a < 4; ++a) v.f[i] -= hex.rest[a][i] * force[a];
   }
 }

@@ -22,7 +22,7 @@ namespace pliant {
 struct Hexahedron {
   std::array<std::uint32_t, 8> node{};          // ascending
   double volume = 0.0;                          // [m3] of tissue, times the factor on stiffness
-  double damping = 1.0;                         // [1]
+  double damping = 1.0, relaxation = 1.0;       // [1]
   std::array<dvec3, 8> gradient{};              // [1/m] B_i
   std::array<std::array<double, 8>, 4> rest{};  // [1] g_ai
   dvec3 over{0};                                // [1/m] 2 / the cell's widths
@@ -47,6 +47,15 @@ void turn_cell(const Hexahedron& hex, const dquat& q, HexVisit& visit);
 // f and energy at x for visit.R; K.
 void find_cell_forces(const Hexahedron& hex, const std::vector<dvec3>& x, double lambda, double mu, HexVisit& visit);
 void find_cell_stiffness(const Hexahedron& hex, double lambda, double mu, HexVisit& visit);
+
+// Relaxation (tissue_memory.h): the mean stress, xx, yy, zz, xy, xz, yz, and the forces on q_a, 3 each, in the cell's
+// own axes. The history's forces are linear in the strain for the rotation of the cell, as those of the law.
+inline constexpr std::size_t kCellStresses = 18;
+void find_cell_stress(const Hexahedron& hex, const std::vector<dvec3>& x, double lambda, double mu,
+                      const HexVisit& visit, double* stress);
+// f and energy <- share of them, with those of the history.
+void add_cell_history(const Hexahedron& hex, const std::vector<dvec3>& x, const double* history, double share,
+                      HexVisit& visit);
 
 // Pairs of a cell's corners, as the six tetrahedra that have them all between them.
 std::array<Tet, 6> pairs_of(const std::array<std::uint32_t, 8>& node);

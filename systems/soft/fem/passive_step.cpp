@@ -22,7 +22,7 @@ double passive_share(const Tissue& tissue, const std::vector<dvec3>& carried, co
     return x;
   };
   Vector Ad(d.size());
-  tissue.inner().multiply(d, Ad);
+  tissue.multiply(d, Ad);
   double dMd = 0.0, dMd0 = 0.0, d0Md0 = 0.0, elastic = d.dot(Ad);
   for (std::uint32_t i = 0; i < moving; ++i) {
     const dvec3 now = at(d, i), before = tissue.velocity()[i] - carried[i];

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "runtime/assert.h"
+#include "systems/soft/linear/low_rank_solver.h"
 
 namespace pliant {
 namespace {
@@ -62,14 +63,19 @@ void add(Vector& to, std::uint32_t node, dvec3 f) {
 
 }  // namespace
 
-// K' enters A with T^2 + T beta, f_el the right-hand side with T.
+// K' enters A with T^2 + T beta, f_el the right-hand side with T. `share`: of K' where tissue relaxes.
 struct Tissue::Scale {
   double T, beta;
-  double stiffness(double damping) const { return T * T + T * beta * damping; }
+  double stiffness(double damping, double share) const { return T * T * share + T * beta * damping; }
 };
 
 Tissue::Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_t moving)
-    : mesh_(mesh), material_(material), moving_(moving), x_(mesh.nodes), v_(mesh.nodes.size(), dvec3(0)) {
+    : mesh_(mesh),
+      material_(material),
+      moving_(moving),
+      x_(mesh.nodes),
+      v_(mesh.nodes.size(), dvec3(0)),
+      cavities_(mesh) {
   ASSERT(moving >= mesh.free_count && moving <= mesh.pinned_begin());
   ASSERT(mesh.pinned_begin() <= mesh.node_count());
   ASSERT(material.young > 0 && material.density > 0 && material.poisson > -1 && material.poisson < 0.5);
@@ -78,7 +84,10 @@ Tissue::Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_
     take_elements();
   else
     hexahedra_ = make_hexahedra(mesh);
+  if (!mesh.factors.empty())
+    for (const Hexahedron& hex : hexahedra_) relaxation_.push_back(hex.relaxation);
   take_masses();
+  take_memory();
   lay_out();
   right_.setZero(3 * mesh.pinned_begin());
   force_.setZero(3 * mesh.node_count());
@@ -86,11 +95,17 @@ Tissue::Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_
 
 void Tissue::set_material(const TissueMaterial& now) {
   const double density = material_.density;
+  const bool relaxes_else = !(now.prony == memory_.prony());
   material_ = now;
   material_.density = density;
   mu_ = now.young / (2 * (1 + now.poisson));
   lambda_ = now.young * now.poisson / ((1 + now.poisson) * (1 - 2 * now.poisson));
   law_ = now.strain == Strain::kLinear || !mesh_.cells.empty() ? nullptr : elastic_law(now.law);
+  if (relaxes_else) take_memory();
+  if (memory_.empty() || relaxes_else) return;
+  std::vector<double> stress;
+  find_stress(stress);
+  memory_.replace(stress);
 }
 
 void Tissue::take_elements() {
@@ -118,7 +133,9 @@ void Tissue::take_elements() {
     for (int k = 0; k < 3; ++k)
       for (int d = 0; d < 3; ++d) pack.gradient[k][d][lane] = b[k][d];
     pack.q[0][lane] = 1.0;
-    if (!mesh_.factors.empty()) damping_.push_back(element.factors.damping);
+    if (mesh_.factors.empty()) continue;
+    damping_.push_back(element.factors.damping);
+    relaxation_.push_back(element.factors.relaxation);
   }
 }
 
@@ -203,15 +220,22 @@ double* Tissue::block(std::uint32_t row, std::uint32_t column, std::uint32_t slo
                           : corner_[slot].value.data();
 }
 
-void Tissue::visit(const ElementPack& pack, const std::vector<dvec3>& x, ElementVisit& out) const {
+void Tissue::visit(std::size_t number, const std::vector<dvec3>& x, ElementVisit& out) const {
+  const ElementPack& pack = packs_[number];
   take_edges(pack, x, out);
-  if (law_) return take_law_forces(pack, law_, {mu_, lambda_, material_.stiffening}, out);
+  if (law_) {
+    take_law_forces(pack, law_, {mu_, lambda_, material_.stiffening}, out);
+    if (memory_.empty()) return;
+    take_rotations(pack, out);
+    return add_history(number, out);
+  }
   if (material_.strain == Strain::kCorotational)
     take_rotations(pack, out);
   else
     std::memcpy(out.q, pack.q, sizeof out.q);
   turn_gradients(pack, out);
   take_forces(pack, lambda_, mu_, out);
+  if (!memory_.empty()) add_history(number, out);
 }
 
 void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) {
@@ -221,10 +245,12 @@ void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) 
   right_.setZero();
   force_.setZero();
   const Scale scale{T, material_.beta};
+  if (!relaxed_) memory_.begin(T), step_ = T;
   if (law_) {
     assemble_law(scale, begin);
+    add_fibres(T, begin);
     mirror();
-    return add_masses(T, gravity);
+    return add_masses(T, gravity, begin);
   }
   const std::uint32_t end = mesh_.pinned_begin();
   const auto add_forces = [](const Tet& tet, std::size_t lane, const ElementVisit& from, double factor,
@@ -235,22 +261,27 @@ void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) 
   ElementVisit now;
   const Slots* slots = slots_.data();
   const double* damping = damping_.data();
-  for (ElementPack& pack : packs_) {
-    visit(pack, x_, now);
+  for (std::size_t p = 0; p < packs_.size(); ++p) {
+    ElementPack& pack = packs_[p];
+    visit(p, x_, now);
     std::memcpy(pack.q, now.q, sizeof now.q);
     for (std::size_t lane = 0; lane < pack.count; ++lane, ++slots) {
       add_forces(pack.node[lane], lane, now, 1.0, mesh_.node_count(), force_);
-      const double stiffness = scale.stiffness(damping_.empty() ? 1.0 : *damping++);
+      const double stiffness = scale.stiffness(damping_.empty() ? 1.0 : *damping++, pack_share(p, lane));
       add_blocks(pack, lane, *slots, stiffness, now);
       if (pack.node[lane][3] >= end) add_prescribed(pack, lane, stiffness, now);
     }
     // f_el + K' (x - begin): the stress at the beginning of the step, with the rotations of the guess.
-    if (begin) take_edges(pack, *begin, now), take_forces(pack, lambda_, mu_, now);
+    if (begin) {
+      take_edges(pack, *begin, now), take_forces(pack, lambda_, mu_, now);
+      if (!memory_.empty()) add_history(p, now);
+    }
     for (std::size_t lane = 0; lane < pack.count; ++lane) add_forces(pack.node[lane], lane, now, T, end, right_);
   }
   add_cells(scale, begin);
+  add_fibres(T, begin);
   mirror();
-  add_masses(T, gravity);
+  add_masses(T, gravity, begin);
 }
 
 // The right-hand side has f_el + K' (x - begin), the forces linearised about x, at the beginning of the step; and, of
@@ -262,19 +293,21 @@ void Tissue::assemble_law(const Scale& scale, const std::vector<dvec3>* begin) {
   LawBlocks blocks;
   const Slots* slots = slots_.data();
   const double* damping = damping_.data();
-  for (ElementPack& pack : packs_) {
+  for (std::size_t p = 0; p < packs_.size(); ++p) {
+    ElementPack& pack = packs_[p];
     take_edges(pack, x_, now);
     take_law_forces(pack, law_, constants, now);
     take_rotations(pack, now);
     take_law_blocks(pack, law_, constants, now, blocks);
+    if (!memory_.empty()) add_history(p, now);
     std::memcpy(pack.q, now.q, sizeof now.q);
     for (std::size_t lane = 0; lane < pack.count; ++lane, ++slots) {
       const Tet& tet = pack.node[lane];
-      const double stiffness = scale.stiffness(damping_.empty() ? 1.0 : *damping++);
+      const double share = pack_share(p, lane), stiffness = scale.stiffness(damping_.empty() ? 1.0 : *damping++, share);
       add_law_blocks(tet, lane, *slots, stiffness, blocks);
       std::array<dvec3, 4> shift{};  // K' times these is on the right
       if (begin)
-        for (int i = 0; i < 4; ++i) shift[i] = scale.T * (x_[tet[i]] - (*begin)[tet[i]]);
+        for (int i = 0; i < 4; ++i) shift[i] = scale.T * share * (x_[tet[i]] - (*begin)[tet[i]]);
       if (tet[3] >= end)
         for (int i = 0; i < 4; ++i)
           if (tet[i] >= end) shift[i] -= stiffness * v_[tet[i]];
@@ -322,8 +355,9 @@ void Tissue::add_cells(const Scale& scale, const std::vector<dvec3>* begin) {
     turn_cell(hex, hex.q, now);
     find_cell_forces(hex, x_, lambda_, mu_, now);
     find_cell_stiffness(hex, lambda_, mu_, now);
+    add_cell_memory(e, x_, now);
     for (std::size_t i = 0; i < 8; ++i) add(force_, hex.node[i], now.f[i]);
-    const double stiffness = scale.stiffness(hex.damping);
+    const double stiffness = scale.stiffness(hex.damping, cell_share(e));
     std::size_t k = 0;
     for (std::size_t i = 0; i < 8; ++i)
       for (std::size_t j = i; j < 8; ++j, ++k) {
@@ -332,7 +366,10 @@ void Tissue::add_cells(const Scale& scale, const std::vector<dvec3>* begin) {
         // As in add_prescribed().
         if (hex.node[i] < end && hex.node[j] >= end) add(right_, hex.node[i], -(K * v_[hex.node[j]]));
       }
-    if (begin) find_cell_forces(hex, *begin, lambda_, mu_, now);
+    if (begin) {
+      find_cell_forces(hex, *begin, lambda_, mu_, now);
+      add_cell_memory(e, *begin, now);
+    }
     for (std::size_t i = 0; i < 8; ++i)
       if (hex.node[i] < end) add(right_, hex.node[i], scale.T * now.f[i]);
   }
@@ -341,19 +378,24 @@ void Tissue::add_cells(const Scale& scale, const std::vector<dvec3>* begin) {
 void Tissue::find_forces() {
   force_.setZero();
   ElementVisit now;
-  for (ElementPack& pack : packs_) {
-    visit(pack, x_, now);
+  for (std::size_t p = 0; p < packs_.size(); ++p) {
+    ElementPack& pack = packs_[p];
+    visit(p, x_, now);
     if (!law_) std::memcpy(pack.q, now.q, sizeof now.q);
     for (std::size_t lane = 0; lane < pack.count; ++lane)
       for (int i = 0; i < 4; ++i) add(force_, pack.node[lane][i], lane_of(now.f[i], lane));
   }
   HexVisit of_cell;
-  for (Hexahedron& hex : hexahedra_) {
+  for (std::size_t e = 0; e < hexahedra_.size(); ++e) {
+    Hexahedron& hex = hexahedra_[e];
     hex.q = turned(hex, x_);
     turn_cell(hex, hex.q, of_cell);
     find_cell_forces(hex, x_, lambda_, mu_, of_cell);
+    add_cell_memory(e, x_, of_cell);
     for (std::size_t i = 0; i < 8; ++i) add(force_, hex.node[i], of_cell.f[i]);
   }
+  cavities_.add_forces(x_, force_);
+  add_fibre_forces(force_);
 }
 
 void Tissue::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, double stiffness,
@@ -396,25 +438,39 @@ void Tissue::mirror() {
   for (const auto& [upper, lower] : corner_mirror_) corner_[lower].value = corner_[upper].value.transpose();
 }
 
-void Tissue::add_masses(double T, dvec3 gravity) {
+void Tissue::add_masses(double T, dvec3 gravity, const std::vector<dvec3>* begin) {
   const double damped = 1 + T * material_.alpha;
   for (std::uint32_t i = 0; i < mesh_.pinned_begin(); ++i) add(right_, i, mass_[i] * (v_[i] + T * gravity));
   for (std::uint32_t i = 0; i < moving_; ++i) inner_.value[inner_.diagonal[i]].diagonal().array() += mass_[i] * damped;
   for (Entry& entry : corner_)
     if (entry.row == entry.column) entry.value.diagonal().array() += mass_[entry.row] * damped;
+  if (cavities_.empty()) return;
+  cavities_.add_forces(x_, force_);
+  cavities_.assemble(T, moving_, x_, v_, begin, low_rank_, right_);
+}
+
+void Tissue::multiply(const Vector& x, Vector& out) const {
+  inner_.multiply(x, out);
+  if (low_rank_.cols() > 0) out += low_rank_ * (low_rank_.transpose() * x);
+}
+
+std::unique_ptr<LinearSolver> solver_of(const Tissue& tissue, std::unique_ptr<LinearSolver> solver) {
+  if (tissue.cavities().empty()) return solver;
+  return std::make_unique<LowRankSolver>(std::move(solver), tissue.low_rank());
 }
 
 double Tissue::elastic_energy(const std::vector<dvec3>& position) const {
-  double energy = 0.0;
+  double energy = cavities_.energy(position) + fibre_energy(position);
   ElementVisit now;
-  for (const ElementPack& pack : packs_) {
-    visit(pack, position, now);
-    for (std::size_t lane = 0; lane < pack.count; ++lane) energy += now.energy[lane];
+  for (std::size_t p = 0; p < packs_.size(); ++p) {
+    visit(p, position, now);
+    for (std::size_t lane = 0; lane < packs_[p].count; ++lane) energy += now.energy[lane];
   }
   HexVisit of_cell;
-  for (const Hexahedron& hex : hexahedra_) {
-    turn_cell(hex, turned(hex, x_), of_cell);
-    find_cell_forces(hex, x_, lambda_, mu_, of_cell);
+  for (std::size_t e = 0; e < hexahedra_.size(); ++e) {
+    turn_cell(hexahedra_[e], turned(hexahedra_[e], position), of_cell);
+    find_cell_forces(hexahedra_[e], position, lambda_, mu_, of_cell);
+    add_cell_memory(e, position, of_cell);
     energy += of_cell.energy;
   }
   return energy;

@@ -15,10 +15,13 @@
 
 #include "components/math.h"
 #include "components/tet_mesh.h"
+#include "systems/soft/fem/cavity.h"
 #include "systems/soft/fem/element.h"
+#include "systems/soft/fem/fibres.h"
 #include "systems/soft/fem/hexahedra.h"
 #include "systems/soft/fem/law_element.h"
-#include "systems/soft/linear/block_matrix.h"
+#include "systems/soft/fem/tissue_memory.h"
+#include "systems/soft/linear/linear_solver.h"
 
 namespace pliant {
 
@@ -36,6 +39,8 @@ struct TissueMaterial {
   Strain strain = Strain::kCorotational;
   TissueLaw law = TissueLaw::kCorotational;
   double stiffening = 1.0;  // [1] of TissueLaw::kFung
+  Prony prony;              // of the stress of the law
+  Fibres fibres;            // of tetrahedra
 };
 
 class Tissue {
@@ -50,6 +55,14 @@ class Tissue {
   const TissueMaterial& material() const { return material_; }
   // False: the forces are linear in the strain, so one linearised step is as good as the rotations in it.
   bool large_strain() const { return law_ != nullptr; }
+
+  // Relaxation (tissue_memory.h) and the fibres' time. assemble() prepares a step; its owner ends it, at the positions
+  // reached after T [s].
+  void end_step(double T);
+  // It has been at the current positions for long: its arms bear nothing.
+  void rest_here();
+  // Static loads from now on: arms bear nothing, whatever the steps.
+  void keep_relaxed(bool relaxed);
 
   // [m], [m/s], world, per node. Writer: the caller that steps this tissue.
   std::vector<dvec3>& position() { return x_; }
@@ -77,11 +90,16 @@ class Tissue {
     std::uint32_t row, column;  // nodes
     Block value;
   };
+  // The step's matrix is inner() + low_rank() low_rank()^T: solver_of().
+  const Rows& low_rank() const { return low_rank_; }
+  void multiply(const Vector& x, Vector& out) const;  // out = that matrix times x
+  const Cavities& cavities() const { return cavities_; }
   const std::vector<Entry>& outer() const { return outer_; }    // row < moving <= column < pinned_begin
   const std::vector<Entry>& corner() const { return corner_; }  // moving <= row, column < pinned_begin
   const Vector& right() const { return right_; }
 
-  double elastic_energy() const { return elastic_energy(x_); }  // [J] at the current positions
+  // [J] At the current positions. Of relaxing tissue: the function whose gradient are the forces of the step.
+  double elastic_energy() const { return elastic_energy(x_); }
   double elastic_energy(const std::vector<dvec3>& position) const;
   // [N] of the last assemble() or find_forces(), 3 per node, all nodes; on pinned nodes: minus the reaction force.
   const Vector& elastic_force() const { return force_; }
@@ -91,11 +109,25 @@ class Tissue {
   using Slots = std::array<std::uint32_t, 10>;  // pairs (0,0) (0,1) (0,2) (0,3) (1,1) (1,2) (1,3) (2,2) (2,3) (3,3)
   using HexSlots = std::array<std::uint32_t, 36>;
   struct Scale;  // factors of one assemble()
+  // [1] of K' of an element, of relaxing tissue: tissue_memory.h
+  double pack_share(std::size_t pack, std::size_t lane) const;
+  double cell_share(std::size_t cell) const;
+
+  bool has_fibres() const { return material_.fibres.young > 0.0; }
+  FibreStep fibre_step(double T) const;
+  void add_fibre_forces(Vector& to) const;
+  double fibre_energy(const std::vector<dvec3>& x) const;
+  void add_fibres(double T, const std::vector<dvec3>* begin);
+
+  void take_memory();
+  void find_stress(std::vector<double>& stress) const;
+  void add_history(std::size_t pack, ElementVisit& visit) const;
+  void add_cell_memory(std::size_t cell, const std::vector<dvec3>& x, HexVisit& visit) const;
 
   void take_elements();
   void take_masses();
   void lay_out();
-  void visit(const ElementPack& pack, const std::vector<dvec3>& x, ElementVisit& out) const;
+  void visit(std::size_t pack, const std::vector<dvec3>& x, ElementVisit& out) const;
   void add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, double stiffness,
                   const ElementVisit& visit);
   void add_prescribed(const ElementPack& pack, std::size_t lane, double stiffness, const ElementVisit& visit);
@@ -104,7 +136,7 @@ class Tissue {
   dquat turned(const Hexahedron& hex, const std::vector<dvec3>& x) const;
   void add_cells(const Scale& scale, const std::vector<dvec3>* begin);
   void mirror();
-  void add_masses(double T, dvec3 gravity);
+  void add_masses(double T, dvec3 gravity, const std::vector<dvec3>* begin);
   double* block(std::uint32_t row, std::uint32_t column, std::uint32_t slot);
 
   const TetMesh& mesh_;
@@ -114,15 +146,24 @@ class Tissue {
   std::uint32_t moving_ = 0;
   std::vector<dvec3> x_, v_;
   std::vector<double> mass_;
-  std::vector<ElementPack> packs_;     // stiff elements by their nodes, ascending, for locality of assembly
-  std::vector<Slots> slots_;           // of each element
-  std::vector<double> damping_;        // [1] of each element: factor on beta; empty: 1
+  std::vector<ElementPack> packs_;  // stiff elements by their nodes, ascending, for locality of assembly
+  std::vector<Slots> slots_;        // of each element
+  std::vector<double> damping_;     // [1] of each element: factor on beta; empty: 1
+  std::vector<double> relaxation_;  // [1] of each element or cell: factor on the arms' shares; empty: 1
+  TissueMemory memory_;             // of each pack's stresses, or of each cell's
+  bool relaxed_ = false;
+  double time_ = 0.0, step_ = 0.0;     // [s] of the fibres; of the step that assemble() has prepared, 0: none
   std::vector<Hexahedron> hexahedra_;  // of a lattice's cells, instead of the elements
   std::vector<HexSlots> hex_slots_;
   std::vector<std::array<std::uint32_t, 2>> inner_mirror_, corner_mirror_;  // an upper block and its lower counterpart
+  Cavities cavities_;
   BlockMatrix inner_;
+  Rows low_rank_;
   std::vector<Entry> outer_, corner_;
   Vector right_, force_;
 };
+
+// A solver for the tissue's steps, by a solver of inner() that is not analysed yet. The tissue outlives it.
+std::unique_ptr<LinearSolver> solver_of(const Tissue& tissue, std::unique_ptr<LinearSolver> solver);
 
 }  // namespace pliant

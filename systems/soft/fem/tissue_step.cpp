@@ -117,6 +117,7 @@ TissueReport step_tissue(Tissue& tissue, LinearSolver& solver, double T, dvec3 g
     x[i] = begin[i] + T * mean;
     v[i] = midpoint && i < tissue.moving() ? 2.0 * mean - v[i] : mean;
   }
+  tissue.end_step(T);
   return report;
 }
 
