@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "runtime/assert.h"
 #include "runtime/long_work.h"
 #include "systems/soft/body/tissue_material.h"
 #include "systems/soft/fem/passive_step.h"
+#include "systems/soft/local/smeared_response.h"
 #include "systems/soft/local/smearing_surface.h"
-#include "systems/soft/local/tip_law.h"
 
 namespace pliant {
 namespace {
@@ -33,25 +32,6 @@ dvec3 box_size(const TetMesh& tets) {
   dvec3 least = tets.nodes.front(), most = least;
   for (const dvec3 node : tets.nodes) least = glm::min(least, node), most = glm::max(most, node);
   return most - least;
-}
-
-// Area-weighted; in double, for the cross product of a small triangle's edges.
-void add_normals(const std::vector<uvec3>& triangles, const std::vector<dvec3>& at, std::vector<vec3>& normals) {
-  for (const uvec3 t : triangles) {
-    const dvec3 area = cross(at[t.y] - at[t.x], at[t.z] - at[t.x]);
-    for (int corner = 0; corner < 3; ++corner) normals[t[corner]] += vec3(area);
-  }
-  for (vec3& normal : normals) {
-    const float size = length(normal);
-    normal = size > 0 ? normal / size : vec3(0, 1, 0);
-  }
-}
-
-Block to_block(const dmat3& m) {
-  Block out;
-  for (int row = 0; row < 3; ++row)
-    for (int col = 0; col < 3; ++col) out(row, col) = m[col][row];
-  return out;
 }
 
 }  // namespace
@@ -278,62 +258,8 @@ dvec3 SoftBodyState::free_velocity(const SmearedLoad& load) const {
   return sum;
 }
 
-void SoftBodyState::smear_again(SurfacePoint& walked) const {
-  const SmearedLoad& before = *walked.smeared;
-  const uvec3 t = collision_mesh->triangles[walked.triangle];
-  dvec3 at(0);
-  for (int i = 0; i < 3; ++i) at += walked.barycentric[i] * dvec3(collision_mesh->position(t[i]));
-  auto load = std::make_shared<SmearedLoad>(smearing_->load_at(at, before.place.normal, before.place.own));
-  if (!load->nodes.empty()) walked.smeared = std::move(load);
-}
-
-// L / T^2 (local_compliance.h) along the contacts' axes; the part of each contact alone by its law.
 void SoftBodyState::add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
-  std::vector<const Side*> smeared;
-  for (const Side& side : sides)
-    if (side.point->smeared) smeared.push_back(&side);
-  if (smeared.empty()) return;
-  const LocalElasticity tissue = elasticity();
-  const auto n = static_cast<Eigen::Index>(smeared.size());
-  Eigen::MatrixXd L(3 * n, 3 * n);
-  const auto along = [](const Side& side) -> Block {  // to the contact's axes
-    return side.sign * to_block(glm::transpose(*side.axes) * side.point->smeared->turn);
-  };
-  std::vector<const SmearedLoad*> spread_loads;
-  for (const Side* side : smeared) spread_loads.push_back(side->point->smeared.get());
-  const Eigen::MatrixXd missing = smearing_->missing(spread_loads);
-  const auto of_anchors = [&](Eigen::Index i, Eigen::Index j) -> Block {
-    const auto normal = [&](Eigen::Index k) {
-      const dvec3 out = spread_loads[static_cast<std::size_t>(k)]->place.normal;
-      return Eigen::Vector3d(out.x, out.y, out.z);
-    };
-    const Block across = normal(i) * normal(j).transpose();
-    const Block along_i = Block::Identity() - normal(i) * normal(i).transpose(),
-                along_j = Block::Identity() - normal(j) * normal(j).transpose();
-    return missing(i, j) / M_PI *
-           (across / tissue.reduced() + (1 - tissue.poisson / 2) / (2 * tissue.shear()) * along_i * along_j);
-  };
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Side& side = *smeared[static_cast<std::size_t>(i)];
-    L.block<3, 3>(3 * i, 3 * i) =
-        along(side) * (self_compliance(*side.point->smeared, tissue, smearing_->layer()) + of_anchors(i, i)) *
-        along(side).transpose();
-    for (Eigen::Index j = 0; j < i; ++j) {
-      const Side& other = *smeared[static_cast<std::size_t>(j)];
-      const Block pair = along(side) *
-                         (local_compliance(pair_place(*side.point->smeared), pair_place(*other.point->smeared), tissue,
-                                           &smearing_->layer()) +
-                          of_anchors(i, j)) *
-                         along(other).transpose();
-      L.block<3, 3>(3 * i, 3 * j) = pair;
-      L.block<3, 3>(3 * j, 3 * i) = pair.transpose();
-    }
-  }
-  make_positive(L);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j)
-      w.block<3, 3>(3 * smeared[static_cast<std::size_t>(i)]->contact,
-                    3 * smeared[static_cast<std::size_t>(j)]->contact) += L.block<3, 3>(3 * i, 3 * j) / (T * T);
+  if (smearing_) add_local_compliance(*smearing_, elasticity(), sides, T, w);
 }
 
 void SoftBodyState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const {
@@ -375,57 +301,22 @@ void SoftBodyState::place(const Pose& pose) {
   refresh_surface(tissue_.position(), surface_position);
 }
 
-// Half a solve instead of a whole one, only at the contacts' nodes (LinearSolver::solve_gram). Contacts by anchors need
-// the anchors' columns alone: W = E C E^T, E of 3 x 3 blocks.
+// Half a solve instead of a whole one, only at the contacts' nodes (LinearSolver::solve_gram).
 void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const {
   pushed_.clear(tissue_.moving());
-  std::map<std::uint32_t, Eigen::Index> column_of;  // anchors
-  for (const PushedSide& side : sides)
-    if (side.point->smeared)
-      for (const auto& part : side.point->smeared->anchors) column_of.emplace(part.first, 0);
-  const bool by_anchors = !column_of.empty();
-  for (auto& [anchor, column] : column_of) {
-    column = pushed_.count();
-    for (const SmearedNode& part : smearing_->anchor_nodes(anchor))
-      if (part.node < tissue_.moving()) pushed_.entries.push_back({part.node, part.weight * Block::Identity()});
-    pushed_.close();
-  }
-  const Eigen::Index anchors = pushed_.count();
-  std::vector<Eigen::Index> alone;  // contact of each further column
+  AnchorColumns anchors(sides);
+  anchors.push(smearing_.get(), pushed_);
   for (const PushedSide& side : sides) {
-    if (side.point->smeared && !side.point->smeared->anchors.empty()) continue;
-    if (by_anchors) {
-      if (alone.empty() || alone.back() != side.contact) {
-        if (!alone.empty()) pushed_.close();
-        alone.push_back(side.contact);
-      }
-    } else {
-      while (pushed_.count() < side.contact) pushed_.close();
-    }
+    if (anchors.has(side)) continue;
+    anchors.open(side.contact, pushed_);
     const Block axes = to_block(*side.axes);
     for_each_node(*side.point, [&](std::uint32_t node, double weight) {
       if (node < tissue_.moving()) pushed_.entries.push_back({node, side.sign * weight * axes});
     });
   }
-  if (by_anchors) {
-    if (!alone.empty()) pushed_.close();
-    Eigen::MatrixXd of_columns;
-    solver_.gram_held(pushed_, of_columns);
-    Rows expand = Rows::Zero(3 * contacts, of_columns.rows());
-    for (std::size_t k = 0; k < alone.size(); ++k)
-      expand.block<3, 3>(3 * alone[k], 3 * (anchors + static_cast<Eigen::Index>(k))).setIdentity();
-    for (const PushedSide& side : sides)
-      if (side.point->smeared)
-        for (const auto& [anchor, share] : side.point->smeared->anchors)
-          expand.block<3, 3>(3 * side.contact, 3 * column_of.at(anchor)) +=
-              side.sign * share * to_block(*side.axes).transpose();
-    of_columns.triangularView<Eigen::StrictlyUpper>() = of_columns.transpose();
-    const Rows half = expand * of_columns;
-    out.held.noalias() = half * expand.transpose();
-  } else {
-    while (pushed_.count() < contacts) pushed_.close();
-    solver_.gram_held(pushed_, out.held);
-  }
+  anchors.finish(contacts, pushed_);
+  solver_.gram_held(pushed_, out.held);
+  anchors.expand(sides, contacts, out.held);
 
   Rows moved = Rows::Zero(3 * contacts, handle_ ? 6 : 0);
   if (handle_)
@@ -471,38 +362,6 @@ Vector SoftBodyState::starting_velocity() const {
     for (int k = 0; k < 3; ++k) out[3 * i + k] = tissue_.velocity()[i][k];
   if (handle_) out.tail<6>() = start_;
   return out;
-}
-
-void SoftBodyState::show(SoftObjectSnapshot& out) const {
-  out.object = entity;
-  out.pose = handle_ ? handle_->object_pose() : Pose{};
-  out.position.resize(surface_position.size());
-  out.normal.assign(surface_position.size(), vec3(0));
-  out.nodes.resize(tissue_.position().size());
-  std::transform(surface_position.begin(), surface_position.end(), out.position.begin(),
-                 [](dvec3 x) { return vec3(x); });
-  std::transform(tissue_.position().begin(), tissue_.position().end(), out.nodes.begin(),
-                 [](dvec3 x) { return vec3(x); });
-
-  add_normals(collision_mesh->triangles, surface_position, out.normal);
-}
-
-void SoftBodyState::show_part(std::size_t number, SoftObjectSnapshot& out) const {
-  const CarriedPart& part = tets_.parts[number];
-  std::vector<dvec3> at(part.embedding.size());
-  const dquat turned = handle_ ? handle_->object_pose().rotation : placed_;
-  for (std::size_t v = 0; v < at.size(); ++v) {
-    const Embedding& place = part.embedding[v];
-    const Tet& tet = tets_.tets[place.tet];
-    dvec3 x(0);
-    for (std::size_t k = 0; k < 4; ++k) x += place.weight[k] * tissue_.position()[tet[k]];
-    at[v] = part.aside.empty() ? x : x + turned * dvec3(part.aside[v]);
-  }
-  out.object = part.entity;
-  out.position.resize(at.size());
-  std::transform(at.begin(), at.end(), out.position.begin(), [](dvec3 x) { return vec3(x); });
-  out.normal.assign(at.size(), vec3(0));
-  add_normals(*part_triangles_[number], at, out.normal);
 }
 
 }  // namespace pliant

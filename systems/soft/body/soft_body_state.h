@@ -57,8 +57,6 @@ class SoftBodyState final : public ToolBody {
   // Of a body whose contacts are split (SoftContact::kSplit); else null.
   const SmearingSurface* smearing() const { return smearing_.get(); }
   LocalElasticity elasticity() const;  // of tissue(), for the laws of split contacts
-  // The same contact beside it on the surface (surface_walk.h): its load is smeared there.
-  void smear_again(SurfacePoint& walked) const;
   // [m/s] v* at a smeared load.
   dvec3 free_velocity(const SmearedLoad& load) const;
   bool yields() const override { return smearing_ != nullptr; }

@@ -6,6 +6,7 @@
 #include "systems/soft/contact/contact_budget.h"
 #include "systems/soft/contact/contact_islands.h"
 #include "systems/soft/contact/fill_operator.h"
+#include "systems/soft/local/smeared_response.h"
 #include "systems/soft/local/smearing_surface.h"
 #include "systems/soft/local/tip_law.h"
 
@@ -82,13 +83,6 @@ double offset_of(const std::vector<std::unique_ptr<Body>>& bodies, const Contact
   return tip_offset(*c.b.smeared, tissue.elasticity(), tissue.smearing()->layer());
 }
 
-Block block_of(const dmat3& m) {
-  Block out;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) out(r, c) = m[c][r];
-  return out;
-}
-
 // Makes the laws of a probe's tips linear about the solution's forces. False: they are already.
 bool linearise_tips(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::vector<ContactPoint>& contacts,
                     Delassus& delassus, ContactProblem& problem) {
@@ -107,7 +101,7 @@ bool linearise_tips(const std::vector<std::unique_ptr<Body>>& bodies, double T, 
     const LayerKernel& layer = tissue.smearing()->layer();
     auto next = std::make_shared<SmearedLoad>(*c.b.smeared);
     next->tip_force = force;
-    const Block axes = block_of(glm::transpose(c.axes) * next->turn);
+    const Block axes = to_block(glm::transpose(c.axes) * next->turn);
     const Block change = axes *
                          (self_compliance(*next, elastic, layer) - self_compliance(*c.b.smeared, elastic, layer)) *
                          axes.transpose() / (T * T);

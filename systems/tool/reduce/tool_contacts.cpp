@@ -5,6 +5,7 @@
 
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/collide/surface_walk.h"
+#include "systems/soft/local/smeared_response.h"
 
 namespace pliant {
 namespace {
@@ -97,7 +98,9 @@ void ToolContacts::gather_slip(std::uint32_t body, int i, int k, const Rows& x, 
     const dvec3 by = h / share * (p.axes * dvec3(0.0, way));
     std::optional<SurfacePoint> ahead = walk(of, point, by), back = walk(of, point, -by);
     if (!ahead || !back) return;
-    if (point.smeared) of.as_tissue()->smear_again(*ahead), of.as_tissue()->smear_again(*back);
+    if (point.smeared)
+      for (SurfacePoint* const walked : {&*ahead, &*back})
+        smear_again(*of.as_tissue()->smearing(), *of.collision_mesh, *walked);
     of.gather(*ahead, p.axes, sign * share / (2.0 * h), x, out);
     of.gather(*back, p.axes, -sign * share / (2.0 * h), x, out);
   };
