@@ -405,18 +405,19 @@ void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index cont
     if (!alone.empty()) pushed_.close();
     Eigen::MatrixXd of_columns;
     solver_.gram_held(pushed_, of_columns);
-    Rows expand = Rows::Zero(3 * contacts, of_columns.rows());
+    expand_.setZero(3 * contacts, of_columns.rows());
     for (std::size_t k = 0; k < alone.size(); ++k)
-      expand.block<3, 3>(3 * alone[k], 3 * (anchors + static_cast<Eigen::Index>(k))).setIdentity();
+      expand_.block<3, 3>(3 * alone[k], 3 * (anchors + static_cast<Eigen::Index>(k))).setIdentity();
     for (const PushedSide& side : sides)
       if (side.point->smeared)
         for (const auto& [anchor, share] : side.point->smeared->anchors)
-          expand.block<3, 3>(3 * side.contact, 3 * column_of.at(anchor)) +=
+          expand_.block<3, 3>(3 * side.contact, 3 * column_of.at(anchor)) +=
               side.sign * share * to_block(*side.axes).transpose();
     of_columns.triangularView<Eigen::StrictlyUpper>() = of_columns.transpose();
-    const Rows half = expand * of_columns;
-    out.held.noalias() = half * expand.transpose();
+    const Rows half = expand_ * of_columns;
+    out.held.noalias() = half * expand_.transpose();
   } else {
+    expand_.resize(0, 0);
     while (pushed_.count() < contacts) pushed_.close();
     solver_.gram_held(pushed_, out.held);
   }
@@ -426,6 +427,19 @@ void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index cont
     for (const PushedSide& side : sides)
       handle_rows(*side.point, *side.axes, side.sign, moved.middleRows<3>(3 * side.contact));
   out.lever = handle_ ? solver_.lever(moved) : moved;
+}
+
+bool SoftBodyState::respond_at(std::span<const Eigen::Index> rows, Rows& out) const {
+  ColumnMix mix;
+  for (const Eigen::Index row : rows) {
+    if (row != kNoRow && expand_.size() == 0) mix.parts.push_back({row, 1.0});
+    for (Eigen::Index k = 0; row != kNoRow && k < expand_.cols(); ++k)
+      if (expand_(row, k) != 0.0) mix.parts.push_back({k, expand_(row, k)});
+    mix.close();
+  }
+  out.resize(size(), mix.count());
+  out.bottomRows(size() - handle_row()).setZero();
+  return solver_.solve_kept(mix, out.topRows(handle_row()));
 }
 
 void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,

@@ -52,14 +52,14 @@ struct Machine {
   static constexpr int kGroup = kBytes / 8;       // columns of a tile summed at a time: the limit of the registers
 };
 
-// tile[j] += sum over p of a[p] * scalar(p, j), j < width <= 8 (and some beyond), p < length. a: strips of 8, `step`
-// apart. The scalars are numbers of the panel:
+// tile[j] = (kSum: +=) sum over p of a[p] * scalar(p, j), j < width <= 8 (and some beyond), p < length. a: strips of 8,
+// `step` apart. The scalars are numbers of the panel:
 //   kRow:    at b[8 p + j], one strip of the panel: its rows j, columns p;
 //   kColumn: at b[(p / 8) * stride + 8 j + p % 8], strip after strip: rows p, columns j.
 enum class Read { kRow, kColumn };
-template <int kBytes, Read kRead>
-PLIANT_INLINE void add_products(const double* a, const double* b, int length, int stride, double* tile,
-                                int width = kStrip, int step = kStrip) {
+template <int kBytes, Read kRead, bool kSum = false>
+PLIANT_INLINE void find_products(const double* a, const double* b, int length, int stride, double* tile,
+                                 int width = kStrip, int step = kStrip) {
   using M = Machine<kBytes>;
   using Pack = typename M::Pack;
   constexpr int kRun = kRead == Read::kRow ? 1 : kStrip, kNext = kRead == Read::kRow ? 1 : kStrip;
@@ -67,7 +67,7 @@ PLIANT_INLINE void add_products(const double* a, const double* b, int length, in
     Pack sum[M::kGroup][M::kPacks];
     for (int j = 0; j < M::kGroup; ++j)
       for (int l = 0; l < M::kPacks; ++l)
-        sum[j][l] = *reinterpret_cast<const Pack*>(tile + (group + j) * kStrip + l * M::kLanes);
+        sum[j][l] = kSum ? *reinterpret_cast<const Pack*>(tile + (group + j) * kStrip + l * M::kLanes) : Pack{};
     const double* scalar = b + group * kNext;
     for (int p = 0; p < length; p += kRun, scalar += stride)
       for (int run = 0; run < kRun; ++run)
@@ -134,9 +134,9 @@ PLIANT_INLINE void solve_strip(double* out, const double* sums, const double* L,
 // or factorises that.
 template <int kBytes>
 PLIANT_INLINE bool factorise_strip(double* strip, const double* pivots, int begin, int width, double* reciprocal) {
-  alignas(64) double tile[kStrip * kStrip] = {};
+  alignas(64) double tile[kStrip * kStrip];
   double* const out = strip + begin * kStrip;
-  add_products<kBytes, Read::kRow>(strip, pivots, begin, kStrip, tile, width);
+  find_products<kBytes, Read::kRow>(strip, pivots, begin, kStrip, tile, width);
   if (strip != pivots) {
     solve_strip<kBytes>(out, tile, pivots + begin * kStrip, width, reciprocal + begin);
     return true;
@@ -168,8 +168,8 @@ PLIANT_INLINE void update_triangle_for(FactorPanel panel, double* triangle, int 
   for (int begin = from; begin < to; begin += kStrip)
     for (int j = above; j < std::min(begin + kStrip, to); ++j)
       for (int i = std::max(begin, j); i < std::min(begin + kStrip, to); ++i) {
-        std::fill(tile, tile + kStrip * kStrip, 0.0);
-        add_products<kBytes, Read::kRow>(panel.data + i * stride, panel.data + j * stride, panel.columns, kStrip, tile);
+        find_products<kBytes, Read::kRow>(panel.data + i * stride, panel.data + j * stride, panel.columns, kStrip,
+                                          tile);
         double* const out = triangle + triangle_size(i - above) + static_cast<std::ptrdiff_t>(j - above) * 64;
         for (int c = 0; c < kStrip * kStrip; ++c) out[c] -= tile[c];
       }
@@ -269,10 +269,12 @@ PLIANT_INLINE void forward_many_for(FactorPanel panel, const double* reciprocal,
     const double* const strip = panel.data + static_cast<std::ptrdiff_t>(i) * stride;
     double* const rows = x + i * kStrip * kStrip;
     const int begin = std::min(i * kStrip, panel.columns);
-    std::fill(tile, tile + kStrip * kStrip, 0.0);
-    add_products<kBytes, Read::kRow>(x, strip, begin, kStrip, tile);
-    const int width = std::max(0, std::min(kStrip, panel.columns - begin));
-    substitute_forward<kBytes>(rows, tile, strip + begin * kStrip, width, reciprocal + begin);
+    find_products<kBytes, Read::kRow>(x, strip, begin, kStrip, tile);
+    if (begin == panel.columns)
+      for (int c = 0; c < kStrip * kStrip; ++c) rows[c] -= tile[c];
+    else
+      substitute_forward<kBytes>(rows, tile, strip + begin * kStrip, std::min(kStrip, panel.columns - begin),
+                                 reciprocal + begin);
   }
 }
 
@@ -282,10 +284,9 @@ PLIANT_INLINE void backward_many_for(FactorPanel panel, const double* reciprocal
   const int stride = kStrip * panel.columns;
   for (int begin = (panel.columns - 1) / kStrip * kStrip; begin >= 0; begin -= kStrip) {
     const int end = std::min(begin + kStrip, panel.columns), own = begin / kStrip;
-    std::fill(tile, tile + kStrip * kStrip, 0.0);
-    add_products<kBytes, Read::kColumn>(x + (own + 1) * kStrip * kStrip,
-                                        panel.data + static_cast<std::ptrdiff_t>(own + 1) * stride + begin * kStrip,
-                                        (panel.strips - own - 1) * kStrip, stride, tile, end - begin);
+    find_products<kBytes, Read::kColumn>(x + (own + 1) * kStrip * kStrip,
+                                         panel.data + static_cast<std::ptrdiff_t>(own + 1) * stride + begin * kStrip,
+                                         (panel.strips - own - 1) * kStrip, stride, tile, end - begin);
     const double* const strip = panel.data + static_cast<std::ptrdiff_t>(own) * stride;
     substitute_backward<kBytes>(x + begin * kStrip, tile, strip + begin * kStrip, end - begin, reciprocal + begin);
   }
@@ -293,7 +294,7 @@ PLIANT_INLINE void backward_many_for(FactorPanel panel, const double* reciprocal
 
 template <int kBytes>
 PLIANT_INLINE void add_gram_for(const double* x, int x_step, const double* y, int y_step, int rows, double* tile) {
-  add_products<kBytes, Read::kRow>(x, y, rows, y_step, tile, kStrip, x_step);
+  find_products<kBytes, Read::kRow, true>(x, y, rows, y_step, tile, kStrip, x_step);
 }
 
 }  // namespace
