@@ -25,6 +25,10 @@ Vector6 free_twist(const Eigen::LLT<Matrix6>& factor, const TickHandle& handle, 
   return handle.moved ? handle.next : Vector6(factor.solve(handle.right + tissue_right));
 }
 
+const double* row_of(const Rows& m, Eigen::Index row) {
+  return m.data() + row * m.outerStride();
+}
+
 // [1] Tilt of a contact's normal by deformation: the derivative of its normal displacement by slip, for the
 // displacements of modes and handle. Without it a hand could gain work by sliding one way while it presses and back
 // while it does not.
@@ -32,8 +36,8 @@ dvec2 bent(const CondensedContacts& model, const CondensedState& state, int i) {
   dvec2 lean(0.0);
   for (int k = 0; k < 2; ++k) {
     const auto at = static_cast<std::size_t>(k);
-    lean[k] = model.from_modes_by_slip[at].row(3 * i).head(model.modes).dot(state.q.head(model.modes)) +
-              model.from_handle_by_slip[at].row(3 * i).dot(state.d);
+    rows_times(row_of(model.from_modes_by_slip[at], 3 * i), 0, 1, model.modes, state.q.data(), &lean[k]);
+    lean[k] += model.from_handle_by_slip[at].row(3 * i).dot(state.d);
   }
   return lean;
 }
@@ -43,7 +47,6 @@ dvec2 bent(const CondensedContacts& model, const CondensedState& state, int i) {
 // precomputed.
 void slide(const CondensedContacts& model, CondensedState& state, const Vector6& w, Vector& on_modes,
            Vector6& on_handle) {
-  std::array<double, kMaxModes> by_slip;
   for (int i = 0; i < model.count; ++i) {
     const auto c = static_cast<std::size_t>(i);
     const auto impulse = state.problem.impulse.segment<3>(3 * i);
@@ -51,15 +54,14 @@ void slide(const CondensedContacts& model, CondensedState& state, const Vector6&
     if (!(impulse[0] > 0.0)) continue;
     const double size = length(state.slip[c]);
     const dvec2 slip = size > model.farthest[c] ? model.farthest[c] / size * state.slip[c] : state.slip[c];
+    const Rows &by_0 = model.from_modes_by_slip[0], &by_1 = model.from_modes_by_slip[1];
+    add_three_rows({row_of(by_0, 3 * i), row_of(by_1, 3 * i), by_0.outerStride(), slip.x, slip.y}, model.modes,
+                   state.rate.data(), impulse.data(), &state.shift[c].x, on_modes.data());
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Index row = 3 * i + axis;
-      auto of_modes = Eigen::Map<Eigen::RowVectorXd>(by_slip.data(), model.modes);
-      of_modes = slip.x * model.from_modes_by_slip[0].row(row).head(model.modes) +
-                 slip.y * model.from_modes_by_slip[1].row(row).head(model.modes);
       const auto of_handle =
           slip.x * model.from_handle_by_slip[0].row(row) + slip.y * model.from_handle_by_slip[1].row(row);
-      state.shift[c][axis] = of_modes.dot(state.rate.head(model.modes)) + of_handle.dot(w);
-      on_modes.head(model.modes) += impulse[axis] * of_modes.transpose();
+      state.shift[c][axis] += of_handle.dot(w);
       on_handle += impulse[axis] * of_handle.transpose();
     }
   }
@@ -69,7 +71,8 @@ void slide(const CondensedContacts& model, CondensedState& state, const Vector6&
 void fill_bias(const CondensedContacts& model, const CondensedState& state, const Vector6& w, Vector& bias) {
   const Eigen::Index rows = 3 * model.count;
   const double tick = model.tick;
-  bias.head(rows).noalias() = model.from_modes.topLeftCorner(rows, model.modes) * state.free_rate.head(model.modes);
+  rows_times(model.from_modes.data(), model.from_modes.outerStride(), static_cast<int>(rows), model.modes,
+             state.free_rate.data(), bias.data());
   bias.head(rows).noalias() += model.reduced_handle.topRows(rows) * w;
   bias.head(rows) -= state.spring.head(rows) / (tick + model.flexibility_lag);
   for (int i = 0; i < model.count; ++i) {
@@ -105,7 +108,10 @@ void advance(const CondensedContacts& model, CondensedState& state, const TickHa
               lambda.data(), static_cast<int>(rows));
   moved = (moved / tick - state.spring.head(rows)) / (tick + model.flexibility_lag);
   state.spring.head(rows) += tick * moved;
-  moved.noalias() += model.from_modes.topLeftCorner(rows, modes).lazyProduct(state.rate.head(modes));
+  auto with_modes = state.moved.head(rows);
+  rows_times(model.from_modes.data(), model.from_modes.outerStride(), static_cast<int>(rows), static_cast<int>(modes),
+             state.rate.data(), with_modes.data());
+  moved += with_modes;
   moved.noalias() += model.from_handle.topRows(rows).lazyProduct(handle.velocity);
   for (int i = 0; i < model.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -136,6 +142,7 @@ void CondensedState::resize(int most_contacts, int most_modes) {
   q.setZero(most_modes);
   rate.setZero(most_modes);
   free_rate.setZero(std::max<Eigen::Index>(most_modes, rows));
+  moved.setZero(rows);
   spring.setZero(rows);
   gap.setZero(most_contacts);
   reach.assign(static_cast<std::size_t>(most_contacts), 0.0);
@@ -220,7 +227,9 @@ Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, co
   if (!handle.moved)
     handle.velocity +=
         factor.solve(Vector6(model.reduced_handle.topRows(rows).transpose().lazyProduct(lambda.head(rows))));
-  rate.noalias() = model.from_modes.topLeftCorner(rows, modes).transpose().lazyProduct(lambda.head(rows));
+  rate.setZero();
+  add_rows(model.from_modes.data(), model.from_modes.outerStride(), static_cast<int>(rows), static_cast<int>(modes),
+           lambda.data(), rate.data());
   rate.noalias() -= model.border.topRows(modes).lazyProduct(handle.velocity);
   rate.array() *= model.inverse.head(modes).array();
   rate += free;

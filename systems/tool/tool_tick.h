@@ -34,7 +34,7 @@ struct CondensedState {
   double tick = 0.0;               // [s] length of that tick
   Vector last;                     // [N s] working memory: impulses of those contacts
   SweepReport report;
-  Vector free_rate;  // working memory
+  Vector free_rate, moved;  // working memory
   Lever lever;
 
   void resize(int most_contacts, int most_modes);

@@ -67,7 +67,8 @@ TEST(Elimination, TakesTheOrderWithLessWork) {
 
 // Factor, one and many right-hand sides, and the mutual response of contacts, on bodies whose tree is shared.
 TEST(BlockCholesky, GivesTheSameBitsForEveryNumberOfThreads) {
-  for (const auto [x, y, z] : {std::array{11u, 11u, 11u}, std::array{40u, 6u, 5u}, std::array{4u, 4u, 4u}}) {
+  for (const auto [x, y, z] :
+       {std::array{15u, 14u, 14u}, std::array{11u, 11u, 11u}, std::array{40u, 6u, 5u}, std::array{4u, 4u, 4u}}) {
     const std::uint32_t size = x * y * z;
     const BlockMatrix a = random_spd(size, brick(x, y, z), 0.1, 5);
     BlockCholesky solver;
@@ -95,13 +96,62 @@ TEST(BlockCholesky, GivesTheSameBitsForEveryNumberOfThreads) {
       EXPECT_LT((many.leftCols(7) - seven).norm(), 1e-12 * seven.norm());
       Eigen::MatrixXd gram;
       solver.solve_gram(pushes, gram);
+      ColumnMix mix;
+      mix.parts = {{0, 1.0}, {89, -2.0}, {7, 0.5}}, mix.first = {0, 2, 2, 3};
+      Rows kept(3 * size, mix.count());
+      ASSERT_TRUE(solver.solve_kept(mix, kept));
       std::vector<double> now;
+      append(now, kept.data(), kept.size());
       append(now, one.data(), one.size()), append(now, many.data(), many.size());
       append(now, seven.data(), seven.size()), append(now, gram.data(), gram.size());
       if (first.empty()) first = now;
       EXPECT_TRUE(all_same_bits(now, first)) << x << ' ' << y << ' ' << z << ", " << threads << " threads";
     }
     set_thread_count(0);
+  }
+}
+
+// Combinations of columns by what the mutual response has kept, against solving for them: with entries of the same row,
+// empty columns and combinations, other solutions in between.
+TEST(BlockCholesky, SolvesForColumnsOfTheLastMutualResponse) {
+  for (const auto [x, y, z] : {std::array{15u, 14u, 14u}, std::array{5u, 4u, 4u}}) {
+    const std::uint32_t size = x * y * z;
+    const BlockMatrix a = random_spd(size, brick(x, y, z), 0.1, 5);
+    BlockCholesky solver;
+    solver.analyse(a);
+    ASSERT_TRUE(solver.factorise(a));
+    ColumnMix mix;
+    for (Eigen::Index k = 0; k < 11; ++k) {
+      mix.parts.push_back({(7 * k) % 36, 1.0 + 0.1 * static_cast<double>(k)});
+      if (k % 3 == 0) mix.parts.push_back({(5 * k + 2) % 36, -0.7});
+      mix.close();
+    }
+    mix.close();  // an empty one
+    Rows found(3 * size, mix.count());
+    EXPECT_FALSE(solver.solve_kept(mix, found));  // there is no response yet
+    BlockColumns pushes;
+    pushes.clear(size);
+    Rows columns = Rows::Zero(3 * size, 36);
+    for (std::uint32_t three = 0; three < 12; ++three) {
+      for (std::uint32_t k = 0; k < three % 3; ++k) {  // some are empty
+        const std::uint32_t row = (17 * three + k / 2) % size;
+        const Block value = (1.0 + k) * Block::Identity() + 0.1 * Block::Ones();
+        pushes.entries.push_back({row, value});
+        columns.block<3, 3>(3 * row, 3 * three) += value;
+      }
+      pushes.close();
+    }
+    Eigen::MatrixXd gram;
+    solver.solve_gram(pushes, gram);
+    Rows expected = Rows::Zero(3 * size, mix.count());
+    for (Eigen::Index k = 0; k < mix.count(); ++k)
+      for (const ColumnMix::Part& part : mix.of(k)) expected.col(k) += part.factor * columns.col(part.column);
+    solver.solve_many(expected);
+    ASSERT_TRUE(solver.solve_kept(mix, found));
+    EXPECT_LT((found - expected).norm(), 1e-13 * expected.norm());
+    EXPECT_TRUE(found.col(mix.count() - 1).isZero(0.0));
+    ASSERT_TRUE(solver.factorise(a));
+    EXPECT_FALSE(solver.solve_kept(mix, found));  // of another factor
   }
 }
 

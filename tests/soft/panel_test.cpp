@@ -30,7 +30,8 @@ Strips random_strips(std::size_t count, unsigned seed) {
 
 TEST(PanelKernels, UseTheWidestRegistersOfTheMachine) {
 #if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)
-  EXPECT_EQ(panel_register_bytes(), __builtin_cpu_supports("avx2") ? 32 : 16);
+  const bool widest = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
+  EXPECT_EQ(panel_register_bytes(), widest ? 64 : __builtin_cpu_supports("avx2") ? 32 : 16);
 #else
   EXPECT_EQ(panel_register_bytes(), 16);
 #endif

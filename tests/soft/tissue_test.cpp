@@ -7,6 +7,7 @@
 #include <functional>
 #include <utility>
 
+#include "runtime/parallel.h"
 #include "scenes/tet_shapes.h"
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/soft/fem/tissue_step.h"
@@ -68,6 +69,48 @@ TEST(Tissue, RigidMotionsGiveNoForceAndNoEnergy) {
     EXPECT_LT(tissue.elastic_force().lpNorm<Eigen::Infinity>(), 1e-12 * scale) << k;
     EXPECT_LT(tissue.elastic_energy(), 1e-20 * scale) << k;
   }
+}
+
+// A body whose assembly is shared. No block is missing and none is added twice: a translation of all nodes meets
+// nothing but inertia, and the forces are those of find_forces(), which no threads share.
+TEST(Tissue, IsAssembledToTheSameBitsByAnyNumberOfThreads) {
+  TetMesh mesh = shaken_block(10);
+  tets::hold(mesh, [](dvec3 p) { return p.x < 0.015; });
+  ASSERT_GT(mesh.tets.size(), 4000u);
+  ASSERT_GT(mesh.node_count() - mesh.pinned_begin(), 50u);
+  TissueMaterial damped = kTissue;
+  damped.alpha = 0.7, damped.beta = 0.01;
+  constexpr double T = 0.01;
+  const dvec3 c(0.3, -1.1, 0.7);  // [m/s]
+  std::vector<Vector> first;
+  for (const unsigned threads : {1u, 2u, 4u, 8u}) {
+    set_thread_count(threads);
+    Tissue tissue(mesh, damped, mesh.free_count);
+    deform(tissue, 0.002);
+    tissue.assemble(T, kNoGravity);
+    const Vector still = tissue.right();
+    Tissue twin(mesh, damped, mesh.free_count);
+    deform(twin, 0.002);
+    twin.find_forces();
+    EXPECT_EQ(tissue.elastic_force(), twin.elastic_force());
+    for (std::uint32_t i = mesh.free_count; i < mesh.node_count(); ++i) tissue.velocity()[i] = c;
+    tissue.assemble(T, kNoGravity);
+    const BlockMatrix& a = tissue.inner();
+    std::vector<Vector> now{tissue.right(), tissue.elastic_force(), Vector(9 * a.value.size())};
+    for (std::size_t k = 0; k < a.value.size(); ++k)
+      now[2].segment<9>(9 * static_cast<Eigen::Index>(k)) = Eigen::Map<const Vector>(a.value[k].data(), 9);
+    if (first.empty()) first = now;
+    for (std::size_t k = 0; k < now.size(); ++k) EXPECT_EQ(now[k], first[k]) << threads << " threads, " << k;
+
+    Vector moved(3 * mesh.free_count), inertia;
+    for (std::uint32_t i = 0; i < mesh.free_count; ++i) moved.segment<3>(3 * i) = Eigen::Vector3d(c.x, c.y, c.z);
+    a.multiply(moved, inertia);
+    inertia -= tissue.right().head(moved.size()) - still.head(moved.size());
+    for (std::uint32_t i = 0; i < mesh.free_count; ++i)
+      inertia.segment<3>(3 * i) -= (1 + T * damped.alpha) * tissue.mass()[i] * moved.segment<3>(3 * i);
+    EXPECT_LT(inertia.lpNorm<Eigen::Infinity>(), 1e-12 * first[2].lpNorm<Eigen::Infinity>());
+  }
+  set_thread_count(0);
 }
 
 TEST(Tissue, ForceIsMinusTheGradientOfTheEnergyHoweverItIsBent) {

@@ -34,6 +34,10 @@ class CoupledSolver {
 
   // gram = B^T A_tt^-1 B: tissue alone, the handle fixed. B: of tissue.
   void gram_held(const BlockColumns& b, Eigen::MatrixXd& gram) const;
+  // out = A_tt^-1 B mix, B of the last gram_held (LinearSolver::solve_kept).
+  [[nodiscard]] bool solve_kept(const ColumnMix& mix, Eigen::Ref<Rows> out) const {
+    return solvable_ && tissue_->solve_kept(mix, out);
+  }
   // J A^-1 J^T = J_t A_tt^-1 J_t^T + lever lever^T. `moved`: J follow(), rows x 6.
   Rows lever(const Rows& moved) const;
 

@@ -316,13 +316,26 @@ void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index cont
   }
   anchors.finish(contacts, pushed_);
   solver_.gram_held(pushed_, out.held);
-  anchors.expand(sides, contacts, out.held);
+  anchors.expand(sides, contacts, out.held, expand_);
 
   Rows moved = Rows::Zero(3 * contacts, handle_ ? 6 : 0);
   if (handle_)
     for (const PushedSide& side : sides)
       handle_rows(*side.point, *side.axes, side.sign, moved.middleRows<3>(3 * side.contact));
   out.lever = handle_ ? solver_.lever(moved) : moved;
+}
+
+bool SoftBodyState::respond_at(std::span<const Eigen::Index> rows, Rows& out) const {
+  ColumnMix mix;
+  for (const Eigen::Index row : rows) {
+    if (row != kNoRow && expand_.size() == 0) mix.parts.push_back({row, 1.0});
+    for (Eigen::Index k = 0; row != kNoRow && k < expand_.cols(); ++k)
+      if (expand_(row, k) != 0.0) mix.parts.push_back({k, expand_(row, k)});
+    mix.close();
+  }
+  out.resize(size(), mix.count());
+  out.bottomRows(size() - handle_row()).setZero();
+  return solver_.solve_kept(mix, out.topRows(handle_row()));
 }
 
 void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,

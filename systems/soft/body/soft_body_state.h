@@ -35,6 +35,10 @@ class SoftBodyState final : public ToolBody {
               Eigen::Ref<Rows> out) const override;
   void solve(Rows& columns) const override { solver_.solve(columns); }
   void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const override;
+  // Of the last respond(), out (size() rows) = A^-1 J^T at some of its rows (three a contact; kNoRow: zero), with the
+  // handle fixed. False: not kept; solve_held() is needed.
+  [[nodiscard]] bool respond_at(std::span<const Eigen::Index> rows, Rows& out) const;
+  static constexpr Eigen::Index kNoRow = -1;
   void load(dvec3 force, dvec3 torque, Rows& column) const override;
   void place(const Pose& pose) override;
   void move_surface(std::vector<dvec3>& out) const override;
@@ -92,7 +96,8 @@ class SoftBodyState final : public ToolBody {
   Tissue tissue_;
   std::optional<HandleTie> tie_;
   CoupledSolver solver_;
-  mutable BlockColumns pushed_;  // working memory of respond()
+  mutable BlockColumns pushed_;  // of the last respond(): columns that were solved for
+  mutable Rows expand_;          // contacts' rows x those columns; empty: they are the contacts'
   std::unique_ptr<const SmearingSurface> smearing_;
   Vector free_velocity_;      // v* of the step; only of a body with smearing
   dquat placed_{1, 0, 0, 0};  // object frame to world at the start

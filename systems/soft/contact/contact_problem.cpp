@@ -120,7 +120,7 @@ void ContactProblem::resize_vectors(int contacts) {
   if (mu_static.size() < size) mu_static.resize(size);
   if (mu_sliding.size() < size) mu_sliding.resize(size);
   if (sliding.size() < size) sliding.resize(size);
-  if (blocks.size() < size) blocks.resize(size);
+  if (blocks.size() < size) blocks.resize(size), inverses.resize(size);
 }
 
 void ContactProblem::resize(int contacts) {
@@ -153,7 +153,7 @@ SweepReport solve(ContactProblem& problem, const SweepLimits& limits) {
   ASSERT(problem.bias.size() >= rows && problem.impulse.size() >= rows && problem.sliding.size() >= count &&
          problem.mu_static.size() >= count && problem.mu_sliding.size() >= count);
   if (problem.velocity.size() < rows) problem.velocity.resize(rows);
-  if (problem.blocks.size() < count) problem.blocks.resize(count);
+  if (problem.blocks.size() < count) problem.blocks.resize(count), problem.inverses.resize(count);
   return problem.part_count > 0 ? solve_parts(problem, limits) : solve_one(problem, limits);
 }
 

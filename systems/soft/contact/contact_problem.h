@@ -32,7 +32,7 @@ struct ContactColumns {
   void clear() { first.clear(), runs.clear(), values.clear(); }
 };
 
-using Lever = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+using Lever = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
 // Working memory of Newton steps (contact_newton.h).
 struct NewtonMemory {
@@ -57,8 +57,8 @@ struct ContactProblem {
 
   // Alternatives to W:
   ContactColumns sparse;
-  // W = *shared + *lever *lever^T: a matrix that stays as it is between solves, and one body that moves with few degrees
-  // of freedom. Without a lever: *shared alone. For sweeps without Newton steps. They outlive the solve.
+  // W = *shared + *lever *lever^T: a matrix that stays as it is between solves, and one body that moves with few
+  // degrees of freedom. Without a lever: *shared alone. For sweeps without Newton steps. They outlive the solve.
   const Eigen::MatrixXd* shared = nullptr;
   const Lever* lever = nullptr;
   // Uncoupled contacts are separate problems. Only their W (or sparse) and `members` are inputs: the contacts of the
@@ -68,7 +68,8 @@ struct ContactProblem {
   std::vector<std::pair<int, int>> place;
   int part_count = 0;  // parts in use; 0: this is one problem
 
-  std::vector<dmat3> blocks;  // internal to solve(): the diagonal blocks of W in the contacts' axes
+  // Internal to solve(): the diagonal blocks of W in the contacts' axes; their inverses, from when one is first needed.
+  std::vector<dmat3> blocks, inverses;
   NewtonMemory newton;
 
   // Resizes for `contacts` in one problem; values are undefined afterwards where something grew.

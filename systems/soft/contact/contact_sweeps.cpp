@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "systems/soft/linear/add_three.h"
 
@@ -10,6 +11,7 @@ namespace {
 
 // A contact with a diagonal smaller than this share of the largest one cannot be pushed; it is skipped.
 constexpr double kImmovable = 1e-14;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN(), kSingular = HUGE_VAL;  // first of an inverse
 
 double length2(double x, double y) {
   return std::sqrt(x * x + y * y);
@@ -25,15 +27,19 @@ void clamp_to_disc(double& x, double& y, double radius) {
 
 // One contact with all others fixed: u = w lambda + c.
 struct LocalSolve {
-  dmat3 w;       // symmetric
-  dvec3 c;       // [m/s]
-  double mu;     // [1]
-  dvec3 lambda;  // [N s] in: guess; out: solution
+  const dmat3& w;  // symmetric
+  dmat3& inverse;  // of w, once it is known
+  dvec3 c;         // [m/s]
+  double mu;       // [1]
+  dvec3 lambda;    // [N s] in: guess; out: solution
 
   bool stick() {
-    const double det = glm::determinant(w);
-    if (!(det > 1e-12 * w[0][0] * w[1][1] * w[2][2])) return false;
-    const dvec3 held = -(glm::inverse(w) * c);
+    if (std::isnan(inverse[0][0])) {
+      inverse[0][0] = kSingular;
+      if (glm::determinant(w) > 1e-12 * w[0][0] * w[1][1] * w[2][2]) inverse = glm::inverse(w);
+    }
+    if (inverse[0][0] == kSingular) return false;
+    const dvec3 held = -(inverse * c);
     if (!(held.x > 0.0) || length2(held.y, held.z) > mu * held.x) return false;
     lambda = held;
     return true;
@@ -66,8 +72,10 @@ ContactSweeps::ContactSweeps(ContactProblem& problem)
     p_.blocks[i] = read_block(i);
     for (int k = 0; k < 3; ++k) largest = std::max(largest, p_.blocks[i][k][k]);
   }
-  for (int i = 0; i < p_.count; ++i)
+  for (int i = 0; i < p_.count; ++i) {
     if (!(p_.blocks[i][0][0] > kImmovable * largest)) p_.blocks[i] = dmat3(0.0);
+    p_.inverses[i][0][0] = kUnknown;
+  }
 }
 
 dmat3 ContactSweeps::read_block(int i) const {
@@ -87,7 +95,7 @@ dmat3 ContactSweeps::read_block(int i) const {
   for (int k = 0; k < 3; ++k) block[k] = dvec3(w[k * stride], w[k * stride + 1], w[k * stride + 2]);
   if (lever_)
     for (int c = 0; c < 6; ++c) {
-      const dvec3 l = three(&(*lever_)(3 * i, c));
+      const dvec3 l = lever_column(i, c);
       block += glm::outerProduct(l, l);
     }
   return turned_ ? glm::transpose(p_.own[i]) * block * p_.own[i] : block;
@@ -108,12 +116,12 @@ void ContactSweeps::add_columns(int i, dvec3 d, double* out) const {
 
 dvec3 ContactSweeps::levered(int i) const {
   dvec3 u = three(&p_.velocity[3 * i]);
-  for (std::size_t c = 0; c < 6; ++c) u += three(&(*lever_)(3 * i, static_cast<Eigen::Index>(c))) * moved_[c];
+  for (int c = 0; c < 6; ++c) u += lever_column(i, c) * moved_[static_cast<std::size_t>(c)];
   return u;
 }
 
 void ContactSweeps::add_to_lever(int i, dvec3 impulse) {
-  for (std::size_t c = 0; c < 6; ++c) moved_[c] += dot(three(&(*lever_)(3 * i, static_cast<Eigen::Index>(c))), impulse);
+  for (int c = 0; c < 6; ++c) moved_[static_cast<std::size_t>(c)] += dot(lever_column(i, c), impulse);
 }
 
 void ContactSweeps::finish() {
@@ -184,16 +192,23 @@ void ContactSweeps::end_slips() {
   }
 }
 
+void ContactSweeps::sweep() {
+  if (lever_)
+    for (int i = 0; i < p_.count; ++i) relax<true>(i);
+  else
+    for (int i = 0; i < p_.count; ++i) relax<false>(i);
+}
+
+// Twice: without a lever it stays short.
+template <bool kLever>
 void ContactSweeps::relax(int i) {
   double* const l = &p_.impulse[3 * i];
-  const dvec3 u = velocity(i), before(l[0], l[1], l[2]);
-  LocalSolve local;
-  local.lambda = impulse(i);
-  if (local.lambda.x == 0.0 && u.x >= 0.0) return;
+  const dvec3 before = three(l), old = to_own(i, l);
+  const dvec3 plain = kLever ? levered(i) : three(&p_.velocity[3 * i]), u = to_own(i, &plain.x);
+  if (old.x == 0.0 && u.x >= 0.0) return;
   if (!movable(i)) return;
-  local.w = block(i);
-  local.c = u - local.w * local.lambda;
-  local.mu = mu(i);
+  const dmat3& w = p_.blocks[i];
+  LocalSolve local{w, p_.inverses[i], u - w * old, mu(i), old};
   if (local.c.x >= 0.0)
     local.lambda = dvec3(0.0);
   else if (!local.stick())
@@ -202,7 +217,7 @@ void ContactSweeps::relax(int i) {
   if (d == dvec3(0.0)) return;
   for (int k = 0; k < 3; ++k) l[k] = after[k];
   add_columns(i, d, p_.velocity.data());
-  if (lever_) add_to_lever(i, d);
+  if constexpr (kLever) add_to_lever(i, d);
 }
 
 double ContactSweeps::residual_of(int i) const {

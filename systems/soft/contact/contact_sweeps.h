@@ -19,9 +19,7 @@ class ContactSweeps {
   void refresh_velocity();
   // Projects every impulse into its cone.
   void project();
-  void sweep() {
-    for (int i = 0; i < p_.count; ++i) relax(i);
-  }
+  void sweep();
   void finish();            // problem().velocity has the lever's part
   double residual() const;  // [m/s] SweepReport::residual
   // [m/s] Over contacts that close without impulses: distant contacts must not affect the accuracy of the others.
@@ -58,9 +56,13 @@ class ContactSweeps {
 
  private:
   static dvec3 three(const double* v) { return {v[0], v[1], v[2]}; }
-  // Not inlined: sweeps without a lever stay a short loop.
-  [[gnu::noinline]] dvec3 levered(int i) const;  // velocity of contact i, in W's axes
-  [[gnu::noinline]] void add_to_lever(int i, dvec3 impulse);
+  dvec3 lever_column(int i, int c) const {
+    const double* const l = lever_->data() + 18 * i + c;
+    return {l[0], l[6], l[12]};
+  }
+  dvec3 levered(int i) const;  // velocity of contact i, in W's axes
+  void add_to_lever(int i, dvec3 impulse);
+  template <bool kLever>
   void relax(int i);
   double residual_of(int i) const;
   dmat3 read_block(int i) const;  // of W, in the contact's axes

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "runtime/assert.h"
+#include "runtime/tasks.h"
 #include "systems/soft/linear/low_rank_solver.h"
 
 namespace pliant {
@@ -12,19 +13,6 @@ namespace {
 
 constexpr std::uint32_t kNoElement = 0xffffffffu;
 constexpr double kFeather = 1e-6;  // [1] of the mean: mass of a node with only flat elements, so that A is regular
-
-// `to` (row major) += p_i c_j^T + q_j c_i^T + d I, with p = V lambda c, q = V mu c, d = V mu b_i . b_j: one K'_ij.
-inline void add_block(double* __restrict to, dvec3 pi, dvec3 cj, dvec3 qj, dvec3 ci, double d) {
-  to[0] += pi.x * cj.x + qj.x * ci.x + d;
-  to[1] += pi.x * cj.y + qj.x * ci.y;
-  to[2] += pi.x * cj.z + qj.x * ci.z;
-  to[3] += pi.y * cj.x + qj.y * ci.x;
-  to[4] += pi.y * cj.y + qj.y * ci.y + d;
-  to[5] += pi.y * cj.z + qj.y * ci.z;
-  to[6] += pi.z * cj.x + qj.z * ci.x;
-  to[7] += pi.z * cj.y + qj.z * ci.y;
-  to[8] += pi.z * cj.z + qj.z * ci.z + d;
-}
 
 // `to` (row major) += K.
 inline void add_block(double* __restrict to, const dmat3& K) {
@@ -53,21 +41,7 @@ std::array<dvec3, 4> product(const LawBlocks& blocks, std::size_t lane, const st
   return out;
 }
 
-dvec3 lane_of(const ElementLanes (&v)[3], std::size_t lane) {
-  return {v[0][lane], v[1][lane], v[2][lane]};
-}
-
-void add(Vector& to, std::uint32_t node, dvec3 f) {
-  to[3 * node] += f.x, to[3 * node + 1] += f.y, to[3 * node + 2] += f.z;
-}
-
 }  // namespace
-
-// K' enters A with T^2 + T beta, f_el the right-hand side with T. `share`: of K' where tissue relaxes.
-struct Tissue::Scale {
-  double T, beta;
-  double stiffness(double damping, double share) const { return T * T * share + T * beta * damping; }
-};
 
 Tissue::Tissue(const TetMesh& mesh, const TissueMaterial& material, std::uint32_t moving)
     : mesh_(mesh),
@@ -211,6 +185,7 @@ void Tissue::lay_out() {
   for (const ElementPack& pack : packs_)
     for (std::size_t lane = 0; lane < pack.count; ++lane) slots_of(pack.node[lane], slots_.emplace_back());
   for (const Hexahedron& hex : hexahedra_) slots_of(hex.node, hex_slots_.emplace_back());
+  share_packs();
 }
 
 double* Tissue::block(std::uint32_t row, std::uint32_t column, std::uint32_t slot) {
@@ -252,32 +227,8 @@ void Tissue::assemble(double T, dvec3 gravity, const std::vector<dvec3>* begin) 
     mirror();
     return add_masses(T, gravity, begin);
   }
-  const std::uint32_t end = mesh_.pinned_begin();
-  const auto add_forces = [](const Tet& tet, std::size_t lane, const ElementVisit& from, double factor,
-                             std::uint32_t below, Vector& to) {
-    for (int i = 0; i < 4; ++i)
-      if (tet[i] < below) add(to, tet[i], factor * lane_of(from.f[i], lane));
-  };
-  ElementVisit now;
-  const Slots* slots = slots_.data();
-  const double* damping = damping_.data();
-  for (std::size_t p = 0; p < packs_.size(); ++p) {
-    ElementPack& pack = packs_[p];
-    visit(p, x_, now);
-    std::memcpy(pack.q, now.q, sizeof now.q);
-    for (std::size_t lane = 0; lane < pack.count; ++lane, ++slots) {
-      add_forces(pack.node[lane], lane, now, 1.0, mesh_.node_count(), force_);
-      const double stiffness = scale.stiffness(damping_.empty() ? 1.0 : *damping++, pack_share(p, lane));
-      add_blocks(pack, lane, *slots, stiffness, now);
-      if (pack.node[lane][3] >= end) add_prescribed(pack, lane, stiffness, now);
-    }
-    // f_el + K' (x - begin): the stress at the beginning of the step, with the rotations of the guess.
-    if (begin) {
-      take_edges(pack, *begin, now), take_forces(pack, lambda_, mu_, now);
-      if (!memory_.empty()) add_history(p, now);
-    }
-    for (std::size_t lane = 0; lane < pack.count; ++lane) add_forces(pack.node[lane], lane, now, T, end, right_);
-  }
+  turn_packs();
+  run_tasks(shares_.size(), [&](std::size_t i, unsigned) { assemble_share(shares_[i], scale, begin); });
   add_cells(scale, begin);
   add_fibres(T, begin);
   mirror();
@@ -396,46 +347,6 @@ void Tissue::find_forces() {
   }
   cavities_.add_forces(x_, force_);
   add_fibre_forces(force_);
-}
-
-void Tissue::add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, double stiffness,
-                        const ElementVisit& visit) {
-  const double l = stiffness * pack.volume[lane] * lambda_, m = stiffness * pack.volume[lane] * mu_;
-  const Tet& tet = pack.node[lane];
-  std::array<dvec3, 4> c;
-  for (int i = 0; i < 4; ++i) c[i] = lane_of(visit.c[i], lane);
-  std::size_t k = 0;
-  for (int i = 0; i < 4; ++i) {
-    const dvec3 p = l * c[i];
-    for (int j = i; j < 4; ++j, ++k) {
-      double* const to = block(tet[i], tet[j], slots[k]);
-      if (to) add_block(to, p, c[j], m * c[j], c[i], m * dot(c[i], c[j]));
-    }
-  }
-}
-
-// Pinned nodes have no rows: A times their velocities v goes to the right-hand side. sum_p K'_ip v_p is V sigma c_i of
-// the strain sym(sum_p v_p c_p^T).
-void Tissue::add_prescribed(const ElementPack& pack, std::size_t lane, double stiffness, const ElementVisit& visit) {
-  const Tet& tet = pack.node[lane];
-  dmat3 L(0);
-  for (int i = 0; i < 4; ++i)
-    if (tet[i] >= mesh_.pinned_begin()) L += outerProduct(v_[tet[i]], lane_of(visit.c[i], lane));
-  const double factor = stiffness * pack.volume[lane], trace = L[0][0] + L[1][1] + L[2][2];
-  const dmat3 sigma = factor * (mu_ * (L + transpose(L)) + dmat3(lambda_ * trace));
-  for (int i = 0; i < 4; ++i)
-    if (tet[i] < mesh_.pinned_begin()) add(right_, tet[i], -(sigma * lane_of(visit.c[i], lane)));
-}
-
-// Fills the lower blocks from the upper ones. Diagonal blocks are symmetric up to rounding; a solver may read either
-// half.
-void Tissue::mirror() {
-  const auto even = [](Block& b) { b(1, 0) = b(0, 1), b(2, 0) = b(0, 2), b(2, 1) = b(1, 2); };
-  for (const std::uint32_t k : inner_.diagonal) even(inner_.value[k]);
-  for (Entry& entry : corner_)
-    if (entry.row == entry.column) even(entry.value);
-  for (const auto& [upper, lower] : inner_mirror_) inner_.value[lower] = inner_.value[upper].transpose();
-  for (const auto& [upper, lower] : corner_mirror_) corner_[lower].value = corner_[upper].value.transpose();
 }
 
 void Tissue::add_masses(double T, dvec3 gravity, const std::vector<dvec3>* begin) {

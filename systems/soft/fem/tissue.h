@@ -108,7 +108,19 @@ class Tissue {
   // Indices of the blocks of an element's node pairs: into inner, outer or corner, depending on the nodes.
   using Slots = std::array<std::uint32_t, 10>;  // pairs (0,0) (0,1) (0,2) (0,3) (1,1) (1,2) (1,3) (2,2) (2,3) (3,3)
   using HexSlots = std::array<std::uint32_t, 36>;
-  struct Scale;  // factors of one assemble()
+  // Of one assemble(): K' enters A with T^2 + T beta, f_el the right-hand side with T. `share`: of K' where tissue
+  // relaxes.
+  struct Scale {
+    double T, beta;
+    double stiffness(double damping, double share) const { return T * T * share + T * beta * damping; }
+  };
+  // A task of an assembly: rows of the nodes from `begin` up to `end`, to which these packs add, ascending. So every
+  // sum has the order of the elements, for any number of threads.
+  struct Share {
+    std::uint32_t begin, end;
+    std::vector<std::uint32_t> packs;
+    bool has(std::uint32_t node) const { return node >= begin && node < end; }
+  };
   // [1] of K' of an element, of relaxing tissue: tissue_memory.h
   double pack_share(std::size_t pack, std::size_t lane) const;
   double cell_share(std::size_t cell) const;
@@ -124,13 +136,21 @@ class Tissue {
   void add_history(std::size_t pack, ElementVisit& visit) const;
   void add_cell_memory(std::size_t cell, const std::vector<dvec3>& x, HexVisit& visit) const;
 
+  static dvec3 lane_of(const ElementLanes (&v)[3], std::size_t lane) { return {v[0][lane], v[1][lane], v[2][lane]}; }
+  static void add(Vector& to, std::uint32_t node, dvec3 f) {
+    to[3 * node] += f.x, to[3 * node + 1] += f.y, to[3 * node + 2] += f.z;
+  }
   void take_elements();
   void take_masses();
   void lay_out();
   void visit(std::size_t pack, const std::vector<dvec3>& x, ElementVisit& out) const;
-  void add_blocks(const ElementPack& pack, std::size_t lane, const Slots& slots, double stiffness,
+  void share_packs();
+  void turn_packs();
+  void assemble_share(const Share& share, const Scale& scale, const std::vector<dvec3>* begin);
+  void add_blocks(const Share& share, const ElementPack& pack, std::size_t lane, const Slots& slots, double stiffness,
                   const ElementVisit& visit);
-  void add_prescribed(const ElementPack& pack, std::size_t lane, double stiffness, const ElementVisit& visit);
+  void add_prescribed(const Share& share, const ElementPack& pack, std::size_t lane, double stiffness,
+                      const ElementVisit& visit);
   void assemble_law(const Scale& scale, const std::vector<dvec3>* begin);
   void add_law_blocks(const Tet& tet, std::size_t lane, const Slots& slots, double stiffness, const LawBlocks& blocks);
   dquat turned(const Hexahedron& hex, const std::vector<dvec3>& x) const;
@@ -147,6 +167,7 @@ class Tissue {
   std::vector<dvec3> x_, v_;
   std::vector<double> mass_;
   std::vector<ElementPack> packs_;  // stiff elements by their nodes, ascending, for locality of assembly
+  std::vector<Share> shares_;
   std::vector<Slots> slots_;        // of each element
   std::vector<double> damping_;     // [1] of each element: factor on beta; empty: 1
   std::vector<double> relaxation_;  // [1] of each element or cell: factor on the arms' shares; empty: 1

@@ -60,6 +60,11 @@ void AutoSolver::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const 
   iterative_.solve_gram(b, gram);
 }
 
+bool AutoSolver::solve_kept(const ColumnMix& mix, Eigen::Ref<Rows> out) const {
+  columns_ += static_cast<double>(mix.count());
+  return direct_ready_ && direct_.solve_kept(mix, out);
+}
+
 // Small systems are always factorised: conjugate gradients are not faster there (auto_solver.h), and a factor is exact.
 std::unique_ptr<LinearSolver> make_auto(std::uint32_t block_rows) {
   constexpr std::uint32_t kSmall = 400;  // block rows

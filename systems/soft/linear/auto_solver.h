@@ -20,6 +20,7 @@ class AutoSolver final : public LinearSolver {
   void solve(const Vector& b, Vector& x) const override;
   void solve_many(Eigen::Ref<Rows> columns) const override;
   void solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const override;
+  bool solve_kept(const ColumnMix& mix, Eigen::Ref<Rows> out) const override;
 
  private:
   bool better_direct(double columns) const;

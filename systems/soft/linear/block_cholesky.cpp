@@ -13,6 +13,7 @@ constexpr double kSharedWork = 5e7;   // [1] multiplications and additions: less
 constexpr double kSharedFront = 6e6;  // the same of one front
 constexpr int kBlockColumns = 64;   // columns of a panel whose diagonal block is factorised before the strips below it
 constexpr int kStripsTogether = 4;  // of a task
+constexpr int kColumnsTogether = 48;  // the same of an update
 
 int strips_of(std::size_t rows) {
   return static_cast<int>((rows + kStrip - 1) / kStrip);
@@ -172,9 +173,8 @@ void BlockCholesky::assemble(const Front& f, const BlockMatrix& a, double* panel
   }
 }
 
-// Adds a child's update to its parent's panel and triangle, column by column.
-void BlockCholesky::add_update(const Front& child, const double* update, const Front& parent, double* panel,
-                               double* triangle, Scratch& scratch) const {
+// Where the rows of a child's update are, there and in its parent's panel and triangle.
+void BlockCholesky::place_update(const Front& child, const Front& parent, Scratch& scratch) const {
   const int above = child.columns / kStrip, parent_above = parent.columns / kStrip;
   const int rows = static_cast<int>(child.below.size());
   for (int i = 0; i < rows; ++i) {
@@ -185,7 +185,14 @@ void BlockCholesky::add_update(const Front& child, const double* update, const F
     scratch.triangle[at] =
         static_cast<std::size_t>(to < parent.columns ? 0 : triangle_size(to / kStrip - parent_above) + to % kStrip);
   }
-  for (int i = 0; i < rows; ++i) {
+}
+
+// Adds columns of a child's update to its parent's panel and triangle; after place_update.
+void BlockCholesky::add_update(const Front& child, const double* update, const Front& parent, double* panel,
+                               double* triangle, const Scratch& scratch, int first, int last) const {
+  const int above = child.columns / kStrip, parent_above = parent.columns / kStrip;
+  const int rows = static_cast<int>(child.below.size());
+  for (int i = first; i < last; ++i) {
     const double* const from = update + (child.columns + i - above * kStrip) * kStrip;
     const int to = child.in_parent[static_cast<std::size_t>(i)];
     const bool in_panel = to < parent.columns;
@@ -197,6 +204,7 @@ void BlockCholesky::add_update(const Front& child, const double* update, const F
 
 bool BlockCholesky::factorise(const BlockMatrix& a) {
   factor_.resize(factor_strips_), stack_.resize(stack_strips_);
+  kept_.packs = 0;
   std::atomic<bool> positive{true};
   run_tasks(subtrees_.size(), [&](std::size_t i, unsigned thread) {
     if (positive && !factorise_subtree(subtrees_[i], a, scratch(thread))) positive = false;
@@ -218,7 +226,8 @@ bool BlockCholesky::factorise_subtree(const Subtree& tree, const BlockMatrix& a,
     Strip* below = top;
     for_each_child(s, [&](const Front& child) {
       below -= triangle_strips(child.rest());
-      add_update(child, below->lane, f, own, top->lane, scratch);
+      place_update(child, f, scratch);
+      add_update(child, below->lane, f, own, top->lane, scratch, 0, static_cast<int>(child.below.size()));
     });
     double* const reciprocal = reciprocal_.data() + f.first;
     for (int first = 0; first < f.columns; first += kBlockColumns)
@@ -237,12 +246,6 @@ bool BlockCholesky::factorise_top(std::uint32_t front, const BlockMatrix& a) {
   const Front& f = fronts_[front];
   double* const own = factor_[f.panel].lane;
   Strip* const triangle = stack_.data() + f.update;
-  std::fill_n(own, f.columns * f.strips * kStrip, 0.0);
-  assemble(f, a, own);
-  std::fill_n(triangle, triangle_strips(f.rest()), Strip{});
-  for_each_child(front, [&](const Front& child) {
-    add_update(child, stack_[child.update].lane, f, own, triangle->lane, scratch(0));
-  });
   const bool shared = static_cast<double>(f.strips) * f.strips * f.columns * kStrip * kStrip > kSharedFront;
   const auto share = [&](int from, const auto& part) {
     if (!shared) return part(from, f.strips);
@@ -252,6 +255,28 @@ bool BlockCholesky::factorise_top(std::uint32_t front, const BlockMatrix& a) {
       part(std::max(from, to - kStripsTogether), to);
     });
   };
+  share(0, [&](int from, int to) {
+    const auto width = static_cast<std::ptrdiff_t>(f.columns) * kStrip;
+    std::fill(own + from * width, own + to * width, 0.0);
+    const int above = f.columns / kStrip;
+    if (to > above)
+      std::fill(triangle + triangle_strips(std::max(from, above) - above), triangle + triangle_strips(to - above),
+                Strip{});
+  });
+  assemble(f, a, own);
+  for_each_child(front, [&](const Front& child) {
+    place_update(child, f, scratch(0));
+    const auto columns = static_cast<int>(child.below.size());
+    const auto add = [&](int from, int to) {
+      add_update(child, stack_[child.update].lane, f, own, triangle->lane, scratch(0), from, to);
+    };
+    if (!shared) return add(0, columns);
+    run_tasks(static_cast<std::size_t>((columns + kColumnsTogether - 1) / kColumnsTogether),
+              [&](std::size_t i, unsigned) {
+                const int from = static_cast<int>(i) * kColumnsTogether;
+                add(from, std::min(from + kColumnsTogether, columns));
+              });
+  });
   double* const reciprocal = reciprocal_.data() + f.first;
   for (int first = 0; first < f.columns; first += kBlockColumns) {
     const int last = std::min(first + kBlockColumns, f.columns), under = strips_of(static_cast<std::size_t>(last));

@@ -25,6 +25,7 @@ class BlockCholesky final : public LinearSolver {
   void solve(const Vector& b, Vector& x) const override;
   void solve_many(Eigen::Ref<Rows> columns) const override;
   void solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const override;
+  bool solve_kept(const ColumnMix& mix, Eigen::Ref<Rows> out) const override;
 
   double flops() const { return flops_; }  // additions and multiplications of a factorise()
 
@@ -60,6 +61,13 @@ class BlockCholesky final : public LinearSolver {
     std::vector<Strip> local, sums;
   };
 
+  // Right-hand sides, eight a pack, pack after pack. touched: of each front, the packs with non-zeros there.
+  struct Columns {
+    std::size_t packs = 0;
+    std::vector<Strip> x;
+    std::vector<char> touched;
+  };
+
   FactorPanel panel(const Front& f) const { return {factor_[f.panel].lane, f.columns, f.strips}; }
   void place_fronts(const Elimination& e);
   void share_tree(const Elimination& e);
@@ -68,8 +76,9 @@ class BlockCholesky final : public LinearSolver {
   void assemble(const Front& f, const BlockMatrix& a, double* panel) const;
   template <class Use>
   void for_each_child(std::uint32_t front, Use use) const;
+  void place_update(const Front& child, const Front& parent, Scratch& scratch) const;
   void add_update(const Front& child, const double* update, const Front& parent, double* panel, double* triangle,
-                  Scratch& scratch) const;
+                  const Scratch& scratch, int first, int last) const;
   bool factorise_subtree(const Subtree& tree, const BlockMatrix& a, Scratch& scratch);
   bool factorise_top(std::uint32_t front, const BlockMatrix& a);
   Scratch& scratch(unsigned thread) const;
@@ -78,14 +87,17 @@ class BlockCholesky final : public LinearSolver {
   void forward_front(const Front& f, Lane* x, Lane* above, Scratch& scratch) const;
   template <class Lane>
   void backward_front(const Front& f, Lane* x, Scratch& scratch) const;
-  void touch_above(std::size_t packs) const;
+  void start_packs(Columns& columns, Eigen::Index count) const;
+  void solve_packs(Eigen::Ref<Rows> columns) const;
+  void touch_above(Columns& columns) const;
   template <class Lane>
-  void forward_all(Lane* x, std::size_t packs) const;
+  void forward_all(Lane* x, const Columns& columns) const;
   template <class Lane>
   void backward_all(Lane* x, std::size_t packs) const;
   std::vector<Eigen::Index> place_columns(const BlockColumns& b) const;
-  void add_grams(std::size_t packs) const;
-  void take_columns(Eigen::Ref<const Rows> columns, std::size_t pack, std::size_t packs) const;
+  void add_grams() const;
+  void take_columns(Eigen::Ref<const Rows> columns, std::size_t pack) const;
+  void mix_columns(const ColumnMix& mix, std::size_t pack) const;
   void give_columns(Eigen::Ref<Rows> columns, std::size_t pack) const;
 
   std::vector<std::uint32_t> old_of_new_;
@@ -97,13 +109,12 @@ class BlockCholesky final : public LinearSolver {
   std::size_t rows_ = 0, most_rows_ = 0, most_columns_ = 0;
   std::size_t factor_strips_ = 0, stack_strips_ = 0, above_ = 0;
   double flops_ = 0;
-  std::vector<Strip> factor_;       // allocated by the first factorise()
-  std::vector<double> reciprocal_;  // of L's diagonal
-  std::vector<Strip> stack_;        // updates waiting for their parents
-  // Of right-hand sides, eight a pack, pack after pack: x; sums of subtrees for rows above them; products. touched_: of
-  // each front, the packs with non-zeros there.
-  mutable std::vector<Strip> x_, sums_above_, tiles_;
-  mutable std::vector<char> touched_;
+  std::vector<Strip> factor_;                      // allocated by the first factorise()
+  std::vector<double> reciprocal_;                 // of L's diagonal
+  std::vector<Strip> stack_;                       // updates waiting for their parents
+  mutable Columns now_, kept_;                     // being solved; L^-1 B of the last solve_gram
+  mutable std::vector<Eigen::Index> place_;        // in kept_: column of each triple of B
+  mutable std::vector<Strip> sums_above_, tiles_;  // sums of subtrees for rows above them; products
   mutable std::array<Scratch, kMostTaskThreads> scratch_;
 };
 

@@ -62,16 +62,19 @@ void BlockCholesky::backward_front(const Front& f, Lane* x, Scratch& scratch) co
 }
 
 // A front's update touches the fronts above it.
-void BlockCholesky::touch_above(std::size_t packs) const {
+void BlockCholesky::touch_above(Columns& columns) const {
+  const std::size_t packs = columns.packs;
   for (std::size_t s = 0; s < fronts_.size(); ++s)
     for (std::size_t p = 0; p < packs && fronts_[s].parent != kNoFront; ++p)
-      if (touched_[s * packs + p]) touched_[fronts_[s].parent * packs + p] = 1;
+      if (columns.touched[s * packs + p]) columns.touched[fronts_[s].parent * packs + p] = 1;
 }
 
 // x = L^-1 x. Fronts that a pack does not touch are skipped.
 template <class Lane>
-void BlockCholesky::forward_all(Lane* x, std::size_t packs) const {
+void BlockCholesky::forward_all(Lane* x, const Columns& columns) const {
   const bool shared = !top_.empty();
+  const std::size_t packs = columns.packs;
+  const char* const touched = columns.touched.data();
   sums_above_.resize(std::max<std::size_t>(packs * above_, 1));
   const auto above_of = [&](const Subtree& tree, std::size_t pack) {
     return reinterpret_cast<Lane*>(sums_above_.data()) + packs * tree.above + pack * fronts_[tree.root].below.size();
@@ -82,18 +85,18 @@ void BlockCholesky::forward_all(Lane* x, std::size_t packs) const {
     Scratch& own = scratch(thread);
     for (std::uint32_t s = tree.first; s <= tree.root; ++s)
       for (std::size_t p = 0; p < packs; ++p)
-        if (touched_[s * packs + p]) forward_front(fronts_[s], x + p * rows_, above_of(tree, p), own);
+        if (touched[s * packs + p]) forward_front(fronts_[s], x + p * rows_, above_of(tree, p), own);
   });
   for_each_task(shared, packs, [&](std::size_t p, unsigned thread) {
     for (const Subtree& tree : subtrees_) {
       const Front& root = fronts_[tree.root];
-      if (!touched_[tree.root * packs + p]) continue;
+      if (!touched[tree.root * packs + p]) continue;
       const Lane* const sums = above_of(tree, p);
       for (std::size_t i = 0; i < root.below.size(); ++i) add_lane(x[p * rows_ + root.below[i]], sums[i]);
     }
     Scratch& own = scratch(thread);
     for (const std::uint32_t s : top_)
-      if (touched_[s * packs + p]) forward_front<Lane>(fronts_[s], x + p * rows_, nullptr, own);
+      if (touched[s * packs + p]) forward_front<Lane>(fronts_[s], x + p * rows_, nullptr, own);
   });
 }
 
@@ -114,12 +117,13 @@ void BlockCholesky::backward_all(Lane* x, std::size_t packs) const {
 }
 
 void BlockCholesky::solve(const Vector& b, Vector& x) const {
-  x_.resize(rows_ / kStrip + 1);
-  touched_.assign(fronts_.size(), 1);
-  double* const w = x_.front().lane;
+  now_.packs = 1;
+  now_.x.resize(rows_ / kStrip + 1);
+  now_.touched.assign(fronts_.size(), 1);
+  double* const w = now_.x.front().lane;
   for (std::uint32_t i = 0; i < old_of_new_.size(); ++i)
     for (std::uint32_t d = 0; d < 3; ++d) w[3 * i + d] = b[3 * old_of_new_[i] + d];
-  forward_all(w, 1);
+  forward_all(w, now_);
   backward_all(w, 1);
   x.resize(b.size());
   for (std::uint32_t i = 0; i < old_of_new_.size(); ++i)
@@ -127,58 +131,93 @@ void BlockCholesky::solve(const Vector& b, Vector& x) const {
 }
 
 void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
-  if (columns.cols() == 1) {
-    Vector x;
-    solve(columns.col(0), x);
-    columns.col(0) = x;
-    return;
-  }
+  if (columns.cols() > 1) return solve_packs(columns);
+  Vector x;
+  solve(columns.col(0), x);
+  columns.col(0) = x;
+}
+
+void BlockCholesky::solve_packs(Eigen::Ref<Rows> columns) const {
   constexpr auto kMost = static_cast<Eigen::Index>(kMostPacks) * kStrip;
   for (Eigen::Index from = 0; from < columns.cols(); from += kMost) {
     auto some = columns.middleCols(from, std::min<Eigen::Index>(kMost, columns.cols() - from));
-    const auto packs = static_cast<std::size_t>((some.cols() + kStrip - 1) / kStrip);
-    x_.resize(packs * rows_);
-    touched_.assign(packs * fronts_.size(), 0);
-    const bool shared = !top_.empty();
-    for_each_task(shared, packs, [&](std::size_t p, unsigned) { take_columns(some, p, packs); });
-    touch_above(packs);
-    forward_all(x_.data(), packs);
-    backward_all(x_.data(), packs);
-    for_each_task(shared, packs, [&](std::size_t p, unsigned) { give_columns(some, p); });
+    start_packs(now_, some.cols());
+    for_each_task(!top_.empty(), now_.packs, [&](std::size_t p, unsigned) { take_columns(some, p); });
+    touch_above(now_);
+    forward_all(now_.x.data(), now_);
+    backward_all(now_.x.data(), now_.packs);
+    for_each_task(!top_.empty(), now_.packs, [&](std::size_t p, unsigned) { give_columns(some, p); });
   }
+}
+
+void BlockCholesky::start_packs(Columns& columns, Eigen::Index count) const {
+  columns.packs = static_cast<std::size_t>((count + kStrip - 1) / kStrip);
+  columns.x.resize(columns.packs * rows_);
+  columns.touched.assign(columns.packs * fronts_.size(), 0);
+}
+
+// A^-1 B mix = L^-T (Y mix), Y of the last solve_gram.
+bool BlockCholesky::solve_kept(const ColumnMix& mix, Eigen::Ref<Rows> out) const {
+  if (kept_.packs == 0) return false;
+  if (mix.count() == 0) return true;
+  start_packs(now_, mix.count());
+  for_each_task(!top_.empty(), now_.packs, [&](std::size_t p, unsigned) { mix_columns(mix, p); });
+  backward_all(now_.x.data(), now_.packs);
+  for_each_task(!top_.empty(), now_.packs, [&](std::size_t p, unsigned) { give_columns(out, p); });
+  return true;
+}
+
+// One pack of now_: combinations of kept_'s columns.
+void BlockCholesky::mix_columns(const ColumnMix& mix, std::size_t pack) const {
+  const Eigen::Index from = static_cast<Eigen::Index>(pack) * kStrip;
+  const auto count = static_cast<int>(std::min<Eigen::Index>(kStrip, mix.count() - from));
+  Strip* const to = &now_.x[pack * rows_];
+  std::fill_n(to, rows_, Strip{});
+  for (int lane = 0; lane < count; ++lane)
+    for (const ColumnMix::Part& part : mix.of(from + lane)) {
+      const auto column = static_cast<std::size_t>(place_[static_cast<std::size_t>(part.column / 3)] + part.column % 3);
+      const std::size_t p = column / kStrip, l = column % kStrip;
+      for (std::size_t s = 0; s < fronts_.size(); ++s) {
+        if (!kept_.touched[s * kept_.packs + p]) continue;
+        const Front& f = fronts_[s];
+        const Strip* const y = &kept_.x[p * rows_];
+        for (std::uint32_t r = f.first; r < f.first + static_cast<std::uint32_t>(f.columns); ++r)
+          to[r].lane[lane] += part.factor * y[r].lane[l];
+      }
+    }
 }
 
 // B^T A^-1 B = Y^T Y with Y = L^-1 B. It needs no backward substitution, and Y is non-zero only on the paths from B's
 // rows to the roots of the elimination tree. Triples are sorted by the elimination order of their first rows, so that
 // few packs of eight columns share a front far from the roots.
 void BlockCholesky::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const {
-  const std::vector<Eigen::Index> place = place_columns(b);
-  const auto packs = static_cast<std::size_t>((3 * b.count() + kStrip - 1) / kStrip);
-  touched_.assign(fronts_.size() * packs, 0);
+  place_ = place_columns(b);
+  start_packs(kept_, 3 * b.count());
+  const std::size_t packs = kept_.packs;
   for (Eigen::Index three = 0; three < b.count(); ++three)
     for (const BlockColumns::Entry& entry : b.of(three))
       for (int c = 0; c < 3; ++c)
-        touched_[front_of_[new_of_old_[entry.row]] * packs +
-                 static_cast<std::size_t>(place[static_cast<std::size_t>(three)] + c) / kStrip] = 1;
-  touch_above(packs);
-  x_.resize(packs * rows_);
+        kept_.touched[front_of_[new_of_old_[entry.row]] * packs +
+                      static_cast<std::size_t>(place_[static_cast<std::size_t>(three)] + c) / kStrip] = 1;
+  touch_above(kept_);
   for_each_task(!top_.empty(), packs, [&](std::size_t p, unsigned) {
     for (std::size_t s = 0; s < fronts_.size(); ++s)
-      if (touched_[s * packs + p]) std::fill_n(&x_[p * rows_ + fronts_[s].first], fronts_[s].columns, Strip{});
+      if (kept_.touched[s * packs + p])
+        std::fill_n(&kept_.x[p * rows_ + fronts_[s].first], fronts_[s].columns, Strip{});
   });
   for (Eigen::Index three = 0; three < b.count(); ++three)
     for (const BlockColumns::Entry& entry : b.of(three))
       for (int c = 0; c < 3; ++c) {
-        const auto column = static_cast<std::size_t>(place[static_cast<std::size_t>(three)] + c);
-        Strip* const x = &x_[column / kStrip * rows_ + 3 * new_of_old_[entry.row]];
+        const auto column = static_cast<std::size_t>(place_[static_cast<std::size_t>(three)] + c);
+        Strip* const x = &kept_.x[column / kStrip * rows_ + 3 * new_of_old_[entry.row]];
         for (int r = 0; r < 3; ++r) x[r].lane[column % kStrip] += entry.value(r, c);
       }
-  forward_all(x_.data(), packs);
-  add_grams(packs);
+  forward_all(kept_.x.data(), kept_);
+  add_grams();
 
   gram.resize(3 * b.count(), 3 * b.count());
   const auto of = [&](Eigen::Index i) {
-    return static_cast<std::size_t>(place[static_cast<std::size_t>(i / 3)] + i % 3);
+    return static_cast<std::size_t>(place_[static_cast<std::size_t>(i / 3)] + i % 3);
   };
   for (Eigen::Index i = 0; i < gram.rows(); ++i)
     for (Eigen::Index j = 0; j < gram.cols(); ++j) {
@@ -188,7 +227,8 @@ void BlockCholesky::solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) con
 }
 
 // tiles_ = Y^T Y, pack by pack.
-void BlockCholesky::add_grams(std::size_t packs) const {
+void BlockCholesky::add_grams() const {
+  const std::size_t packs = kept_.packs;
   tiles_.assign(packs * (packs + 1) / 2 * kStrip, Strip{});
   for_each_task(!top_.empty(), std::min(packs, kGramTasks), [&](std::size_t task, unsigned) {
     std::vector<std::size_t> here;  // packs with non-zeros in this front
@@ -196,12 +236,12 @@ void BlockCholesky::add_grams(std::size_t packs) const {
       const Front& f = fronts_[s];
       here.clear();
       for (std::size_t p = 0; p < packs; ++p)
-        if (touched_[s * packs + p]) here.push_back(p);
+        if (kept_.touched[s * packs + p]) here.push_back(p);
       for (const std::size_t p : here) {
         if (p % kGramTasks != task) continue;
         for (const std::size_t q : here) {
           if (q > p) break;
-          add_gram(x_[p * rows_ + f.first].lane, kStrip, x_[q * rows_ + f.first].lane, kStrip, f.columns,
+          add_gram(kept_.x[p * rows_ + f.first].lane, kStrip, kept_.x[q * rows_ + f.first].lane, kStrip, f.columns,
                    tiles_[(p * (p + 1) / 2 + q) * kStrip].lane);
         }
       }
@@ -224,8 +264,8 @@ std::vector<Eigen::Index> BlockCholesky::place_columns(const BlockColumns& b) co
   return place;
 }
 
-// One pack of x_ in the factor's order; touched_: fronts in which one of its columns is non-zero.
-void BlockCholesky::take_columns(Eigen::Ref<const Rows> columns, std::size_t pack, std::size_t packs) const {
+// One pack of now_ in the factor's order; touched: fronts in which one of its columns is non-zero.
+void BlockCholesky::take_columns(Eigen::Ref<const Rows> columns, std::size_t pack) const {
   const auto from = static_cast<Eigen::Index>(pack) * kStrip;
   const Eigen::Index count = std::min<Eigen::Index>(kStrip, columns.cols() - from);
   for (std::size_t s = 0; s < fronts_.size(); ++s) {
@@ -233,12 +273,12 @@ void BlockCholesky::take_columns(Eigen::Ref<const Rows> columns, std::size_t pac
     bool any = false;
     for (std::uint32_t r = f.first; r < f.first + static_cast<std::uint32_t>(f.columns); ++r) {
       const double* const row = columns.data() + columns.outerStride() * (3 * old_of_new_[r / 3] + r % 3) + from;
-      double* const to = x_[pack * rows_ + r].lane;
+      double* const to = now_.x[pack * rows_ + r].lane;
       std::copy_n(row, count, to);
       std::fill(to + count, to + kStrip, 0.0);
       for (int l = 0; l < kStrip; ++l) any |= to[l] != 0;
     }
-    touched_[s * packs + pack] = static_cast<char>(any);
+    now_.touched[s * now_.packs + pack] = static_cast<char>(any);
   }
 }
 
@@ -247,7 +287,7 @@ void BlockCholesky::give_columns(Eigen::Ref<Rows> columns, std::size_t pack) con
   const Eigen::Index count = std::min<Eigen::Index>(kStrip, columns.cols() - from);
   for (std::uint32_t i = 0; i < old_of_new_.size(); ++i)
     for (std::uint32_t d = 0; d < 3; ++d)
-      std::copy_n(x_[pack * rows_ + 3 * i + d].lane, count,
+      std::copy_n(now_.x[pack * rows_ + 3 * i + d].lane, count,
                   columns.data() + columns.outerStride() * (3 * old_of_new_[i] + d) + from);
 }
 

@@ -31,4 +31,21 @@ struct BlockColumns {
      // next triple
 };
 
+// Linear combinations of scalar columns (of BlockColumns: three for each triple).
+struct ColumnMix {
+  struct Part {
+    Eigen::Index column = 0;
+    double factor = 1.0;
+  };
+  std::vector<Part> parts;
+  std::vector<std::size_t> first{0};  // count() + 1: run of each combination in `parts`
+
+  Eigen::Index count() const { return static_cast<Eigen::Index>(first.size()) - 1; }
+  std::span<const Part> of(Eigen::Index i) const {
+    const auto at = static_cast<std::size_t>(i);
+    return std::span(parts).subspan(first[at], first[at + 1] - first[at]);
+  }
+  void close() { first.push_back(parts.size()); }  // subsequent parts belong to the next combination
+};
+
 }  // namespace pliant

@@ -32,6 +32,12 @@ class LinearSolver {
   // gram = B^T A^-1 B, symmetric: the mutual response of B's columns. Solves for all of them, unless a method has a
   // shortcut.
   virtual void solve_gram(const BlockColumns& b, Eigen::MatrixXd& gram) const;
+  // out = A^-1 B mix, B of the last solve_gram since factorise(), by what that has kept of the solution. False:
+  // nothing.
+  [[nodiscard]] virtual bool solve_kept(const ColumnMix& mix, Eigen::Ref<Rows> out) const {
+    (void)mix, (void)out;
+    return false;
+  }
 };
 
 // Of each solver that ships, in its own file (components/built_in.h). Null if the build lacks it.

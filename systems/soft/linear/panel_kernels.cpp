@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <cstring>
 
-// Every kernel is compiled for plain x86-64 and for AVX2, and selects the version at each call. GCC's function
-// multiversioning works only for callers that see all versions; others get the plain one. AVX-512 was not faster where
-// both were measured (19 Gflop/s each: without fused multiply-add AVX2 keeps three ports busy, AVX-512 two). Sanitizers
-// get the plain version.
+// Every kernel is compiled for plain x86-64, for AVX2 and for AVX-512, and selects the version at each call. GCC's
+// function multiversioning works only for callers that see all versions; others get the plain one. Without fused
+// multiply-add AVX-512 is as fast as AVX2 on a Xeon (19 Gflop/s: two ports instead of three), and twice as fast on a
+// Zen 5. Sanitizers get the plain version.
 #if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)
 #define PLIANT_KERNEL(returns, name, parameters, arguments, body)                          \
   returns plain::name parameters {                                                         \
@@ -17,7 +17,11 @@
   __attribute__((target("avx2"))) static returns wide_##name parameters {                  \
     return body(32);                                                                       \
   }                                                                                        \
+  __attribute__((target("avx512f,avx512dq"))) static returns widest_##name parameters {    \
+    return body(64);                                                                       \
+  }                                                                                        \
   returns name parameters {                                                                \
+    if (has_avx512()) return widest_##name arguments;                                      \
     return __builtin_cpu_supports("avx2") ? wide_##name arguments : plain::name arguments; \
   }
 #else
@@ -34,22 +38,28 @@
 namespace pliant {
 namespace {
 
+#if defined(__x86_64__) && !defined(PLIANT_SANITIZED) && !defined(__clang__)
+bool has_avx512() {
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
+}
+#endif
+
 template <int kBytes>
 struct Machine {
   typedef double Pack __attribute__((vector_size(kBytes), may_alias));
   static constexpr int kLanes = kBytes / 8;
   static constexpr int kPacks = kStrip / kLanes;  // packs in a strip
-  static constexpr int kGroup = kBytes / 8;       // columns of a tile summed at a time: the limit of sixteen registers
+  static constexpr int kGroup = kBytes / 8;       // columns of a tile summed at a time: the limit of the registers
 };
 
-// tile[j] += sum over p of a[p] * scalar(p, j), j < width <= 8 (and some beyond), p < length. a: strips of 8, `step`
-// apart. The scalars are numbers of the panel:
+// tile[j] = (kSum: +=) sum over p of a[p] * scalar(p, j), j < width <= 8 (and some beyond), p < length. a: strips of 8,
+// `step` apart. The scalars are numbers of the panel:
 //   kRow:    at b[8 p + j], one strip of the panel: its rows j, columns p;
 //   kColumn: at b[(p / 8) * stride + 8 j + p % 8], strip after strip: rows p, columns j.
 enum class Read { kRow, kColumn };
-template <int kBytes, Read kRead>
-PLIANT_INLINE void add_products(const double* a, const double* b, int length, int stride, double* tile,
-                                int width = kStrip, int step = kStrip) {
+template <int kBytes, Read kRead, bool kSum = false>
+PLIANT_INLINE void find_products(const double* a, const double* b, int length, int stride, double* tile,
+                                 int width = kStrip, int step = kStrip) {
   using M = Machine<kBytes>;
   using Pack = typename M::Pack;
   constexpr int kRun = kRead == Read::kRow ? 1 : kStrip, kNext = kRead == Read::kRow ? 1 : kStrip;
@@ -57,7 +67,7 @@ PLIANT_INLINE void add_products(const double* a, const double* b, int length, in
     Pack sum[M::kGroup][M::kPacks];
     for (int j = 0; j < M::kGroup; ++j)
       for (int l = 0; l < M::kPacks; ++l)
-        sum[j][l] = *reinterpret_cast<const Pack*>(tile + (group + j) * kStrip + l * M::kLanes);
+        sum[j][l] = kSum ? *reinterpret_cast<const Pack*>(tile + (group + j) * kStrip + l * M::kLanes) : Pack{};
     const double* scalar = b + group * kNext;
     for (int p = 0; p < length; p += kRun, scalar += stride)
       for (int run = 0; run < kRun; ++run)
@@ -100,23 +110,39 @@ PLIANT_INLINE bool factorise_tile(double* tile, int width, double* reciprocal) {
   return true;
 }
 
+// out = (out - sums) L^-T, L the triangle of the columns' own tile: eight columns stay in registers.
+template <int kBytes>
+PLIANT_INLINE void solve_strip(double* out, const double* sums, const double* L, int width, const double* reciprocal) {
+  using M = Machine<kBytes>;
+  using Pack = typename M::Pack;
+  for (int l = 0; l < kStrip; l += M::kLanes) {
+    Pack y[kStrip];
+#pragma GCC unroll 8
+    for (int j = 0; j < kStrip; ++j) {
+      if (j >= width) break;
+      y[j] =
+          *reinterpret_cast<const Pack*>(out + j * kStrip + l) - *reinterpret_cast<const Pack*>(sums + j * kStrip + l);
+#pragma GCC unroll 8
+      for (int q = 0; q < j; ++q) y[j] -= y[q] * L[q * kStrip + j];
+      y[j] *= reciprocal[j];
+      *reinterpret_cast<Pack*>(out + j * kStrip + l) = y[j];
+    }
+  }
+}
+
 // Eight columns of one strip: subtracts the columns already factorised, then divides by the diagonal block's triangle,
 // or factorises that.
 template <int kBytes>
 PLIANT_INLINE bool factorise_strip(double* strip, const double* pivots, int begin, int width, double* reciprocal) {
-  alignas(64) double tile[kStrip * kStrip] = {};
+  alignas(64) double tile[kStrip * kStrip];
   double* const out = strip + begin * kStrip;
-  add_products<kBytes, Read::kRow>(strip, pivots, begin, kStrip, tile, width);
-  for (int c = 0; c < width * kStrip; ++c) tile[c] = out[c] - tile[c];
-  if (strip == pivots) {
-    if (!factorise_tile<kBytes>(tile, width, reciprocal + begin)) return false;
-  } else {
-    const double* const L = pivots + begin * kStrip;
-    for (int j = 0; j < width; ++j) {
-      for (int q = 0; q < j; ++q) add_scaled<kBytes>(tile + j * kStrip, tile + q * kStrip, -L[q * kStrip + j]);
-      scale(tile + j * kStrip, reciprocal[begin + j]);
-    }
+  find_products<kBytes, Read::kRow>(strip, pivots, begin, kStrip, tile, width);
+  if (strip != pivots) {
+    solve_strip<kBytes>(out, tile, pivots + begin * kStrip, width, reciprocal + begin);
+    return true;
   }
+  for (int c = 0; c < width * kStrip; ++c) tile[c] = out[c] - tile[c];
+  if (!factorise_tile<kBytes>(tile, width, reciprocal + begin)) return false;
   std::copy(tile, tile + width * kStrip, out);
   return true;
 }
@@ -142,8 +168,8 @@ PLIANT_INLINE void update_triangle_for(FactorPanel panel, double* triangle, int 
   for (int begin = from; begin < to; begin += kStrip)
     for (int j = above; j < std::min(begin + kStrip, to); ++j)
       for (int i = std::max(begin, j); i < std::min(begin + kStrip, to); ++i) {
-        std::fill(tile, tile + kStrip * kStrip, 0.0);
-        add_products<kBytes, Read::kRow>(panel.data + i * stride, panel.data + j * stride, panel.columns, kStrip, tile);
+        find_products<kBytes, Read::kRow>(panel.data + i * stride, panel.data + j * stride, panel.columns, kStrip,
+                                          tile);
         double* const out = triangle + triangle_size(i - above) + static_cast<std::ptrdiff_t>(j - above) * 64;
         for (int c = 0; c < kStrip * kStrip; ++c) out[c] -= tile[c];
       }
@@ -189,6 +215,52 @@ PLIANT_INLINE void backward_for(FactorPanel panel, const double* reciprocal, dou
   }
 }
 
+// Eight rows of right-hand sides in registers: rows - sums, of which the first `width` belong to the triangle L.
+template <int kBytes>
+PLIANT_INLINE void substitute_forward(double* rows, const double* sums, const double* L, int width,
+                                      const double* reciprocal) {
+  using M = Machine<kBytes>;
+  using Pack = typename M::Pack;
+  for (int l = 0; l < kStrip; l += M::kLanes) {
+    Pack y[kStrip];
+#pragma GCC unroll 8
+    for (int r = 0; r < kStrip; ++r)
+      y[r] =
+          *reinterpret_cast<const Pack*>(rows + r * kStrip + l) - *reinterpret_cast<const Pack*>(sums + r * kStrip + l);
+#pragma GCC unroll 8
+    for (int p = 0; p < kStrip; ++p) {
+      if (p >= width) break;
+      y[p] *= reciprocal[p];
+#pragma GCC unroll 8
+      for (int r = p + 1; r < kStrip; ++r) y[r] -= y[p] * L[p * kStrip + r];
+    }
+#pragma GCC unroll 8
+    for (int r = 0; r < kStrip; ++r) *reinterpret_cast<Pack*>(rows + r * kStrip + l) = y[r];
+  }
+}
+
+// The same backwards: rows = (rows - sums) L^-1 for the first `width`; the others are solutions already.
+template <int kBytes>
+PLIANT_INLINE void substitute_backward(double* rows, const double* sums, const double* L, int width,
+                                       const double* reciprocal) {
+  using M = Machine<kBytes>;
+  using Pack = typename M::Pack;
+  for (int l = 0; l < kStrip; l += M::kLanes) {
+    Pack y[kStrip];
+#pragma GCC unroll 8
+    for (int r = 0; r < kStrip; ++r) y[r] = *reinterpret_cast<const Pack*>(rows + r * kStrip + l);
+#pragma GCC unroll 8
+    for (int p = kStrip - 1; p >= 0; --p) {
+      if (p >= width) continue;
+      Pack sum = *reinterpret_cast<const Pack*>(sums + p * kStrip + l);
+#pragma GCC unroll 8
+      for (int r = p + 1; r < kStrip; ++r) sum += y[r] * L[p * kStrip + r];
+      y[p] = (y[p] - sum) * reciprocal[p];
+      *reinterpret_cast<Pack*>(rows + p * kStrip + l) = y[p];
+    }
+  }
+}
+
 template <int kBytes>
 PLIANT_INLINE void forward_many_for(FactorPanel panel, const double* reciprocal, double* x) {
   alignas(64) double tile[kStrip * kStrip];
@@ -197,14 +269,12 @@ PLIANT_INLINE void forward_many_for(FactorPanel panel, const double* reciprocal,
     const double* const strip = panel.data + static_cast<std::ptrdiff_t>(i) * stride;
     double* const rows = x + i * kStrip * kStrip;
     const int begin = std::min(i * kStrip, panel.columns);
-    std::fill(tile, tile + kStrip * kStrip, 0.0);
-    add_products<kBytes, Read::kRow>(x, strip, begin, kStrip, tile);
-    for (int c = 0; c < kStrip * kStrip; ++c) rows[c] -= tile[c];
-    for (int p = begin; p < std::min(begin + kStrip, panel.columns); ++p) {
-      scale(x + p * kStrip, reciprocal[p]);
-      for (int r = p + 1; r < (i + 1) * kStrip; ++r)
-        add_scaled<kBytes>(x + r * kStrip, x + p * kStrip, -strip[p * kStrip + r % kStrip]);
-    }
+    find_products<kBytes, Read::kRow>(x, strip, begin, kStrip, tile);
+    if (begin == panel.columns)
+      for (int c = 0; c < kStrip * kStrip; ++c) rows[c] -= tile[c];
+    else
+      substitute_forward<kBytes>(rows, tile, strip + begin * kStrip, std::min(kStrip, panel.columns - begin),
+                                 reciprocal + begin);
   }
 }
 
@@ -214,23 +284,17 @@ PLIANT_INLINE void backward_many_for(FactorPanel panel, const double* reciprocal
   const int stride = kStrip * panel.columns;
   for (int begin = (panel.columns - 1) / kStrip * kStrip; begin >= 0; begin -= kStrip) {
     const int end = std::min(begin + kStrip, panel.columns), own = begin / kStrip;
-    std::fill(tile, tile + kStrip * kStrip, 0.0);
-    add_products<kBytes, Read::kColumn>(x + (own + 1) * kStrip * kStrip,
-                                        panel.data + static_cast<std::ptrdiff_t>(own + 1) * stride + begin * kStrip,
-                                        (panel.strips - own - 1) * kStrip, stride, tile, end - begin);
+    find_products<kBytes, Read::kColumn>(x + (own + 1) * kStrip * kStrip,
+                                         panel.data + static_cast<std::ptrdiff_t>(own + 1) * stride + begin * kStrip,
+                                         (panel.strips - own - 1) * kStrip, stride, tile, end - begin);
     const double* const strip = panel.data + static_cast<std::ptrdiff_t>(own) * stride;
-    for (int p = end - 1; p >= begin; --p) {
-      double* const sum = tile + (p - begin) * kStrip;
-      for (int r = p + 1; r < begin + kStrip; ++r)
-        add_scaled<kBytes>(sum, x + r * kStrip, strip[p * kStrip + r % kStrip]);
-      for (int l = 0; l < kStrip; ++l) x[p * kStrip + l] = (x[p * kStrip + l] - sum[l]) * reciprocal[p];
-    }
+    substitute_backward<kBytes>(x + begin * kStrip, tile, strip + begin * kStrip, end - begin, reciprocal + begin);
   }
 }
 
 template <int kBytes>
 PLIANT_INLINE void add_gram_for(const double* x, int x_step, const double* y, int y_step, int rows, double* tile) {
-  add_products<kBytes, Read::kRow>(x, y, rows, y_step, tile, kStrip, x_step);
+  find_products<kBytes, Read::kRow, true>(x, y, rows, y_step, tile, kStrip, x_step);
 }
 
 }  // namespace

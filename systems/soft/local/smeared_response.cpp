@@ -104,9 +104,10 @@ void AnchorColumns::finish(Eigen::Index contacts, BlockColumns& out) {
     out.close();
 }
 
-void AnchorColumns::expand(std::span<const PushedSide> sides, Eigen::Index contacts, Eigen::MatrixXd& held) const {
-  if (column_of_.empty()) return;
-  Rows e = Rows::Zero(3 * contacts, held.rows());
+void AnchorColumns::expand(std::span<const PushedSide> sides, Eigen::Index contacts, Eigen::MatrixXd& held,
+                           Rows& e) const {
+  if (column_of_.empty()) return e.resize(0, 0);
+  e.setZero(3 * contacts, held.rows());
   const auto first_alone = static_cast<Eigen::Index>(column_of_.size());
   for (std::size_t k = 0; k < alone_.size(); ++k)
     e.block<3, 3>(3 * alone_[k], 3 * (first_alone + static_cast<Eigen::Index>(k))).setIdentity();

@@ -32,8 +32,8 @@ class AnchorColumns {
   void push(const SmearingSurface* smearing, BlockColumns& out);
   void open(Eigen::Index contact, BlockColumns& out);  // the columns of a contact without anchors, ascending
   void finish(Eigen::Index contacts, BlockColumns& out);
-  // C, its lower triangle, to W.
-  void expand(std::span<const PushedSide> sides, Eigen::Index contacts, Eigen::MatrixXd& held) const;
+  // C, its lower triangle, to W, and `e` = E; empty without anchors.
+  void expand(std::span<const PushedSide> sides, Eigen::Index contacts, Eigen::MatrixXd& held, Rows& e) const;
 
  private:
   std::map<std::uint32_t, Eigen::Index> column_of_;  // anchors

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/soft/body/soft_body_state.h"
+
 namespace pliant {
 namespace {
 
@@ -47,6 +49,34 @@ void gather_contacts(const ToolContacts& contacts, const BodyAnswers& of, const 
   }
 }
 
+// Index of each chosen contact's first row in the body's response.
+std::vector<Eigen::Index> rows_in_response(const ToolContacts& contacts, const BodyAnswers& of) {
+  const std::vector<int>& all = contacts.step().delassus.of[of.index].contacts;
+  std::vector<Eigen::Index> out;
+  for (const int i : of.local)
+    out.push_back(3 * (std::lower_bound(all.begin(), all.end(), contacts.in_step(i)) - all.begin()));
+  return out;
+}
+
+// V's picked columns that belong to contacts, solved again.
+void solve_contacts_again(const ToolContacts& contacts, const BodyAnswers& of, const std::vector<int>& picks,
+                          Rows& out) {
+  out.setZero(of.body->size(), static_cast<Eigen::Index>(picks.size()));
+  for (std::size_t k = 0; k < picks.size(); ++k) {
+    if (picks[k] >= of.contact_rows()) continue;
+    const ContactPoint& c = contacts[of.local[static_cast<std::size_t>(picks[k] / 3)]];
+    const dvec3 axis = c.axes[picks[k] % 3];
+    if (c.body_a == of.index) of.body->push(c.a, axis, out, static_cast<Eigen::Index>(k));
+    if (c.body_b == of.index) of.body->push(c.b, -axis, out, static_cast<Eigen::Index>(k));
+  }
+  if (of.index == contacts.tool_index()) {
+    contacts.tool().solve_held(out.topRows(out.rows() - 6));
+    out.bottomRows<6>().setZero();
+  } else {
+    of.body->solve(out);
+  }
+}
+
 // G, symmetric as A is: shaken^T times the contacts' responses equals J times the shaken responses. The contacts' block
 // is known from the step.
 void fill_gram(const ToolContacts& contacts, BodyAnswers& out) {
@@ -55,11 +85,7 @@ void fill_gram(const ToolContacts& contacts, BodyAnswers& out) {
   const Rows& lever = response.compliance.lever;
   const Eigen::Index rows = out.contact_rows(), shaken = out.shaken.cols();
   const bool follows = lever.cols() > 0 && out.index != contacts.tool_index();  // of another tool: its handle is free
-  std::vector<Eigen::Index> from;
-  for (const int i : out.local) {
-    const auto at = std::lower_bound(response.contacts.begin(), response.contacts.end(), contacts.in_step(i));
-    from.push_back(3 * (at - response.contacts.begin()));
-  }
+  const std::vector<Eigen::Index> from = rows_in_response(contacts, out);
   out.gram.resize(rows + shaken, rows + shaken);
   for (Eigen::Index j = 0; j < rows; ++j)
     for (Eigen::Index i = 0; i < rows; ++i) {
@@ -88,32 +114,18 @@ BodyAnswers answers_of(const ToolContacts& contacts, std::uint32_t body) {
 }
 
 Rows answers_to(const ToolContacts& contacts, const BodyAnswers& of, const std::vector<int>& picks) {
-  const auto is_contact = [&](int pick) { return pick < of.contact_rows(); };
-  Rows solved = Rows::Zero(of.body->size(), std::count_if(picks.begin(), picks.end(), is_contact));
-  Eigen::Index column = 0;
-  for (const int pick : picks) {
-    if (!is_contact(pick)) continue;
-    const ContactPoint& c = contacts[of.local[static_cast<std::size_t>(pick / 3)]];
-    const dvec3 axis = c.axes[pick % 3];
-    if (c.body_a == of.index) of.body->push(c.a, axis, solved, column);
-    if (c.body_b == of.index) of.body->push(c.b, -axis, solved, column);
-    ++column;
-  }
-  if (of.index == contacts.tool_index()) {
-    contacts.tool().solve_held(solved.topRows(solved.rows() - 6));
-    solved.bottomRows<6>().setZero();
-  } else {
-    of.body->solve(solved);
-  }
-  Rows out(solved.rows(), static_cast<Eigen::Index>(picks.size()));
-  for (Eigen::Index row = 0; row < out.rows(); ++row) {  // in storage order
-    const double *from = solved.data() + row * solved.cols(),
-                 *shaken = of.shaken_answers.data() + row * of.shaken_answers.cols();
-    for (Eigen::Index k = 0; k < out.cols(); ++k) {
-      const int pick = picks[static_cast<std::size_t>(k)];
-      out(row, k) = is_contact(pick) ? *from++ : shaken[pick - of.contact_rows()];
-    }
-  }
+  const std::vector<Eigen::Index> first = rows_in_response(contacts, of);
+  std::vector<Eigen::Index> rows;
+  for (const int pick : picks)
+    rows.push_back(pick < of.contact_rows() ? first[static_cast<std::size_t>(pick / 3)] + pick % 3
+                                            : SoftBodyState::kNoRow);
+  const SoftBodyState* const tissue = of.body->as_tissue();
+  const bool handle_fixed = tissue && (of.index == contacts.tool_index() || !tissue->has_handle());
+  Rows out;
+  if (!handle_fixed || !tissue->respond_at(rows, out)) solve_contacts_again(contacts, of, picks, out);
+  for (std::size_t k = 0; k < picks.size(); ++k)
+    if (rows[k] == SoftBodyState::kNoRow)
+      out.col(static_cast<Eigen::Index>(k)) = of.shaken_answers.col(picks[k] - of.contact_rows());
   return out;
 }
 
