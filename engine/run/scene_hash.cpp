@@ -49,7 +49,7 @@ void add_animation(Hash& hash, const LevelAnimation& animation) {
 // Keeps the hash of scenes older than these keys.
 bool is_newer_default(const Extension& extension, const Key& key, const Json& value) {
   return (key.name == "under_gravity" && value == "falls") || (key.name == "contact" && value == "lattice") ||
-         (key.name == "law" && value == "corotational") ||
+         (key.name == "law" && value == "corotational") || (key.name == "integrator" && value == "euler") ||
          (key.name == "velocity" && value == Json::array({0.0, 0.0, 0.0})) ||
          (extension.name == "soft_body" && key.name == "stiffening" && value == SoftBodyParameters{}.stiffening);
 }
