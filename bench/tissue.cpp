@@ -1,6 +1,6 @@
 // Tissue alone: time of assembling and stepping blocks of 500 to 40,000 tetrahedra. Effect of scheme, step size and
-// iterations: time, and error of a falling beam's tip against a converged reference. CPU times of the only thread,
-// which other processes affect little.
+// iterations: time, and error of a falling beam's tip against a converged reference. A level's whole soft step by
+// `integrator`, alone and pressed by a plate. CPU times, which other processes affect little.
 //   bench_tissue [--out FILE.json]
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 
 #include "bench/measure.h"
 #include "scenes/tet_shapes.h"
+#include "scenes/tool_stage.h"
 #include "systems/soft/fem/tissue_step.h"
 
 namespace pliant {
@@ -164,6 +165,57 @@ std::string schemes(double& reference_error) {
   return json;
 }
 
+// [ms] of CPU time, median of a level's soft step: a pinned cube of cells^3 under a plate that moves up and down, or
+// swaying alone; `contacts`: mean number.
+double level_step(StepMethod method, int cells, bool pressed, double& contacts) {
+  constexpr int kSteps = 40;
+  constexpr double kEdge = 0.06;  // [m]
+  scenes::ToolStage stage(1.0 / 60);
+  SoftBody body;
+  body.young = 1e4, body.poisson = 0.45;
+  body.integrator = method;
+  TetMesh mesh = tets::box(cells, cells, cells, dvec3(-0.5 * kEdge), dvec3(0.5 * kEdge));
+  tets::hold(mesh, [](dvec3 p) { return p.y < -0.499 * kEdge; });
+  stage.add_soft(mesh, body, {});
+  RigidBody rigid;
+  rigid.fixed = true;
+  const double plate = pressed ? 0.5 * kEdge : 10.0, wide = kEdge * 6.5 / cells;
+  const Entity over = stage.add_rigid(scenes::box(dvec3(wide, 0.02, wide)), rigid, {dvec3(0, plate + 0.01, 0)});
+  stage.prepare();
+  std::vector<double> ms;
+  contacts = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    if (pressed)
+      dynamic_cast<FixedBody&>(stage.body(over)).set_velocity(dvec3(0, i % 20 < 12 ? -0.02 : 0.02, 0), dvec3(0));
+    const double begin = processor_ms();
+    stage.step();
+    ms.push_back(processor_ms() - begin);
+    contacts += static_cast<double>(stage.soft().contacts.size()) / kSteps;
+  }
+  return median(ms);
+}
+
+std::string integrators() {
+  fmt::print("\nA level's soft step: a pinned cube, alone and under a plate\n{:>7} {:>9} {:>9} {:>13} {:>13}\n", "tets",
+             "contacts", "euler ms", "second_order", "quasi_static");
+  std::string json;
+  for (const int cells : {7, 12})
+    for (const bool pressed : {false, true}) {
+      double contacts = 0.0;
+      const double euler = level_step(StepMethod::kEuler, cells, pressed, contacts);
+      double ignored = 0.0;
+      const double second = level_step(StepMethod::kSecondOrder, cells, pressed, ignored) / euler,
+                   quasi = level_step(StepMethod::kQuasiStatic, cells, pressed, ignored) / euler;
+      const int tets = 6 * cells * cells * cells;
+      fmt::print("{:>7} {:>9.1f} {:>9.2f} {:>12.2f}x {:>12.2f}x\n", tets, contacts, euler, second, quasi);
+      json += fmt::format(
+          "{}\n    {{\"tets\": {}, \"contacts\": {:.1f}, \"euler_ms\": {:.3f}, "
+          "\"second_order_ratio\": {:.3f}, \"quasi_static_ratio\": {:.3f}}}",
+          json.empty() ? "" : ",", tets, contacts, euler, second, quasi);
+    }
+  return json;
+}
+
 }  // namespace
 }  // namespace pliant
 
@@ -172,7 +224,9 @@ int main(int argc, char** argv) {
   const std::string steps = pliant::costs();
   double reference_error = 0;
   const std::string ways = pliant::schemes(reference_error);
+  const std::string methods = pliant::integrators();
   arguments.save(
-      fmt::format("{{\n  \"step\": [{}\n  ],\n  \"reference_tip_error\": {:.2e},\n  \"scheme\": [{}\n  ]\n}}\n", steps,
-                  reference_error, ways));
+      fmt::format("{{\n  \"step\": [{}\n  ],\n  \"reference_tip_error\": {:.2e},\n  \"scheme\": [{}\n  ],\n"
+                  "  \"integrator\": [{}\n  ]\n}}\n",
+                  steps, reference_error, ways, methods));
 }

@@ -90,6 +90,18 @@ constexpr const char* word_of(SoftContact contact) {
   return nullptr;
 }
 
+constexpr const char* word_of(StepMethod method) {
+  switch (method) {
+    case StepMethod::kEuler:
+      return "euler";
+    case StepMethod::kSecondOrder:
+      return "second_order";
+    case StepMethod::kQuasiStatic:
+      return "quasi_static";
+  }
+  return nullptr;
+}
+
 constexpr const char* word_of(Elements elements) {
   switch (elements) {
     case Elements::kTetrahedra:

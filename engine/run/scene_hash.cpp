@@ -54,7 +54,7 @@ bool is_newer_default(const Extension& extension, const Key& key, const Json& va
     return value == key.get(&fresh);
   }
   return (key.name == "under_gravity" && value == "falls") || (key.name == "contact" && value == "lattice") ||
-         (key.name == "law" && value == "corotational") ||
+         (key.name == "law" && value == "corotational") || (key.name == "integrator" && value == "euler") ||
          (key.name == "velocity" && value == Json::array({0.0, 0.0, 0.0})) ||
          (extension.name == "soft_body" && key.name == "stiffening" && value == SoftBodyParameters{}.stiffening);
 }

@@ -36,6 +36,7 @@ constexpr Fixed kFixed[] = {
     {"soft_body.pinned", "the tissue's unknowns are laid out when the session opens"},
     {"soft_body.solver", "it is made when the session opens"},
     {"soft_body.contact", "what contacts act on is laid out when the session opens"},
+    {"soft_body.integrator", "its step is laid out when the session opens"},
     {"soft_body.velocity", "the body moves with it from the beginning"},
     {"soft_body.error", "the model is chosen by it when the session opens"},
     {"rigid_body.velocity", "the body moves with it from the beginning"},

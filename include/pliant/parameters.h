@@ -169,6 +169,13 @@ enum class TissueLaw : std::uint8_t {
   kFung,          // exponential: stiffens with strain
 };
 
+// How tissue moves over a step.
+enum class StepMethod : std::uint8_t {
+  kEuler,        // implicit Euler: first order, damps all motion
+  kSecondOrder,  // two stages of one matrix (systems/soft/body/two_stages.h)
+  kQuasiStatic,  // the equilibrium of every step: no inertia
+};
+
 // Elements of a lattice.
 enum class Elements : std::uint8_t {
   kTetrahedra,  // fitted to the surface
@@ -251,6 +258,7 @@ struct SoftBodyParameters {
   UnderGravity under_gravity = UnderGravity::kFalls;
   Carries carries = Carries::kNothing;
   SoftContact contact = SoftContact::kLattice;
+  StepMethod integrator = StepMethod::kEuler;
   dvec3 velocity{0, 0, 0};  // [m/s] world, at the beginning; not of a tool
 };
 

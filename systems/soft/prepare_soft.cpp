@@ -36,12 +36,25 @@ void add(SoftState& soft, Entity entity, std::unique_ptr<Body> body) {
   soft.bodies.push_back(std::move(body));
 }
 
+Status check_step(const World& world, Entity entity, const SoftBody& body) {
+  if (body.integrator == StepMethod::kEuler) return Done{};
+  const char* const cure = "leave out `integrator`";
+  if (world.registry.find<Handle6>(entity))
+    return Error{soft_name(world, entity), "has an `integrator`, and a tool's tissue steps by `euler` only", cure};
+  const TetMesh& tets = world.tet_meshes[body.tets];
+  if (body.integrator == StepMethod::kQuasiStatic && tets.pinned_begin() == tets.node_count())
+    return Error{soft_name(world, entity), "has an `integrator` of `quasi_static`, and nothing holds it",
+                 "pin a part of it (`pinned`), or take `euler`"};
+  return Done{};
+}
+
 Status add_soft(const World& world, SoftState& soft) {
   for (auto [entity, body] : world.registry.view<SoftBody>()) {
     check_in("preparing " + soft_name(world, entity));
     if (!make_solver(body.solver, 1))
       return Error{soft_name(world, entity), "its solver is not in this build, or its factory makes none",
                    "use `auto`"};
+    if (Status status = check_step(world, entity, body); !status) return status;
     const Handle6* handle = world.registry.find<Handle6>(entity);
     auto state = std::make_unique<SoftBodyState>(world.tet_meshes[body.tets], world.meshes[body.collision_mesh], body,
                                                  handle, pose_of(world, entity), body.solver);

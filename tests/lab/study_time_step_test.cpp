@@ -61,7 +61,7 @@ TEST(StudyTimeStep, TheGroundStopsABlockWhoseEnergyIsThenInTheSpringsAndTheTissu
 TEST(StudyTimeStep, ALevelStepsAsEulerDoesWhereNothingIsTouched) {
   TissueScene swing = step_scenes(1)[0];
   swing.seconds = 0.2;
-  const StepTrace engine = engine_trace(swing, 1.0 / 60, 1.0 / 30),
+  const StepTrace engine = engine_trace(swing, StepMethod::kEuler, 1.0 / 60, 1.0 / 30),
                   euler = trace_of(swing, StepScheme::kEuler, 1.0 / 60, 1.0 / 30);
   ASSERT_EQ(engine.size(), euler.size());
   double farthest = 0.0;
@@ -76,7 +76,7 @@ TEST(StudyTimeStep, ALevelStepsAsEulerDoesWhereNothingIsTouched) {
 TEST(StudyTimeStep, ALevelsBallPressesAndItsGroundStops) {
   const std::vector<TissueScene> scenes = step_scenes(2);
   const TissueScene& press = scenes[1];
-  const StepTrace pressed = engine_trace(press, 1.0 / 120, 1.0 / 30);
+  const StepTrace pressed = engine_trace(press, StepMethod::kEuler, 1.0 / 120, 1.0 / 30);
   ASSERT_FALSE(pressed.empty());
   double deepest = 0.0;
   for (std::size_t i = 0; i < press.mesh.nodes.size(); ++i)
@@ -84,12 +84,12 @@ TEST(StudyTimeStep, ALevelsBallPressesAndItsGroundStops) {
   EXPECT_NEAR(deepest, 0.008, 0.002);  // the depth reached by the ball
   TissueScene impact = scenes[3];
   impact.seconds = 0.1;
-  const StepTrace fallen = engine_trace(impact, 1.0 / 480, 1.0 / 480);
+  const StepTrace fallen = engine_trace(impact, StepMethod::kEuler, 1.0 / 480, 1.0 / 480);
   double lowest = 0.0;
   for (const std::vector<dvec3>& at : fallen)
     for (const dvec3 x : at) lowest = std::min(lowest, x.y);
   EXPECT_NEAR(lowest, -0.01, 1e-3);  // the ground
-  // A thrown block: after the first step its velocity is the scene's initial one plus gravity's.
+  // A thrown block: its first step has the scene's initial velocity plus gravity's.
   const double T = 1.0 / 480, way = impact.velocity.y * T + impact.gravity.y * T * T;
   EXPECT_NEAR(fallen[0][0].y - impact.mesh.nodes[0].y, way, 1e-9);
 }

@@ -24,7 +24,7 @@ Handle6 stiff_hold() {
 
 }  // namespace
 
-StepTrace engine_trace(const TissueScene& scene, double step, double every, double* ms,
+StepTrace engine_trace(const TissueScene& scene, StepMethod method, double step, double every, double* ms,
                        const std::function<bool(double)>& goes_on) {
   scenes::ToolStage stage(step);
   SoftBody body;
@@ -33,9 +33,9 @@ StepTrace engine_trace(const TissueScene& scene, double step, double every, doub
   body.density = scene.material.density;
   body.rayleigh = {scene.material.alpha, scene.material.beta};
   body.friction_static = body.friction_sliding = 0.0;
-  // An initial step with the gravity that gives the nodes their initial velocity and position.
-  const bool thrown = scene.velocity != dvec3(0);
-  const Entity tissue = stage.add_soft(scene.mesh, body, {-step * scene.velocity});
+  body.velocity = scene.velocity;
+  body.integrator = method;
+  const Entity tissue = stage.add_soft(scene.mesh, body, {});
   RigidBody rigid;
   rigid.friction_static = rigid.friction_sliding = 0.0;
   const auto* ball = std::get_if<Ball>(&scene.obstacle);
@@ -45,10 +45,8 @@ StepTrace engine_trace(const TissueScene& scene, double step, double every, doub
     rigid.fixed = true;
     stage.add_rigid(scenes::box(dvec3(kWideStep), dvec3(0, ground->height - 0.5 * kWideStep, 0)), rigid, {});
   }
-  stage.world.simulation.gravity = thrown ? scene.velocity / step : scene.gravity;
-  stage.prepare();
-  if (thrown) stage.step();
   stage.world.simulation.gravity = scene.gravity;
+  stage.prepare();
   const int samples = static_cast<int>(std::lround(scene.seconds / every)),
             steps = static_cast<int>(std::lround(every / step));
   StepTrace trace;

@@ -7,10 +7,11 @@
 namespace pliant {
 
 inline constexpr const char* kEngineStep = "a level's step";
+inline constexpr const char* kEngineStages = "a level's step, second_order";
 
 // Same contract as trace_of().
 StepTrace engine_trace(
-    const TissueScene& scene, double step, double every, double* ms = nullptr,
+    const TissueScene& scene, StepMethod method, double step, double every, double* ms = nullptr,
     const std::function<bool(double)>& goes_on = [](double) { return true; });
 
 }  // namespace pliant

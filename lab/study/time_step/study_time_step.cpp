@@ -15,9 +15,13 @@
 namespace pliant {
 namespace {
 
-// The schemes, and the engine's step.
-const char* const kWays[] = {name_of(StepScheme::kEuler), name_of(StepScheme::kMidpoint),
-                             name_of(StepScheme::kMidpointTwice), name_of(StepScheme::kBdf2), kEngineStep};
+// The schemes, and the engine's steps.
+const char* const kWays[] = {name_of(StepScheme::kEuler),
+                             name_of(StepScheme::kMidpoint),
+                             name_of(StepScheme::kMidpointTwice),
+                             name_of(StepScheme::kBdf2),
+                             kEngineStep,
+                             kEngineStages};
 constexpr StepScheme kSchemes[] = {StepScheme::kEuler, StepScheme::kMidpoint, StepScheme::kMidpointTwice,
                                    StepScheme::kBdf2};
 constexpr double kEvery = 1.0 / 30.0;  // [s] interval at which traces are compared
@@ -127,9 +131,12 @@ const StepRow& find(const std::vector<StepRow>& rows, const std::string& way, in
 std::vector<std::string> sentences(const std::vector<StepRow>& all, const std::vector<StepRow>& mean,
                                    const TimeStepPlan& plan, double worst, double engine_worst) {
   std::string usual = fmt::format("In steps of {:.3g} ms, the default, a level is off by", 1000.0 / kUsualRate);
-  for (const StepRow& row : all)
-    if (row.way == kEngineStep && row.rate == kUsualRate)
-      usual += fmt::format("{} {} % ({})", usual.ends_with("by") ? "" : ",", two_digits(100 * row.error), row.scene);
+  for (const char* way : {kEngineStep, kEngineStages}) {
+    if (way == kEngineStages) usual += "; with `second_order` by";
+    for (const StepRow& row : all)
+      if (row.way == way && row.rate == kUsualRate)
+        usual += fmt::format("{} {} % ({})", usual.ends_with("by") ? "" : ",", two_digits(100 * row.error), row.scene);
+  }
   usual += "; the mean over the motions is";
   for (const char* way : kWays)
     usual += fmt::format("{} {} % ({})", usual.ends_with("is") ? "" : ",",
@@ -230,13 +237,14 @@ Status study_time_step(OutputFolder& out, StudySize size, const Interrupt& inter
       progress.update((done + from + part * share) / static_cast<double>(scenes.size()));
       return !interrupt.requested();
     };
-    // The engine's contacts are not penalties: its reference is its own motion with short steps.
+    // The engine's contacts are not penalties: its reference is its own motion with short steps, of second order where
+    // nothing touches.
     StepTrace truth, engine_truth;
     for (const int rate : {plan.truth_rate, plan.truth_rate / 2}) {
       StepTrace trace = trace_of(scene, StepScheme::kConverged, 1.0 / rate, kEvery, nullptr, goes_on);
       if (interrupt.requested()) return interrupted();
       from += part, part = rate == plan.truth_rate ? 0.25 : 0.12;
-      StepTrace engine = engine_trace(scene, 1.0 / rate, kEvery, nullptr, goes_on);
+      StepTrace engine = engine_trace(scene, StepMethod::kSecondOrder, 1.0 / rate, kEvery, nullptr, goes_on);
       if (interrupt.requested()) return interrupted();
       from += part, part = 0.15;
       if (rate == plan.truth_rate) {
@@ -262,12 +270,14 @@ Status study_time_step(OutputFolder& out, StudySize size, const Interrupt& inter
         if (interrupt.requested()) return interrupted();
         add(name_of(scheme), rate, trace, truth, ms);
       }
-    for (const int rate : plan.rates) {
-      double ms = 0.0;
-      const StepTrace trace = engine_trace(scene, 1.0 / rate, kEvery, &ms, goes_on);
-      if (interrupt.requested()) return interrupted();
-      add(kEngineStep, rate, trace, engine_truth, ms);
-    }
+    for (const auto& [way, method] :
+         {std::pair{kEngineStep, StepMethod::kEuler}, std::pair{kEngineStages, StepMethod::kSecondOrder}})
+      for (const int rate : plan.rates) {
+        double ms = 0.0;
+        const StepTrace trace = engine_trace(scene, method, 1.0 / rate, kEvery, &ms, goes_on);
+        if (interrupt.requested()) return interrupted();
+        add(way, rate, trace, engine_truth, ms);
+      }
     if (const Status written = write_text(out, table.study + ".csv", to_csv(table)); !written) return written;
     if (const Status drawn = plot_pareto(out, table.study, table); !drawn) return drawn;
     done += 1.0;

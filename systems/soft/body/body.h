@@ -159,8 +159,18 @@ class Body {
   virtual void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
     (void)sides, (void)T, (void)w;
   }
+  // --- A step in two stages (two_stages.h), if staged(): contacts are solved for the first stage alone, and then for
+  // the whole step. Both calls set velocity() and surface_velocity to the motion without contacts.
+  virtual bool staged() const { return false; }
+  virtual void first_stage() {}
+  virtual void second_stage() {}  // with the first stage's impulses, by correct()
   // --- For the touch clock's reduced model (modal.h): the inertia in A, and the velocity at the beginning of the step.
   // After free_step.
+  virtual StepSplit split(double T) const { return {T, damping()}; }
+  // [m/s] At the step's end; velocity() is the mean of the step, on which the contacts act.
+  virtual Vector ending_velocity() const { return velocity(); }
+  // [m/s] From where the step's elastic forces are those that it used, to its end, by T.
+  virtual Vector force_lag() const { return Vector::Zero(size()); }
   virtual void weigh(const Rows& x, Rows& out) const { out.setZero(x.rows(), x.cols()); }  // out = M x
   virtual RayleighDamping damping() const { return {}; }
   virtual Vector starting_velocity() const { return Vector::Zero(size()); }

@@ -64,6 +64,7 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& surface, const Sof
     }
     balance_ /= mass_;
   }
+  if (!handle_) choose_step(body.integrator);
   for (std::size_t i = 0; i < tets.nodes.size(); ++i) {
     tissue_.position()[i] = placement.to_world(tets.start.empty() ? tets.nodes[i] : tets.start[i]);
     tissue_.velocity()[i] = dvec3(0);
@@ -85,7 +86,8 @@ void SoftBodyState::smear() {
 
 void SoftBodyState::free_step(double T, dvec3 gravity) {
   T_ = T;
-  tissue_.assemble(T, gravity);
+  if (quasi_static()) std::fill(tissue_.velocity().begin(), tissue_.velocity().end(), dvec3(0));
+  tissue_.assemble(stage_ * T, gravity);
   solver_.place(tissue_.position());
   if (handle_) {
     tie_->assemble(tissue_, *handle_, T, gravity);
@@ -96,6 +98,12 @@ void SoftBodyState::free_step(double T, dvec3 gravity) {
   } else {
     solvable_ = solver_.factorise(tissue_.inner(), {}, Matrix6::Zero(), tissue_.right(), velocity_);
   }
+  if (quasi_static()) velocity_ *= stage_;
+  if (stages_) stages_->begin(tissue_, T, gravity, velocity_);
+  note_free_motion();
+}
+
+void SoftBodyState::note_free_motion() {
   if (smearing_) free_velocity_ = velocity_;
   move_surface(surface_velocity);
 }
@@ -188,13 +196,15 @@ void SoftBodyState::keep_passive(double T) {
   Vector rigid(rows);
   for (Eigen::Index i = 0; i < rows; ++i) rigid[i] = carried[static_cast<std::size_t>(i / 3)][static_cast<int>(i % 3)];
   const Vector d = velocity_.head(rows) - rigid;
-  const double share = passive_share(tissue_, carried, d, handle_ ? tets_.free_count : tissue_.moving(), T);
+  const double share = passive_share(tissue_, carried, d / (quasi_static() ? stage_ : 1.0),
+                                     handle_ ? tets_.free_count : tissue_.moving(), quasi_static() ? stage_ * T : T);
   shortened_ = share < 1.0;
   if (shortened_) velocity_.head(rows) = rigid + share * d;
 }
 
 void SoftBodyState::advance(double T) {
   shortened_ = false;
+  if (staged()) return advance_stages(T);
   if (tissue_.large_strain() && solvable_ && velocity_.allFinite()) keep_passive(T);
   std::vector<dvec3>&x = tissue_.position(), &v = tissue_.velocity();
   for (std::uint32_t i = 0; i < tissue_.moving(); ++i) {
@@ -323,6 +333,7 @@ void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index cont
     for (const PushedSide& side : sides)
       handle_rows(*side.point, *side.axes, side.sign, moved.middleRows<3>(3 * side.contact));
   out.lever = handle_ ? solver_.lever(moved) : moved;
+  out.held *= response_;
 }
 
 bool SoftBodyState::respond_at(std::span<const Eigen::Index> rows, Rows& out) const {

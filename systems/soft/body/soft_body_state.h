@@ -9,6 +9,7 @@
 #include "systems/soft/body/handle_tie.h"
 #include "systems/soft/body/schur.h"
 #include "systems/soft/body/tool_body.h"
+#include "systems/soft/body/two_stages.h"
 #include "systems/soft/fem/tissue.h"
 
 namespace pliant {
@@ -33,7 +34,10 @@ class SoftBodyState final : public ToolBody {
   void push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const override;
   void gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
               Eigen::Ref<Rows> out) const override;
-  void solve(Rows& columns) const override { solver_.solve(columns); }
+  void solve(Rows& columns) const override {
+    solver_.solve(columns);
+    columns *= response_;
+  }
   void respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const override;
   // Of the last respond(), out (size() rows) = A^-1 J^T at some of its rows (three a contact; kNoRow: zero), with the
   // handle fixed. False: not kept; solve_held() is needed.
@@ -45,6 +49,12 @@ class SoftBodyState final : public ToolBody {
   void advance(double T) override;
   void weigh(const Rows& x, Rows& out) const override;
   RayleighDamping damping() const override { return damping_; }
+  bool staged() const override { return stages_ && solvable_ && !taken_out; }
+  void first_stage() override;
+  void second_stage() override;
+  StepSplit split(double T) const override;
+  Vector ending_velocity() const override { return staged() ? stages_->ending(velocity_) : velocity_; }
+  Vector force_lag() const override { return staged() ? stages_->force_lag(velocity_) : Body::force_lag(); }
   Vector starting_velocity() const override;
   void halt() override;
   void set_material(const TissueMaterial& material) override;
@@ -89,12 +99,19 @@ class SoftBodyState final : public ToolBody {
   void separate_tissue(double T);
   std::vector<dvec3> carried_motion() const;  // [m/s] per node
   void keep_passive(double T);                // passive_step.h
+  void choose_step(StepMethod method);
+  bool quasi_static() const { return stage_ > 1.0; }
+  void note_free_motion();  // after a change of velocity() before contacts
+  void advance_stages(double T);
   void refresh_surface(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_surface) const;
 
   const TetMesh& tets_;
   RayleighDamping damping_;
   Tissue tissue_;
   std::optional<HandleTie> tie_;
+  std::optional<TwoStages> stages_;
+  double stage_ = 1.0;     // [1] of the step: the length that its matrix is of
+  double response_ = 1.0;  // [1] motion by an impulse of the step, of A^-1
   CoupledSolver solver_;
   mutable BlockColumns pushed_;  // of the last respond(): columns that were solved for
   mutable Rows expand_;          // contacts' rows x those columns; empty: they are the contacts'

@@ -130,6 +130,53 @@ void keep_strain(double T, const Delassus& delassus, const ContactProblem& probl
   }
 }
 
+// u without impulses, from the bodies' surface_velocity.
+void find_bias(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts, double T,
+               double beta, const Delassus& delassus, ContactProblem& problem) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ContactPoint& c = contacts[i];
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
+    const dvec3 u = free_velocity(*bodies[c.body_a], c.a) - free_velocity(*bodies[c.body_b], c.b);
+    for (int k = 0; k < 3; ++k) problem.bias[row + k] = dot(c.axes[k], u);
+    problem.bias[row] += (c.gap + still_inside(c, i, beta, delassus) + offset_of(bodies, c)) / T;
+    for (int k = 1; k < 3; ++k) problem.bias[row + k] -= dot(c.axes[k], c.strained) / T;
+  }
+}
+
+// Corrects one body by impulses.
+void apply_to(std::uint32_t b, const std::vector<std::unique_ptr<Body>>& bodies, const Delassus& delassus,
+              const std::vector<ContactPoint>& contacts, const Vector& impulses) {
+  Body& body = *bodies[b];
+  if (body.size() == 0) return;
+  Rows dv = Rows::Zero(body.size(), 1);
+  for (const int i : delassus.of[b].contacts) {
+    const ContactPoint& c = contacts[static_cast<std::size_t>(i)];
+    const double* const l = &impulses[3 * static_cast<Eigen::Index>(i)];
+    const dvec3 impulse = c.axes * dvec3(l[0], l[1], l[2]);
+    if (c.body_a == b) body.push(c.a, impulse, dv, 0);
+    if (c.body_b == b) body.push(c.b, -impulse, dv, 0);
+  }
+  if (!delassus.of[b].contacts.empty()) body.solve(dv);
+  body.correct(dv);
+}
+
+// Contacts for the first stage of the bodies that have one (two_stages.h); then the problem is that of the whole step.
+void pass_first_stage(const std::vector<std::unique_ptr<Body>>& bodies, double T, double beta,
+                      const SweepLimits& limits, const Delassus& delassus, const std::vector<ContactPoint>& contacts,
+                      ContactProblem& problem) {
+  bool any = false, touched = false;
+  for (std::uint32_t b = 0; b < bodies.size(); ++b)
+    if (bodies[b]->staged()) any = true, touched |= !delassus.of[b].contacts.empty();
+  if (!any) return;
+  if (touched) solve(problem, limits);
+  for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b]->staged()) continue;
+    if (!delassus.of[b].contacts.empty()) apply_to(b, bodies, delassus, contacts, problem.impulse);
+    bodies[b]->second_stage();
+  }
+  find_bias(bodies, contacts, T, beta, delassus, problem);
+}
+
 // Updates the contacts' laws to their predicted normals and gaps. An end gap was predicted with the velocities of the
 // current solution, and changes with a new one.
 void look_again(const std::vector<ContactPoint>& contacts, double T, double beta, const Delassus& delassus,
@@ -155,6 +202,8 @@ void look_again(const std::vector<ContactPoint>& contacts, double T, double beta
 
 void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
                    double T, double beta, Delassus& delassus, ContactProblem& problem) {
+  for (const std::unique_ptr<Body>& body : bodies)
+    if (body->staged()) body->first_stage();
   problem.resize_vectors(static_cast<int>(contacts.size()));
   delassus.of.resize(bodies.size());
   sort_by_body(contacts, delassus.of);
@@ -170,16 +219,10 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
   find_compliances(bodies, contacts, T, delassus);
   fill_operator(bodies, contacts, delassus, problem);
 
+  find_bias(bodies, contacts, T, beta, delassus, problem);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactPoint& c = contacts[i];
-    const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
-    const dvec3 u = free_velocity(*bodies[c.body_a], c.a) - free_velocity(*bodies[c.body_b], c.b);
-    for (int k = 0; k < 3; ++k) {
-      problem.bias[row + k] = dot(c.axes[k], u);
-      problem.impulse[row + k] = c.impulse[k];
-    }
-    problem.bias[row] += (c.gap + still_inside(c, i, beta, delassus) + offset_of(bodies, c)) / T;
-    for (int k = 1; k < 3; ++k) problem.bias[row + k] -= dot(c.axes[k], c.strained) / T;
+    for (int k = 0; k < 3; ++k) problem.impulse[3 * static_cast<Eigen::Index>(i) + k] = c.impulse[k];
     problem.mu_static[i] = c.mu_static;
     problem.mu_sliding[i] = c.mu_sliding;
     problem.sliding[i] = c.sliding;
@@ -188,20 +231,7 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
 
 void apply_impulses(const std::vector<std::unique_ptr<Body>>& bodies, const Delassus& delassus,
                     const std::vector<ContactPoint>& contacts, const Vector& impulses) {
-  Rows dv;
-  for (std::uint32_t b = 0; b < bodies.size(); ++b) {
-    if (bodies[b]->size() == 0) continue;
-    dv.setZero(bodies[b]->size(), 1);
-    for (const int i : delassus.of[b].contacts) {
-      const ContactPoint& c = contacts[static_cast<std::size_t>(i)];
-      const double* const l = &impulses[3 * static_cast<Eigen::Index>(i)];
-      const dvec3 impulse = c.axes * dvec3(l[0], l[1], l[2]);
-      if (c.body_a == b) bodies[b]->push(c.a, impulse, dv, 0);
-      if (c.body_b == b) bodies[b]->push(c.b, -impulse, dv, 0);
-    }
-    if (!delassus.of[b].contacts.empty()) bodies[b]->solve(dv);
-    bodies[b]->correct(dv);
-  }
+  for (std::uint32_t b = 0; b < bodies.size(); ++b) apply_to(b, bodies, delassus, contacts, impulses);
 }
 
 void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& contacts) {
@@ -215,6 +245,7 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
                             double beta, const SweepLimits& limits, Delassus& delassus,
                             std::vector<ContactPoint>& contacts, ContactProblem& problem, Crossings* left) {
   problem.own.clear();
+  pass_first_stage(bodies, T, beta, limits, delassus, contacts, problem);
   SweepReport report = solve(problem, limits);
   apply_impulses(bodies, delassus, contacts, problem.impulse);
   for (int round = 0;; ++round) {
@@ -231,8 +262,11 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
     Vector applied = Vector::Zero(3 * static_cast<Eigen::Index>(contacts.size()));
     applied.head(3 * static_cast<Eigen::Index>(known)) = problem.impulse.head(3 * static_cast<Eigen::Index>(known));
     build_problem(bodies, contacts, T, beta, delassus, problem);
+    pass_first_stage(bodies, T, beta, limits, delassus, contacts, problem);
     report = solve(problem, limits);
-    apply_impulses(bodies, delassus, contacts, problem.impulse.head(applied.size()) - applied);
+    const Vector whole = problem.impulse.head(applied.size()), more = whole - applied;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b)  // a staged body has begun anew
+      apply_to(b, bodies, delassus, contacts, bodies[b]->staged() ? whole : more);
   }
   if (proximity.look_again(bodies, T, contacts)) {
     const Vector first = problem.impulse;

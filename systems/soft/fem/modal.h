@@ -21,12 +21,14 @@ struct RayleighDamping {
   double beta = 0.0;   // [s] of K
 };
 
-// Split of A into inertia and elasticity.
+// Split of A into inertia and elasticity, as the body's integrator weighs them (Body::split).
 struct StepSplit {
   double T = 0.0;  // [s]
   RayleighDamping damping;
-  double inertia() const { return 1.0 + damping.alpha * T; }   // A = inertia M + elastic K
-  double elastic() const { return T * T + damping.beta * T; }  // [s2]
+  double of_mass = 1.0, of_stiffness = 1.0;                                   // [1] of implicit Euler
+  double inertia() const { return of_mass + damping.alpha * T; }              // A = inertia M + elastic K
+  double elastic() const { return of_stiffness * T * T + damping.beta * T; }  // [s2]
+  bool massless() const { return of_mass < 0.01; }
 };
 
 // Pivoted factor: significant columns of a positive semidefinite G, in order, at most `most`. Each has a diagonal of
