@@ -143,6 +143,38 @@ Key vector(std::string name, std::string unit, Ranges ranges, Access access, std
   return out;
 }
 
+// A list of items with keys of their own, all of which but `always` are left out where they are as usual. `list`
+// accesses it in its LevelNode.
+template <class Item, class Access>
+Key item_list(std::string name, std::string doc, std::vector<Key> keys, std::string always, Access list) {
+  Key out;
+  out.name = std::move(name);
+  out.type = KeyType::kItems;
+  out.doc = std::move(doc);
+  static const Item usual;
+  out.usual_item = &usual;
+  out.items = std::move(keys);
+  out.get = [list, always = std::move(always), items = out.items](const void* owner) {
+    Json all = Json::array();
+    for (const Item& item : list(const_cast<void*>(owner))) {
+      Json written = Json::object();
+      for (const Key& key : items)
+        if (Json value = key.get(&item); key.name == always || !(value == key.get(&usual))) written[key.name] = value;
+      all.push_back(std::move(written));
+    }
+    return all;
+  };
+  out.set = [list, items = out.items](void* owner, const Json& value) {
+    std::vector<Item> all(value.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (const Key& key : items)
+        if (value[i].contains(key.name)) key.set(&all[i], value[i][key.name]);
+    auto& to = list(owner);
+    to = std::remove_reference_t<decltype(to)>(std::move(all));
+  };
+  return out;
+}
+
 // Keys of an item of `layers`; their owner is a Layer.
 std::vector<Key> layer_keys() {
   using R = DeformableRange;
@@ -168,38 +200,6 @@ std::vector<Key> layer_keys() {
   return keys;
 }
 
-Key layers_key() {
-  Key out;
-  out.name = "layers";
-  out.type = KeyType::kItems;
-  out.doc = fmt::format(
-      "layers that a probe breaks through, from the surface down, at most {}; below the last one is the law of "
-      "`stiffness`",
-      kMostLayers);
-  static const Layer usual;
-  out.usual_item = &usual;
-  out.items = layer_keys();
-  out.get = [items = out.items](const void* owner) {
-    Json list = Json::array();
-    for (const Layer& layer : static_cast<const LevelNode*>(owner)->deformable->layers) {
-      Json item = Json::object();
-      for (const Key& key : items)
-        if (Json value = key.get(&layer); !(value == key.get(&usual)) || key.name == "thickness")
-          item[key.name] = value;
-      list.push_back(std::move(item));
-    }
-    return list;
-  };
-  out.set = [items = out.items](void* owner, const Json& value) {
-    std::vector<Layer> layers(value.size());
-    for (std::size_t i = 0; i < layers.size(); ++i)
-      for (const Key& key : items)
-        if (value[i].contains(key.name)) key.set(&layers[i], value[i][key.name]);
-    static_cast<LevelNode*>(owner)->deformable->layers = Layers(std::move(layers));
-  };
-  return out;
-}
-
 // Keys of an item of `materials`; their owner is a TissuePart.
 std::vector<Key> tissue_part_keys() {
   const auto p = [](auto member) {
@@ -218,36 +218,6 @@ std::vector<Key> tissue_part_keys() {
   keys.push_back(number("damping", "1", {{0.0, 1e6}, {0.1, 100.0}}, p(&TissuePart::damping),
                         "factor on the body's `rayleigh` beta"));
   return keys;
-}
-
-Key materials_key() {
-  Key out;
-  out.name = "materials";
-  out.type = KeyType::kItems;
-  out.doc =
-      "parts of the tissue with a material of their own (a lump, a group of the file); where two overlap the later "
-      "one counts";
-  static const TissuePart usual;
-  out.usual_item = &usual;
-  out.items = tissue_part_keys();
-  out.get = [items = out.items](const void* owner) {
-    Json list = Json::array();
-    for (const TissuePart& part : static_cast<const LevelNode*>(owner)->soft_body->materials) {
-      Json item = Json::object();
-      for (const Key& key : items)
-        if (Json value = key.get(&part); !(value == key.get(&usual)) || key.name == "name") item[key.name] = value;
-      list.push_back(std::move(item));
-    }
-    return list;
-  };
-  out.set = [items = out.items](void* owner, const Json& value) {
-    std::vector<TissuePart> parts(value.size());
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      for (const Key& key : items)
-        if (value[i].contains(key.name)) key.set(&parts[i], value[i][key.name]);
-    static_cast<LevelNode*>(owner)->soft_body->materials = std::move(parts);
-  };
-  return out;
 }
 
 std::vector<Key> deformable_keys() {
@@ -354,7 +324,13 @@ std::vector<Key> deformable_keys() {
   keys.push_back(number("relief", "1", {R::kRelief, {0.01, 2.0}}, d(&D::relief),
                         "share of the materials' drawn relief (normal and height maps) that is felt: 1 as drawn, 0 "
                         "none"));
-  keys.push_back(layers_key());
+  keys.push_back(item_list<Layer>(
+      "layers",
+      fmt::format(
+          "layers that a probe breaks through, from the surface down, at most {}; below the last one is the law "
+          "of `stiffness`",
+          kMostLayers),
+      layer_keys(), "thickness", d(&D::layers)));
   keys.push_back(number("hole_radius", "m", {R::kHoleRadius, {1e-4, 0.05}}, d(&D::hole_radius),
                         "of the hole that a probe leaves in `layers`, at least the probe's"));
   keys.push_back(number("yield.force", "N", {R::kYieldForce, {0.05, 20.0}}, d(&D::yield_force),
@@ -566,7 +542,11 @@ std::vector<Key> soft_body_keys() {
              "`split`, the lattice with its force smeared and an analytic dent in series"));
   keys.push_back(vector("velocity", "m/s", {kVelocityRange, {-10.0, 10.0}}, s(&S::velocity),
                         "at the beginning, in the world; not of a tool; one number points down (-Y)"));
-  keys.push_back(materials_key());
+  keys.push_back(item_list<TissuePart>(
+      "materials",
+      "parts of the tissue with a material of their own (a lump, a group of the file); where two overlap the later one "
+      "counts",
+      tissue_part_keys(), "name", s(&S::materials)));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, s(&S::error),
                         "error budget: takes the cheapest unstated cell, soft step, solver and, of a tool, force whose "
                         "measured error is within it; 0: none"));
