@@ -3,17 +3,9 @@
 #include <fmt/format.h>
 
 #include "components/effect.h"
-#include "components/world.h"
+#include "components/name_of.h"
 
 namespace pliant {
-namespace {
-
-std::string name_of(const World& world, Entity entity) {
-  const Name* const name = world.registry.find<Name>(entity);
-  return name ? name->value : std::string();
-}
-
-}  // namespace
 
 const char* word_of(FeltKind kind) {
   switch (kind) {

@@ -24,7 +24,7 @@ Json schema_of(const Key& key, const Json& standard) {
   if (!key.alias && !standard.is_null() && standard != Json("")) out["default"] = standard;
   switch (key.type) {
     case KeyType::kNumber:
-      out["type"] = "number";
+      out["type"] = key.whole ? "integer" : "number";
       bound(out);
       break;
     case KeyType::kNumberOrMaterial: {

@@ -201,6 +201,10 @@ std::optional<Note> law_fault(const LevelNode& node) {
   if ((body.prony.count > 0 || body.fibres.young > 0.0) && body.contact == SoftContact::kSplit)
     return Note{"has `prony` or `fibres`, and the analytic dent of `contact` `split` neither relaxes nor has fibres",
                 "take `contact` `lattice`", "level.not_with_split", node.name};
+  if (body.integrator != StepMethod::kEuler &&
+      (body.prony.count > 0 || body.fibres.young > 0.0 || !body.cavities.empty()))
+    return Note{"has `prony`, `fibres` or `cavities`, which only the step of `integrator` `euler` takes",
+                "leave out `integrator`", "level.not_with_integrator", node.name};
   return std::nullopt;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "components/name_of.h"
 #include "components/soft_body.h"
 #include "content/level/probe_damage.h"
 #include "engine/choice/model_choice.h"
@@ -24,11 +25,6 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kMostEdits = 1024;  // capacity
-
-std::string name_of(const World& world, Entity entity) {
-  const Name* name = world.registry.find<Name>(entity);
-  return name ? name->value : std::string();
-}
 
 // A Session identifies things by name: names must be unique and not empty.
 Status check_names(const std::vector<std::string>& names, const char* what) {

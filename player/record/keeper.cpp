@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "components/name_of.h"
 #include "engine/run/limits.h"
 #include "lab/files/csv.h"
 #include "player/record/plot.h"
@@ -18,11 +19,6 @@ namespace {
 constexpr const char* kColumns =
     "tick,time_s,probe,x,y,z,in_contact,object,depth_m,height_m,nx,ny,nz,fx,fy,fz,fn,ft,objects";
 constexpr const char* kTorqueColumns = ",tx,ty,tz";  // only if a hand can have torque
-
-std::string name_of(const World& world, Entity entity) {
-  const Name* name = world.registry.find<Name>(entity);
-  return name ? name->value : std::string();
-}
 
 }  // namespace
 

@@ -49,6 +49,9 @@ TEST(TissueKeys, WhatExcludesEachOtherIsAFault) {
   EXPECT_EQ(fault(R"({"prony": [{"share": 0.3}], "elements": "hexahedra"})"), "");
   EXPECT_EQ(fault(R"({"prony": [{"share": 0.3}], "contact": "split"})"), "level.not_with_split");
   EXPECT_EQ(fault(R"({"fibres": {"young": 1000}, "contact": "split"})"), "level.not_with_split");
+  EXPECT_EQ(fault(R"({"prony": [{"share": 0.3}], "integrator": "second_order"})"), "level.not_with_integrator");
+  EXPECT_EQ(fault(R"({"cavities": [{"name": "", "pressure": 100}], "integrator": "quasi_static"})"),
+            "level.not_with_integrator");
   EXPECT_EQ(fault(R"({"fibres": {"young": 1000}, "elements": "hexahedra"})"), "level.not_of_hexahedra");
   EXPECT_EQ(fault(R"({"cavities": [{"pressure": 1000}], "elements": "hexahedra"})"), "level.not_of_hexahedra");
 }
