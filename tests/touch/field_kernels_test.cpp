@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include "scenes/scenes.h"
@@ -45,6 +47,45 @@ TEST(FieldKernels, TargetsOfAZoneAreThoseOfItsVerticesForEveryShape) {
         }
         EXPECT_LE(height, 1e-6f * source.amplitude) << int(shape) << ' ' << reach << ' ' << parameter;
         EXPECT_LE(normal, 1e-6f * steepest) << int(shape) << ' ' << reach << ' ' << parameter;
+      }
+    }
+  }
+}
+
+TEST(FieldKernels, VerticesBeyondTheReachAreLeftOutWithoutChangingABit) {
+  Stage stage;
+  const Mesh& mesh = stage.mesh(stage.add(scenes::sphere(24, 0.1), {}));
+  const std::vector<ZoneBlocks> blocks = blocks_of(mesh);
+  ASSERT_EQ(blocks.size(), mesh.zone_count());
+  const auto bits = [](const auto& value) {
+    std::array<char, sizeof value> out;
+    std::memcpy(out.data(), &value, sizeof value);
+    return out;
+  };
+  for (const Shape shape : kEveryShape) {
+    for (const float reach : {0.002f, 0.02f, 0.05f, 0.3f}) {
+      FieldSource source;
+      source.center = mesh.position(40) + vec3(1e-4f, 0, 2e-4f);
+      source.normal = mesh.normal(40);
+      source.amplitude = 0.004f;
+      source.inv_reach2 = 1 / (reach * reach);
+      source.shape = shape;
+      source.parameter = row_of(shape).parameter == ShapeParameter::kContactLength ? 0.2f * reach : 0.2f;
+      for (std::uint32_t zone = 0; zone < mesh.zone_count(); ++zone) {
+        ZoneTargets all, some;
+        some.h.fill(7.0f);  // previous content does not matter
+        add_targets(mesh, zone, source, true, all);
+        add_targets(mesh, zone, source, true, some, &blocks[zone]);
+        ASSERT_EQ(bits(all), bits(some)) << int(shape) << ' ' << reach << ' ' << zone;
+        source.center.x += 0.3f * reach;
+        add_targets(mesh, zone, source, false, all);
+        add_targets(mesh, zone, source, false, some, &blocks[zone]);
+        source.center.x -= 0.3f * reach;
+        ASSERT_EQ(bits(all), bits(some)) << int(shape) << ' ' << reach << ' ' << zone;
+        VolumeSums of_all, of_some;
+        add_volume_sums(mesh, zone, source, of_all);
+        add_volume_sums(mesh, zone, source, of_some, &blocks[zone]);
+        ASSERT_EQ(bits(of_all), bits(of_some)) << int(shape) << ' ' << reach << ' ' << zone;
       }
     }
   }

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
+#include "scenes/brute_force.h"
 #include "scenes/touch_laws.h"
 #include "scenes/touch_raw.h"
 #include "systems/touch/collide/foot.h"
@@ -130,6 +132,37 @@ TEST(TouchSurface, ATipPressedThroughAWallTouchesTheNextAndComesBackByTheSameFor
       stage.tick();
       ASSERT_LT(length(raw_force(stage, probe) - down.back().second), 1e-6) << radius << ' ' << down.back().first;
     }
+  }
+}
+
+// Where nothing is near, a tick searches nothing.
+TEST(TouchSurface, NothingOfTheSurfaceIsInTheBallThatIsKnownToBeClear) {
+  for (const double radius : {0.0, 0.004}) {
+    Stage stage;
+    const Entity surface = stage.add(scenes::sphere(12, 0.05), frictionless());
+    const Entity probe = stage.add_probe({0, 0.06, 0}, radius);
+    stage.prepare();
+    const BruteForce brute(stage.mesh(surface));
+    std::mt19937 engine(7);
+    std::normal_distribution<double> step(0.0, 2e-4);
+    dvec3 x(0, 0.06, 0), searched(0);
+    int searches = 0, ticks = 0;
+    for (; ticks < 4000; ++ticks) {
+      x += dvec3(step(engine), step(engine), step(engine));
+      const double far = length(x);
+      x *= std::clamp(far, 0.042, 0.062) / far;
+      stage.place(probe, x);
+      stage.tick();
+      const ClearBall& ball = stage.world.touch->objects[0].clear[0];
+      if (ball.at == searched) continue;
+      searched = ball.at;
+      ++searches;
+      const SurfaceFoot near = brute.closest(ball.at, 0.1);
+      ASSERT_TRUE(near.valid());
+      ASSERT_LE(ball.radius, near.distance()) << radius << ' ' << ticks;
+    }
+    EXPECT_GT(searches, 20) << radius;
+    EXPECT_LT(searches, ticks / 2) << radius;
   }
 }
 

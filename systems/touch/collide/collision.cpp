@@ -32,14 +32,18 @@ TipPlace to_local(const Pose& pose, const TipPlace& place) {
   return {pose.to_local(place.end), glm::conjugate(pose.rotation) * place.axis};
 }
 
-// In the order of objects and their sources.
-void list_tracked(const Registry& registry, TouchState& touch) {
-  touch.tracked.clear();
+// By probe; of one probe in the order of objects and their sources. Mostly they come in that order.
+void list_tracked(TouchState& touch) {
+  std::vector<TrackedContact>& tracked = touch.tracked;
+  tracked.clear();
   for (const std::uint32_t slot : touch.awake) {
     const ObjectState& object = touch.objects[slot];
-    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
-      const SourceState& source = object.sources[i];
-      if (source.tracked) touch.tracked.push_back({registry.get<Contact>(source.contact).probe, source.contact});
+    for (const TrackedTip& tip : object.tips) {
+      const SourceState& source = object.sources[tip.source];
+      if (!source.tracked) continue;
+      auto after = tracked.end();
+      while (after != tracked.begin() && std::prev(after)->probe.index > tip.probe.index) --after;
+      tracked.insert(after, {tip.probe, source.contact});  // capacity: all
     }
   }
 }
@@ -55,9 +59,10 @@ void collision(World& world, Tick tick) {
     const ContactSearch search{world, object, world.meshes[deformable.mesh], world.fields[deformable.field], tick};
     const Pose& pose = registry.get<Pose>(object.entity);
     std::uint32_t followed = 0;
-    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
-      SourceState& source = object.sources[i];
-      if (!source.tracked || source.born == tick.index + 1) continue;  // carried over a seam in this tick
+    std::erase_if(object.tips, [&](const TrackedTip& tip) { return !object.sources[tip.source].tracked; });
+    for (const TrackedTip& tip : object.tips) {
+      SourceState& source = object.sources[tip.source];
+      if (source.born == tick.index + 1) continue;  // carried over a seam in this tick
       Contact& contact = registry.get<Contact>(source.contact);
       const Probe& probe = registry.get<Probe>(contact.probe);
       follow_contact(search, source, contact, to_local(pose, tip_place(probe, source.tip)));
@@ -83,13 +88,13 @@ void collision(World& world, Tick tick) {
         const Deformable& deformable = registry.get<Deformable>(object.entity);
         const ContactSearch search{world, object, world.meshes[deformable.mesh], world.fields[deformable.field], tick};
         find_new_contacts(search, {state.entity, static_cast<std::uint8_t>(t), tip},
-                          object.searched[state.first_tip + t], probe.fresh,
+                          object.searched[state.first_tip + t], object.clear[state.first_tip + t], probe.fresh,
                           to_local(pose_before(registry, object.entity), from),
                           to_local(registry.get<Pose>(object.entity), to));
       });
     }
   }
-  list_tracked(registry, touch);
+  list_tracked(touch);
 }
 
 }  // namespace pliant

@@ -193,11 +193,11 @@ struct SideFeet {
 
 FootBlend contact_place(const ObjectState& object, const Mesh& mesh, const Foot& own, dvec3 x,
                         const FootBlend* before) {
+  if (own.height >= 0 || object.creases.empty()) return place_of(own);
   // A foot over a crack is beside that on its edge.
   const double same = object.closed.empty() ? kSameContact * static_cast<double>(mesh.mean_edge) : crack_of(mesh);
   SideFeet sides{object, mesh, x, same, kBlendRatio * -own.height};
   sides.feet[0] = own;
-  if (own.height >= 0 || object.creases.empty()) return blend_feet(sides.feet, 1);
   const double farthest = sides.farthest;
   std::array<NearCrease, kMostCreases> creases;
   std::size_t near = 0;

@@ -27,6 +27,15 @@ HeightState recovering(const ContactSearch& s, const Foot& foot) {
   return mean;
 }
 
+void list_tip(ObjectState& object, const TrackedTip& tip) {
+  auto at = std::find_if(object.tips.begin(), object.tips.end(),
+                         [&](const TrackedTip& other) { return other.source >= tip.source; });
+  if (at != object.tips.end() && at->source == tip.source)
+    *at = tip;  // the place of one that ended in this tick
+  else
+    object.tips.insert(at, tip);  // capacity: every source
+}
+
 }  // namespace
 
 void put_contact(SourceState& source, Contact& contact, const TipContact& at) {
@@ -55,6 +64,7 @@ void begin_contact(const ContactSearch& s, const ProbeTip& tip, const TipContact
   }
   Contact& contact = s.world.registry.get<Contact>(source->contact);
   source->tracked = true;
+  list_tip(s.object, {tip.probe, tip.index, static_cast<std::uint8_t>(source - s.object.sources.data())});
   source->born = s.tick.index + 1;
   source->tip = tip.tip;
   contact.probe = tip.probe;
@@ -70,14 +80,13 @@ void begin_contact(const ContactSearch& s, const ProbeTip& tip, const TipContact
   source->in = source->place.p;
   HeightState surface = recovering(s, at.place.main());
   // Beside others of its tip the surface does not recover: the tip is on it, and has left that dent itself.
-  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
-    const SourceState& beside = s.object.sources[i];
-    if (!beside.tracked || &beside == source || tip.tip.radius == 0) continue;
-    const Contact& other = s.world.registry.get<Contact>(beside.contact);
-    if (other.probe != tip.probe || other.tip != tip.index || other.height >= 0 || contact.height >= 0) continue;
-    surface = {other.free_height, other.free_velocity};
-    break;
-  }
+  if (tip.tip.radius > 0 && contact.height < 0)
+    any_source_of(s.object, tip.probe, tip.index, [&](const SourceState& beside) {
+      const Contact& other = s.world.registry.get<Contact>(beside.contact);
+      if (&beside == source || other.height >= 0) return false;
+      surface = {other.free_height, other.free_velocity};
+      return true;
+    });
   const double pushed = length(at.x - from), unpushed = -contact.height - pushed;
   contact.free_height = std::min(0.0, surface.height);
   contact.free_velocity = contact.free_height < 0 ? surface.velocity : 0.0;
@@ -124,15 +133,11 @@ Foot follow_foot(const ContactSearch& s, Foot foot, dvec3 from, dvec3 to) {
 
 bool is_known(const ContactSearch& s, const ProbeTip& tip, const Foot& foot) {
   const double same = 1e-3 * static_cast<double>(s.mesh.mean_edge);
-  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
-    const SourceState& source = s.object.sources[i];
-    if (!source.tracked) continue;
-    const Contact& contact = s.world.registry.get<Contact>(source.contact);
-    if (contact.probe != tip.probe || contact.tip != tip.index) continue;
+  return any_source_of(s.object, tip.probe, tip.index, [&](const SourceState& source) {
     for (std::uint32_t f = 0; f < source.place.count; ++f)
       if (length(source.place.foot[f].p - foot.p) < same) return true;
-  }
-  return false;
+    return false;
+  });
 }
 
 }  // namespace pliant

@@ -30,12 +30,10 @@ constexpr double kSameFoot = 1e-6;
 // Depth of the tip's centre behind the deepest of the surfaces that it is pressed through. [m]
 double depth_of_tip(const ContactSearch& s, const SourceState& source, const Contact& contact) {
   double depth = -source.place.height;
-  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
-    const SourceState& other = s.object.sources[i];
-    if (!other.tracked || &other == &source) continue;
-    const Contact& its = s.world.registry.get<Contact>(other.contact);
-    if (its.probe == contact.probe && its.tip == contact.tip) depth = std::max(depth, -other.place.height);
-  }
+  any_source_of(s.object, contact.probe, contact.tip, [&](const SourceState& other) {
+    depth = std::max(depth, -other.place.height);
+    return false;
+  });
   return depth;
 }
 
@@ -90,6 +88,7 @@ bool is_back(const ContactSearch& s, const SourceState& source, const Contact& c
 void slip(const ContactSearch& s, SourceState& source, Contact& contact, dvec3 p, double height) {
   source.held = {s.tick.index + 1, contact.probe, contact.tip, p, source.side, source.tip.radius - height, true,
                  source.in,        source.entered};
+  s.object.slipped = s.tick.index + 1;
   drop_contact(source, contact);
 }
 
@@ -218,19 +217,15 @@ void merge_contacts(const ContactSearch& s) {
   const auto pushed = [&](const SourceState& source) {
     return source.settled ? -s.world.registry.get<Contact>(source.contact).unpushed : -source.tip.radius - same;
   };
-  for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
-    SourceState& first = s.object.sources[i];
-    if (!first.tracked) continue;
-    Contact& a = s.world.registry.get<Contact>(first.contact);
-    for (std::uint32_t j = i + 1; j < s.object.probe_sources && first.tracked; ++j) {
-      SourceState& second = s.object.sources[j];
-      if (!second.tracked) continue;
-      Contact& b = s.world.registry.get<Contact>(second.contact);
-      if (a.probe != b.probe || a.tip != b.tip || !(length(first.place.p - second.place.p) < same)) continue;
-      if (pushed(first) >= pushed(second))
-        drop_contact(second, b);
-      else
-        drop_contact(first, a);
+  const std::vector<TrackedTip>& tips = s.object.tips;
+  for (std::size_t i = 0; i < tips.size(); ++i) {
+    SourceState& first = s.object.sources[tips[i].source];
+    for (std::size_t j = i + 1; j < tips.size() && first.tracked; ++j) {
+      if (tips[i].probe != tips[j].probe || tips[i].tip != tips[j].tip) continue;
+      SourceState& second = s.object.sources[tips[j].source];
+      if (!second.tracked || !(length(first.place.p - second.place.p) < same)) continue;
+      SourceState& drop = pushed(first) >= pushed(second) ? second : first;
+      drop_contact(drop, s.world.registry.get<Contact>(drop.contact));
     }
   }
 }

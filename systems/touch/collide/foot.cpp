@@ -192,8 +192,54 @@ void bound_motion(Foot& foot) {
   for (dvec3& shift : foot.shifts) shift *= kMostMoves / size;
 }
 
-// Completes a foot at the found place. `sides`: sum of the normals of the patches that meet there.
-Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, dvec3 sides) {
+// The corner of its triangle that a place on an edge is at, or -1.
+int corner_at(Place at) {
+  const unsigned on = zeros(at);
+  return (on & (on - 1)) == 0 ? -1 : on == 6 ? 0 : on == 5 ? 1 : 2;
+}
+
+// Calls offer(triangle, place) for the other triangles at a place on an edge or a corner, without crossing an edge that
+// may not be crossed. Returns whether there is one, or a border.
+template <class Crosses, class Offer>
+bool visit_beside(const Mesh& mesh, std::uint32_t triangle, Place at, Crosses crosses, Offer offer) {
+  const int corner = corner_at(at);
+  if (corner < 0) {
+    const unsigned on = zeros(at);
+    const int zero = on == 1 ? 0 : on == 2 ? 1 : 2, edge = (zero + 1) % 3;
+    const std::uint32_t next = mesh.across[triangle][edge];
+    if (next == kBorder || !crosses(triangle, edge)) return true;
+    const double b[3] = {at.w(), at.u, at.v};
+    offer(next, across_edge(mesh, triangle, edge, next, b[(edge + 1) % 3]));
+    return false;
+  }
+  const std::uint32_t vertex = mesh.triangles[triangle][corner];
+  bool at_border = false;
+  around_vertex(mesh, vertex, triangle, crosses, [&](std::uint32_t t) {
+    const int of = corner_of(mesh.triangles[t], vertex);
+    if (t != triangle) offer(t, at_corner(of));
+    for (const int edge : {of, (of + 2) % 3})
+      at_border = at_border || mesh.across[t][edge] == kBorder || !crosses(t, edge);
+  });
+  return at_border;
+}
+
+// Sum of the normals of the patches that meet at a place on an edge or a corner.
+template <class Crosses>
+dvec3 sum_of_sides(const Mesh& mesh, const Local& local, std::uint32_t triangle, Crosses crosses) {
+  const bool at_corner_too = corner_at(local.at) >= 0;
+  const auto side = [&](const CurvedPatch& patch, Place at) {
+    const CurvedPatch::Point point = patch.at(at.u, at.v);
+    return (at_corner_too ? corner_angle(point, corner_at(at)) : 1.0) * patch_normal(point);
+  };
+  dvec3 sides = side(local.patch, local.at);
+  visit_beside(mesh, triangle, local.at, crosses,
+               [&](std::uint32_t t, Place at) { sides += side(curved_patch(mesh, t), at); });
+  return sides;
+}
+
+// Completes a foot at the found place. `sides`: returns the sum of the normals of the patches that meet there.
+template <class Sides>
+Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, Sides sides_of) {
   const auto [u, v] = local.at;
   const CurvedPatch::Point at = local.patch.at(u, v);
   Foot foot;
@@ -224,7 +270,7 @@ Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, dvec3 sides)
     return foot;
   }
   foot.place = (on & (on - 1)) == 0 ? FootPlace::kEdge : FootPlace::kVertex;
-  const dvec3 mean = length(sides) > 0 ? normalize(sides) : patch_normal(at);
+  const dvec3 sides = sides_of(), mean = length(sides) > 0 ? normalize(sides) : patch_normal(at);
   const bool on_surface = far < kOnSurface * scale;
   const double side = dot(r, mean) < 0 ? -1.0 : 1.0;
   foot.normal = on_surface ? mean : side * r / far;
@@ -264,50 +310,22 @@ Foot descend(const Mesh& mesh, std::uint32_t triangle, dvec3 barycentric, dvec3 
             !std::binary_search(closed.begin(), closed.end(), 3 * t + static_cast<std::uint32_t>(edge)));
   };
   Local local = local_minimum(mesh, triangle, from, x);
-  dvec3 sides(0);
   bool at_border = false;
-  for (int patches = 0; patches < kMostPatches; ++patches) {
-    const unsigned on = zeros(local.at);
-    if (on == 0) break;
-    const int corner = (on & (on - 1)) == 0 ? -1 : on == 6 ? 0 : on == 5 ? 1 : 2;
-    const auto side = [&](const CurvedPatch::Point& at, int of) {
-      return (corner < 0 ? 1.0 : corner_angle(at, of)) * patch_normal(at);
-    };
-    sides = side(local.patch.at(local.at.u, local.at.v), corner);
-    at_border = false;
+  for (int patches = 0; patches < kMostPatches && zeros(local.at) != 0; ++patches) {
     Local best = local;
     std::uint32_t best_triangle = triangle;
     const double enough = local.f * (1 - kBetter);
-    const auto offer = [&](std::uint32_t t, Place start, int of = -1) {
+    at_border = visit_beside(mesh, triangle, local.at, crosses, [&](std::uint32_t t, Place start) {
       const Local other = local_minimum(mesh, t, start, x);
-      sides += side(other.patch.at(start.u, start.v), of);
-      if (other.f < enough && other.f < best.f) {
-        best = other;
-        best_triangle = t;
-      }
-    };
-    if (corner < 0) {
-      const int zero = on == 1 ? 0 : on == 2 ? 1 : 2, edge = (zero + 1) % 3;
-      const std::uint32_t next = mesh.across[triangle][edge];
-      at_border = next == kBorder || !crosses(triangle, edge);
-      if (!at_border) {
-        const double b[3] = {local.at.w(), local.at.u, local.at.v};
-        offer(next, across_edge(mesh, triangle, edge, next, b[(edge + 1) % 3]));
-      }
-    } else {
-      const std::uint32_t vertex = mesh.triangles[triangle][corner];
-      around_vertex(mesh, vertex, triangle, crosses, [&](std::uint32_t t) {
-        const int of = corner_of(mesh.triangles[t], vertex);
-        if (t != triangle) offer(t, at_corner(of), of);
-        for (const int edge : {corner_of(mesh.triangles[t], vertex), (corner_of(mesh.triangles[t], vertex) + 2) % 3})
-          at_border = at_border || mesh.across[t][edge] == kBorder || !crosses(t, edge);
-      });
-    }
+      if (!(other.f < enough && other.f < best.f)) return;
+      best = other;
+      best_triangle = t;
+    });
     if (best_triangle == triangle) break;
     local = best;
     triangle = best_triangle;
   }
-  Foot foot = make_foot(local, triangle, x, sides);
+  Foot foot = make_foot(local, triangle, x, [&] { return sum_of_sides(mesh, local, triangle, crosses); });
   foot.at_border = foot.place != FootPlace::kInside && at_border;
   return foot;
 }

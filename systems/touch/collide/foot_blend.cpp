@@ -101,7 +101,9 @@ BlendRow weights_of(const BlendSides& sides, double D) {
   return best;
 }
 
-FootBlend alone(const Foot& foot) {
+}  // namespace
+
+FootBlend place_of(const Foot& foot) {
   FootBlend blend;
   blend.count = 1;
   blend.foot[0] = foot;
@@ -114,11 +116,9 @@ FootBlend alone(const Foot& foot) {
   return blend;
 }
 
-}  // namespace
-
 FootBlend blend_feet(const std::array<Foot, kMostFeet>& feet, std::uint32_t count,
                      const std::array<Facing, kMostFeet>& facing) {
-  if (count <= 1 || feet[0].height >= 0) return alone(feet[0]);
+  if (count <= 1 || feet[0].height >= 0) return place_of(feet[0]);
   const double D = std::log(kBlendRatio);
   BlendSides sides;
   sides.count = count;
@@ -145,7 +145,7 @@ FootBlend blend_feet(const std::array<Foot, kMostFeet>& feet, std::uint32_t coun
     blend.weight[blend.count] = weights[i];
     blend.foot[blend.count++] = feet[i];
   }
-  if (on == 1u) return alone(feet[0]);
+  if (on == 1u) return place_of(feet[0]);
   // sum_j w_j dK_ij, and the weights' slopes: K dw = dc - d ln s / D - dK w, sum dw = 0.
   std::array<dvec3, kMostFeet> turned{}, by{}, ones{};
   for (std::uint32_t i = 0; i < blend.count; ++i) {

@@ -10,6 +10,7 @@
 // each other, count as one, and the depth is continuous where they merge.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -35,7 +36,27 @@ struct FootBlend {
   dmat3 turns{0.0};       // [1/m] dn/dx
 
   const Foot& main() const { return foot[0]; }
+
+  FootBlend() = default;
+  FootBlend(const FootBlend& other) noexcept { *this = other; }
+  // Without the feet that are not there: mostly there is one.
+  FootBlend& operator=(const FootBlend& other) noexcept {
+    count = other.count;
+    std::copy_n(other.foot.begin(), std::max(count, 1u), foot.begin());
+    weight = other.weight;
+    weight_slope = other.weight_slope;
+    height = other.height;
+    gradient = other.gradient;
+    p = other.p;
+    normal = other.normal;
+    moves = other.moves;
+    turns = other.turns;
+    return *this;
+  }
 };
+
+// The place of one foot.
+FootBlend place_of(const Foot& foot);
 
 // A value painted per vertex, at the blended place: value and gradient by x. Nothing painted: value 1, gradient 0.
 struct Painted {

@@ -89,12 +89,8 @@ void find_walls(const ContactSearch& s, const ProbeTip& tip, dvec3 x, double wit
 bool inside_neighbour(const ContactSearch& s, const ProbeTip& tip) {
   if (s.object.seams.empty()) return false;
   const auto behind = [&](const ObjectState& object) {
-    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
-      if (!object.sources[i].tracked || object.sources[i].place.height >= 0) continue;
-      const Contact& contact = s.world.registry.get<Contact>(object.sources[i].contact);
-      if (contact.probe == tip.probe && contact.tip == tip.index) return true;
-    }
-    return false;
+    return any_source_of(object, tip.probe, tip.index,
+                         [](const SourceState& source) { return source.place.height < 0; });
   };
   return behind(s.object) || std::any_of(s.object.joined.begin(), s.object.joined.end(),
                                          [&](std::uint32_t slot) { return behind(s.world.touch->objects[slot]); });
@@ -103,13 +99,8 @@ bool inside_neighbour(const ContactSearch& s, const ProbeTip& tip) {
 // Whether a capsule has a contact with an adjoining surface. It goes over to this one where it gets deeper here.
 bool is_beside(const ContactSearch& s, const ProbeTip& tip) {
   return tip.tip.is_capsule() && std::any_of(s.object.joined.begin(), s.object.joined.end(), [&](std::uint32_t slot) {
-           const ObjectState& object = s.world.touch->objects[slot];
-           for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
-             if (!object.sources[i].tracked) continue;
-             const Contact& contact = s.world.registry.get<Contact>(object.sources[i].contact);
-             if (contact.probe == tip.probe && contact.tip == tip.index) return true;
-           }
-           return false;
+           return any_source_of(s.world.touch->objects[slot], tip.probe, tip.index,
+                                [](const SourceState&) { return true; });
          });
 }
 
@@ -148,15 +139,35 @@ void begin_at(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, co
     begin_contact(s, tip, at, way.from.at(at.axis.along));
 }
 
+// Whether nothing of the surface is within `within` of x. It is searched again once the tip has left the ball that was
+// found clear: mostly the surface is as far as the contact is deep.
+bool is_clear(const ContactSearch& s, const ProbeTip& tip, ClearBall& clear, dvec3 x, double within) {
+  constexpr double kFarther = 16.0;  // [1] of `within`
+  if (length(x - clear.at) + within < clear.radius) return true;
+  std::uint32_t wall = FlatPoint::kNone;
+  const double bulge = static_cast<double>(s.mesh.tree.bulge);
+  if (any_source_of(s.object, tip.probe, tip.index, [&](const SourceState& source) {
+        wall = source.place.main().triangle;
+        return std::abs(source.place.height) < within + bulge;
+      }))
+    return false;
+  const FlatPoint near = closest_flat(s.mesh, x, kFarther * within, wall);
+  clear = {x, near.valid() ? (1 - 1e-9) * std::sqrt(near.distance2) : kFarther * within};
+  return within < clear.radius;
+}
+
 // Begins a contact where the sphere at `along` passed through the surface with its centre.
-void find_entry(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, double along) {
+void find_entry(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, double along, ClearBall& clear) {
   const dvec3 from = way.from.at(along), to = way.to.at(along), d = to - from;
   if (!(dot(d, d) > 0) || inside_neighbour(s, tip)) return;
+  const auto bulge = static_cast<double>(s.mesh.tree.bulge);
+  if (s.object.found.seams.empty() && !tip.tip.is_capsule() &&
+      is_clear(s, tip, clear, from, length(d) + 2 * s.early() + 2.6 * bulge))
+    return;
   const auto enter = [&](const Foot& foot) {
     if (foot.valid() && foot.height < 0 && !beyond_border(s.mesh, foot, to, s.object.closed))
       begin_at(s, tip, way, foot, along);
   };
-  const auto bulge = static_cast<double>(s.mesh.tree.bulge);
   const dvec3 early = s.early() / length(d) * d;
   if (const EntryPlace entry = entry_place(s, tip, from - early, to, early); entry.triangle != Foot::kNone) {
     const Foot foot = s.downhill(entry.triangle, entry.barycentric, dot(entry.x - from, d) > 0 ? entry.x : from);
@@ -237,6 +248,7 @@ void find_near(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, d
 void keep_open(const ContactSearch& s, const ProbeTip& tip, const TipPlace& to) {
   constexpr double kFree = 0.5;  // [1] of the depth at which it slipped
   constexpr double kAway = 4.0;  // [1] sideways, of the depth at which it slipped, or of the depth now
+  if (s.object.slipped < s.tick.index) return;
   for (std::uint32_t i = 0; i < s.object.probe_sources; ++i) {
     SourceState& source = s.object.sources[i];
     HeldFoot& held = source.held;
@@ -247,7 +259,8 @@ void keep_open(const ContactSearch& s, const ProbeTip& tip, const TipPlace& to) 
       return up <= std::max(tip.tip.radius * (1 + kAhead), free) &&
              aside <= kAway * std::clamp(-up, held.depth, kAway * held.depth);
     };
-    if (near(held.p, held.normal, kFree * held.depth) || near(held.in, held.entered, 0.0)) held.tick = s.tick.index + 1;
+    if (near(held.p, held.normal, kFree * held.depth) || near(held.in, held.entered, 0.0))
+      held.tick = s.object.slipped = s.tick.index + 1;
   }
 }
 
@@ -262,7 +275,7 @@ int intervals(const ContactSearch& s, const Tip& tip) {
 
 }  // namespace
 
-void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, TipPlace& searched, bool fresh,
+void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, TipPlace& searched, ClearBall& clear, bool fresh,
                        const TipPlace& from, const TipPlace& to) {
   const double radius = tip.tip.radius, within = radius * (1 + kAhead);
   const double band = within + static_cast<double>(s.mesh.tree.bulge) + 2 * s.early() +
@@ -281,7 +294,8 @@ void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, TipPlace& se
   // A capsule's wall is known before the axis crosses it, unless it is fast.
   const double far = std::max(length(to.end - from.end), length(to.at(1) - from.at(1)));
   if (fresh || !tip.tip.is_capsule() || far > 0.5 * radius)
-    for (int i = 0; i <= count; ++i) fresh ? find_inside(s, tip, way, along(i)) : find_entry(s, tip, way, along(i));
+    for (int i = 0; i <= count; ++i)
+      fresh ? find_inside(s, tip, way, along(i)) : find_entry(s, tip, way, along(i), clear);
   if (fresh || radius == 0 || inside_neighbour(s, tip)) return;
 
   if (std::max(length(to.end - searched.end), length(to.at(1) - searched.at(1))) < 0.5 * kAhead * radius) return;

@@ -143,13 +143,8 @@ namespace {
 bool has_contact(const ContactSearch& s, const ProbeTip& tip, const SideFoot& side) {
   const ObjectState& object = s.world.touch->objects[side.object];
   const double near = crack_of(s.world.meshes[s.world.registry.get<Deformable>(object.entity).mesh]);
-  for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
-    const SourceState& source = object.sources[i];
-    if (!source.tracked || !(length(source.place.p - side.foot.p) < near)) continue;
-    const Contact& contact = s.world.registry.get<Contact>(source.contact);
-    if (contact.probe == tip.probe && contact.tip == tip.index) return true;
-  }
-  return false;
+  return any_source_of(object, tip.probe, tip.index,
+                       [&](const SourceState& source) { return length(source.place.p - side.foot.p) < near; });
 }
 
 }  // namespace

@@ -45,24 +45,32 @@ class Loads {
  public:
   Loads(std::span<LoadedContact> contacts, const ShareKernel& kernel, std::span<const SharedDent> dents)
       : contacts_(contacts), n_(contacts.size()) {
+    const double outer2 = kernel.outer * kernel.outer;
+    std::array<dvec3, kMaxLoaded> p;
     for (std::size_t i = 0; i < n_; ++i) {
       e_[i] = std::sqrt(2 * contacts[i].energy);
+      p[i] = contacts[i].p;
       if (contacts[i].load > 0) pressing_ |= bit(i);
       for (std::size_t j = 0; j < i; ++j) {
-        const dvec3 d = contacts[i].p - contacts[j].p;
-        const double facing = dot(contacts[i].normal, contacts[j].normal);
-        const double a = facing > 0 ? kernel.at(dot(d, d)) * facing : 0.0;
+        const dvec3 d = p[i] - p[j];
+        const double r2 = dot(d, d);
+        double a = 0.0;
+        if (!(r2 >= outer2)) {
+          const double facing = dot(contacts[i].normal, contacts[j].normal);
+          if (facing > 0) a = kernel.at(r2) * facing;
+        }
         A_[i][j] = A_[j][i] = a;
+        if (a != 0.0) couple(i, j);
       }
       A_[i][i] = 1.0;
     }
     for (const SharedDent& dent : dents) {
       const double q = A_[dent.a][dent.b];
       A_[dent.a][dent.b] = A_[dent.b][dent.a] = dent_overlap(dent.part, q).value;
+      couple(dent.a, dent.b);
     }
     for (std::size_t i = 0; i < n_; ++i)
-      for (std::size_t j = 0; j < n_; ++j)
-        if (j != i) even_[i] = std::max(even_[i], kEven * A_[i][j] * A_[i][j]);
+      for_coupled(i, [&](std::size_t j) { even_[i] = std::max(even_[i], kEven * A_[i][j] * A_[i][j]); });
     if (pressing_ == 0) pressing_ = n_ == 64 ? ~std::uint64_t{0} : bit(n_) - 1;
   }
 
@@ -92,14 +100,25 @@ class Loads {
   }
 
   double overlap(std::size_t i, std::size_t j) const { return A_[i][j]; }
+  // The other contacts whose dents overlap with that of i, ascending.
+  template <class Visit>
+  void for_coupled(std::size_t i, Visit visit) const {
+    for (std::uint64_t bits = coupled_[i]; bits; bits &= bits - 1)
+      visit(static_cast<std::size_t>(std::countr_zero(bits)));
+  }
   double strength(std::size_t i) const { return e_[i]; }
 
  private:
   static std::uint64_t bit(std::size_t i) { return std::uint64_t{1} << i; }
 
-  double shortfall(std::size_t i) const {
+  void couple(std::size_t i, std::size_t j) {
+    coupled_[i] |= bit(j);
+    coupled_[j] |= bit(i);
+  }
+
+  double shortfall(std::size_t i) const {  // of one that does not press
     double r = e_[i];
-    for (std::size_t j = 0; j < n_; ++j) r -= A_[i][j] * l_[j];
+    for_coupled(i, [&](std::size_t j) { r -= A_[i][j] * l_[j]; });
     return r;
   }
 
@@ -114,7 +133,7 @@ class Loads {
     std::array<std::size_t, kMaxLoaded> first;  // column of each row's first entry
     for (std::size_t i = 0; i < m; ++i) {
       first[i] = 0;
-      while (first[i] < i && A_[at[i]][at[first[i]]] == 0.0) ++first[i];
+      while (first[i] < i && !(coupled_[at[i]] & bit(at[first[i]]))) ++first[i];
       for (std::size_t j = first[i]; j <= i; ++j) {
         double sum = A_[at[i]][at[j]] + (i == j ? even_[at[i]] : 0.0);
         for (std::size_t k = std::max(first[i], first[j]); k < j; ++k) sum -= L_[i][k] * L_[j][k];
@@ -140,6 +159,7 @@ class Loads {
   std::uint64_t pressing_ = 0;
   std::array<std::array<double, kMaxLoaded>, kMaxLoaded> A_, L_;
   std::array<double, kMaxLoaded> e_, l_{}, even_{};
+  std::array<std::uint64_t, kMaxLoaded> coupled_{};
 };
 
 }  // namespace
@@ -227,9 +247,9 @@ double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel, 
     a.force = a.share * a.pull;
     energy += loads.strength(i) * a.load - 0.5 * a.load * a.load;
     if (!(a.load > 0)) continue;
-    for (std::size_t j = 0; j < contacts.size(); ++j) {
+    loads.for_coupled(i, [&](std::size_t j) {
       const LoadedContact& b = contacts[j];
-      if (j == i || !(b.load > 0) || loads.overlap(i, j) == 0.0) continue;
+      if (!(b.load > 0) || loads.overlap(i, j) == 0.0) return;
       const double facing = dot(a.normal, b.normal);
       const dvec3 d = a.p - b.p;
       const double r2 = dot(d, d), phi = kernel.at(r2);
@@ -238,7 +258,7 @@ double share_load(std::span<LoadedContact> contacts, const ShareKernel& kernel, 
         a.force +=
             a.load * b.load * by_kernel(i, j, phi * facing) *
             (facing * kernel.slope(r2) * (glm::transpose(a.moves) * d) + phi * (glm::transpose(a.turns) * b.normal));
-    }
+    });
   }
   for (SharedDent& dent : dents) {
     LoadedContact &a = contacts[dent.a], &b = contacts[dent.b];

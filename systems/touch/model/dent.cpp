@@ -42,6 +42,11 @@ vec4 source_at(const SourceState& source, const FieldSource& s, const Mesh& mesh
   return target_at(s, mesh.position(v), mesh.normal(v));
 }
 
+float source_height_at(const SourceState& source, const FieldSource& s, const Mesh& mesh, std::uint32_t v) {
+  if (!source.offset.empty()) return target_at_offset(s, source.offset[v], mesh.normal(v)).w;
+  return height_at(s, mesh.position(v), mesh.normal(v));
+}
+
 void fold(SourceState& source, ObjectState& object, World& world, Tick tick) {
   const Deformable& deformable = world.registry.get<Deformable>(object.entity);
   const Mesh& mesh = world.meshes[deformable.mesh];

@@ -19,6 +19,8 @@ void flood(const Mesh& mesh, vec3 center, double reach, std::span<const std::uin
 
 // The target at a vertex if the source had the value `s`. (nx, ny, nz, h)
 vec4 source_at(const SourceState& source, const FieldSource& s, const Mesh& mesh, std::uint32_t vertex);
+// Its h alone.
+float source_height_at(const SourceState& source, const FieldSource& s, const Mesh& mesh, std::uint32_t vertex);
 
 // The source has ended or left the surface: its target becomes residual, which recovers.
 void fold(SourceState& source, ObjectState& object, World& world, Tick tick);

@@ -28,7 +28,7 @@ void gather_targets(const ObjectState& object, const Mesh& mesh, std::uint32_t z
   bool fresh = true;
   for (std::uint64_t bits = object.zone_sources[zone]; bits; bits &= bits - 1) {
     const SourceState& source = object.sources[static_cast<std::size_t>(std::countr_zero(bits))];
-    add_targets(mesh, zone, source.now, source.offset, fresh, targets);
+    add_targets(mesh, zone, source.now, source.offset, fresh, targets, &object.blocks[zone]);
     fresh = false;
   }
   if (fresh) targets = {};

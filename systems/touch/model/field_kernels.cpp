@@ -12,24 +12,33 @@
 namespace pliant {
 namespace {
 
-// A radial shape depends on u alone; target and gradient follow in the same way for all of them. kFresh: overwrites
-// `out`.
+constexpr std::uint32_t kLanes = kBlockSize;
+
+// A radial shape depends on u alone; target and gradient follow alike for all. kFresh: overwrites `out`.
 template <bool kFresh, class View, class Profile>
 inline __attribute__((always_inline)) void add_radial(const View view, const FieldSource& s, ZoneTargets& out,
                                                       Profile profile) {
   const float inv = s.inv_reach2, alpha = s.amplitude;
-  for (std::uint32_t i = 0; i < kZoneSize; ++i) {
-    const float dx = view.dx(i), dy = view.dy(i), dz = view.dz(i);
-    float u = (dx * dx + dy * dy + dz * dz) * inv;
-    u = u < 1.0f ? u : 1.0f;
-    const vec2 f = profile(u);
-    const float a = alpha * view.facing(i);
-    const float g = 2.0f * inv * a * f.y;
-    const float along = dx * view.nx[i] + dy * view.ny[i] + dz * view.nz[i];
-    out.h[i] = (kFresh ? 0.0f : out.h[i]) - a * f.x;
-    out.nx[i] = (kFresh ? 0.0f : out.nx[i]) + g * (dx - along * view.nx[i]);
-    out.ny[i] = (kFresh ? 0.0f : out.ny[i]) + g * (dy - along * view.ny[i]);
-    out.nz[i] = (kFresh ? 0.0f : out.nz[i]) + g * (dz - along * view.nz[i]);
+  const BlocksWithin blocks = blocks_within(view.blocks, s);
+  for (std::uint32_t v = 0; v < kZoneSize; v += kLanes) {
+    if (!blocks.within[v / kLanes]) {
+      for (float* const lanes : {&out.nx[v], &out.ny[v], &out.nz[v], &out.h[v]})
+        if (kFresh) std::fill_n(lanes, kLanes, 0.0f);
+      continue;
+    }
+    for (std::uint32_t i = v; i < v + kLanes; ++i) {
+      const float dx = view.dx(i), dy = view.dy(i), dz = view.dz(i);
+      float u = (dx * dx + dy * dy + dz * dz) * inv;
+      u = u < 1.0f ? u : 1.0f;
+      const vec2 f = profile(u);
+      const float a = alpha * view.facing(i);
+      const float g = 2.0f * inv * a * f.y;
+      const float along = dx * view.nx[i] + dy * view.ny[i] + dz * view.nz[i];
+      out.h[i] = (kFresh ? 0.0f : out.h[i]) - a * f.x;
+      out.nx[i] = (kFresh ? 0.0f : out.nx[i]) + g * (dx - along * view.nx[i]);
+      out.ny[i] = (kFresh ? 0.0f : out.ny[i]) + g * (dy - along * view.ny[i]);
+      out.nz[i] = (kFresh ? 0.0f : out.nz[i]) + g * (dz - along * view.nz[i]);
+    }
   }
 }
 template <class View, class Profile>
@@ -85,8 +94,6 @@ void add_registered(const ShapeFunction& shape, const View& view, const FieldSou
   radial(view, s, fresh, out, [&](float u) { return profile_of(shape, u); });
 }
 
-constexpr std::uint32_t kLanes = 8;
-
 // Sums of a whole zone are accumulated in lanes, so that the order of additions is the same on every machine.
 inline __attribute__((always_inline)) double sum_lanes(const float (&lanes)[kLanes]) {
   double total = 0;
@@ -102,7 +109,9 @@ inline __attribute__((always_inline)) void sum_volume(const View view, const Mes
   const float mx = s.normal.x, my = s.normal.y, mz = s.normal.z, inv = s.inv_reach2;
   float S0[kLanes] = {}, S1[kLanes] = {}, Q0[kLanes] = {}, Q1[kLanes] = {}, Q2[kLanes] = {}, bend[kLanes] = {},
         spread[kLanes] = {};
+  const BlocksWithin blocks = blocks_within(view.blocks, s);
   for (std::uint32_t v = 0; v < kZoneSize; v += kLanes) {
+    if (!blocks.within[v / kLanes]) continue;
     for (std::uint32_t l = 0; l < kLanes; ++l) {
       const std::uint32_t i = v + l;
       const float dx = view.dx(i), dy = view.dy(i), dz = view.dz(i);
@@ -131,8 +140,9 @@ inline __attribute__((always_inline)) void sum_volume(const View view, const Mes
   sums.spread += sum_lanes(spread);
 }
 
-PLIANT_KERNEL void sum_volume_of_chords(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, VolumeSums& sums) {
-  sum_volume(ChordsOfZone(mesh, begin, s), mesh, begin, s, sums);
+PLIANT_KERNEL void sum_volume_of_chords(const Mesh& mesh, std::uint32_t begin, const FieldSource& s,
+                                        const ZoneBlocks* blocks, VolumeSums& sums) {
+  sum_volume(ChordsOfZone(mesh, begin, s, blocks), mesh, begin, s, sums);
 }
 PLIANT_KERNEL void sum_volume_along(const Mesh& mesh, std::uint32_t begin, const FieldSource& s, const Offsets& offset,
                                     VolumeSums& sums) {
@@ -223,9 +233,7 @@ PLIANT_KERNEL void interleave(const ZoneTargets& t, float* __restrict stream) {
   }
 }
 
-}  // namespace
-
-vec4 target_at(const FieldSource& source, vec3 position, vec3 normal) {
+inline __attribute__((always_inline)) vec4 target_of(const FieldSource& source, vec3 position, vec3 normal) {
   if (const ShapeFunction* own = registered_shape(source.shape)) {
     const vec3 d = position - source.center;
     const float u = std::min(glm::dot(d, d) * source.inv_reach2, 1.0f);
@@ -235,14 +243,39 @@ vec4 target_at(const FieldSource& source, vec3 position, vec3 normal) {
   return shared::field_target(place, push, vec4(source.parameter, float(source.shape), 0, 0), position, normal);
 }
 
+}  // namespace
+
+std::vector<ZoneBlocks> blocks_of(const Mesh& mesh) {
+  std::vector<ZoneBlocks> out(mesh.zone_count());
+  for (std::uint32_t v = 0; v < mesh.zone_count() * kZoneSize; v += kBlockSize) {
+    vec3 center(0);
+    for (std::uint32_t i = v; i < v + kBlockSize; ++i) center += mesh.position(i) / float(kBlockSize);
+    ZoneBlocks& zone = out[v / kZoneSize];
+    const std::uint32_t at = v % kZoneSize / kBlockSize;
+    zone.x[at] = center.x, zone.y[at] = center.y, zone.z[at] = center.z;
+    for (std::uint32_t i = v; i < v + kBlockSize; ++i)
+      zone.radius[at] = std::max(zone.radius[at], 1.0001f * length(mesh.position(i) - center));
+  }
+  return out;
+}
+
+vec4 target_at(const FieldSource& source, vec3 position, vec3 normal) {
+  return target_of(source, position, normal);
+}
+
+float height_at(const FieldSource& source, vec3 position, vec3 normal) {
+  return target_of(source, position, normal).w;
+}
+
 float share_at(const FieldSource& source, vec3 position, vec3 normal) {
   FieldSource unit = source;
   unit.amplitude = 1.0f;
-  return -target_at(unit, position, normal).w;
+  return -height_at(unit, position, normal);
 }
 
-void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets) {
-  const ChordsOfZone view(mesh, mesh.zone_begin(zone), source);
+void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets,
+                 const ZoneBlocks* blocks) {
+  const ChordsOfZone view(mesh, mesh.zone_begin(zone), source, blocks);
   if (const ShapeFunction* own = registered_shape(source.shape))
     return add_registered(*own, view, source, fresh, targets);
   int place = 0;
@@ -254,8 +287,8 @@ void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source
 }
 
 void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Offsets& offset, bool fresh,
-                 ZoneTargets& targets) {
-  if (offset.empty()) return add_targets(mesh, zone, source, fresh, targets);
+                 ZoneTargets& targets, const ZoneBlocks* blocks) {
+  if (offset.empty()) return add_targets(mesh, zone, source, fresh, targets, blocks);
   const OffsetsOfZone view(mesh, mesh.zone_begin(zone), offset);
   if (const ShapeFunction* own = registered_shape(source.shape))
     return add_registered(*own, view, source, fresh, targets);
@@ -267,13 +300,14 @@ void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source
   UNREACHABLE();
 }
 
-void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums) {
-  sum_volume_of_chords(mesh, mesh.zone_begin(zone), source, sums);
+void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums,
+                     const ZoneBlocks* blocks) {
+  sum_volume_of_chords(mesh, mesh.zone_begin(zone), source, blocks, sums);
 }
 
 void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Offsets& offset,
-                     VolumeSums& sums) {
-  if (offset.empty()) return add_volume_sums(mesh, zone, source, sums);
+                     VolumeSums& sums, const ZoneBlocks* blocks) {
+  if (offset.empty()) return add_volume_sums(mesh, zone, source, sums, blocks);
   sum_volume_along(mesh, mesh.zone_begin(zone), source, offset, sums);
 }
 

@@ -44,20 +44,30 @@ struct Offsets {
   }
 };
 
+// Balls around each kBlockSize vertices of a zone, so that those beyond a source's reach need no work.
+inline constexpr std::uint32_t kBlockSize = 8, kZoneBlocks = kZoneSize / kBlockSize;
+struct alignas(32) ZoneBlocks {
+  std::array<float, kZoneBlocks> x{}, y{}, z{}, radius{};  // [m]
+};
+std::vector<ZoneBlocks> blocks_of(const Mesh& mesh);
+
 // Adds the source's target on the zone's vertices; `fresh`: overwrites instead. Offsets, if any, take the chord's
 // place: seen from the vertex, the contact is then in its tangent plane, and the angle between normals is not tested.
-void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets);
+// `blocks`: of the zone; without them every vertex is computed, with the same result.
+void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, bool fresh, ZoneTargets& targets,
+                 const ZoneBlocks* blocks = nullptr);
 void add_targets(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Offsets& offset, bool fresh,
-                 ZoneTargets& targets);
+                 ZoneTargets& targets, const ZoneBlocks* blocks = nullptr);
 
 // Sums over a zone that fix the coefficient c of the volume-preserving shape (force_field.cpp): with w = (1-u)^3 and A
 // the vertex area, S_n = sum A w u^n, Q_n = sum A w^2 u^n, and the ratio bend/spread is the mean curvature H.
 struct VolumeSums {
   double S0 = 0, S1 = 0, Q0 = 0, Q1 = 0, Q2 = 0, bend = 0, spread = 0;
 };
-void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums);
+void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, VolumeSums& sums,
+                     const ZoneBlocks* blocks = nullptr);
 void add_volume_sums(const Mesh& mesh, std::uint32_t zone, const FieldSource& source, const Offsets& offset,
-                     VolumeSums& sums);
+                     VolumeSums& sums, const ZoneBlocks* blocks = nullptr);
 
 // Advances the residual of a zone by its free motion and returns its size: max |h| [m] and max |n| [1], each with its
 // rate over the natural frequency. Chooses the step by the law.

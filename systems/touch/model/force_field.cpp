@@ -103,7 +103,7 @@ void solve(std::span<const Active> active, const Deformable& deformable, const M
         for (int b = 0; b < 3; ++b) {
           const vec3 apart = mesh.position(corner[b]) - unit.all[j].source.center;
           if (unit.all[j].ends && dot(apart, apart) * unit.all[j].source.inv_reach2 >= 1.0f) continue;
-          sum -= contact.barycentric[b] * source_at(*active[j].source, unit.all[j].source, mesh, corner[b]).w;
+          sum -= contact.barycentric[b] * source_height_at(*active[j].source, unit.all[j].source, mesh, corner[b]);
         }
       A[i * n + j] = sum;
     }
@@ -200,7 +200,8 @@ void force_field(World& world, Tick tick) {
                      source.offset);
       if (row_of(source.now.shape).parameter == ShapeParameter::kVolume) {
         VolumeSums sums;
-        for (const std::uint32_t zone : source.zones) add_volume_sums(mesh, zone, source.now, source.offset, sums);
+        for (const std::uint32_t zone : source.zones)
+          add_volume_sums(mesh, zone, source.now, source.offset, sums, &object.blocks[zone]);
         add_echo_sums(world, {slot, static_cast<std::uint32_t>(&source - object.sources.data())}, source, sums);
         source.now.parameter = volume_coefficient(
             sums, dent_share(contact, deformable) * std::max(0.0, -contact.height), deformable.volume);

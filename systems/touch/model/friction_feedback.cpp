@@ -211,8 +211,8 @@ void release(Contact& contact) {
 // Friction of every tip in its hole, also of those that no layer presses on.
 void grip_tips(World& world, const ObjectState& object, const Deformable& deformable, const Pose& pose, Tick tick) {
   Registry& registry = world.registry;
-  for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
-    const SourceState& source = object.sources[i];
+  for (const TrackedTip& tip : object.tips) {
+    const SourceState& source = object.sources[tip.source];
     if (!source.tracked || source.tip.drawn) continue;
     Contact& contact = registry.get<Contact>(source.contact);
     const dvec3 force = pose.rotation * grip(deformable, source.place, contact, tick.elapsed());
@@ -238,8 +238,8 @@ void press_contacts(const ContactSearch& search, const Deformable& deformable, c
   std::size_t& count = pressed.count;
   SharedDents& dents = pressed.dents;
   for (const bool settled : {true, false}) {
-    for (std::uint32_t i = 0; i < object.probe_sources; ++i) {
-      SourceState& source = object.sources[i];
+    for (const TrackedTip& tip : object.tips) {
+      SourceState& source = object.sources[tip.source];
       if (!source.tracked || source.tip.drawn || source.settled != settled) continue;
       Contact& contact = registry.get<Contact>(source.contact);
       advance_free_surface(contact, source.place, mesh, object.motion);

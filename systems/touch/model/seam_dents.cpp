@@ -112,7 +112,7 @@ void add_echo_sums(const World& world, SourceLink master, const SourceState& sou
     if (!echo || !echo->active) continue;
     const Mesh& mesh = world.meshes[world.registry.get<Deformable>(beyond.entity).mesh];
     const FieldSource there = in_frame(source.now, from, world.registry.get<Pose>(beyond.entity));
-    for (const std::uint32_t zone : echo->zones) add_volume_sums(mesh, zone, there, sums);
+    for (const std::uint32_t zone : echo->zones) add_volume_sums(mesh, zone, there, sums, &beyond.blocks[zone]);
   }
 }
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
+#include "components/name_of.h"
 #include "components/probe_shape.h"
 #include "components/soft_body.h"
 #include "components/varying.h"
@@ -18,11 +20,6 @@
 
 namespace pliant {
 namespace {
-
-std::string name_of(const World& world, Entity entity) {
-  const Name* name = world.registry.find<Name>(entity);
-  return name ? name->value : fmt::format("entity {}", entity.index);
-}
 
 void size_field(HeightField& field, const Mesh& mesh, const Deformable& deformable) {
   const std::size_t size = std::size_t{mesh.zone_count()} * kZoneSize;
@@ -230,7 +227,9 @@ ObjectState make_object(World& world, Entity entity, const Pose& pose, double dt
   object.felt_stiffness = felt_paint(mesh, mesh.stiffness_factor, contact);
   object.felt_relaxation = felt_paint(mesh, mesh.relaxation_factor, contact);
   object.searched.assign(tips, {dvec3(std::numeric_limits<double>::max()), dvec3(0)});
+  object.clear.resize(tips);
   object.world_box = touch_box(mesh, pose);
+  object.blocks = blocks_of(mesh);
   object.zone_sources.assign(mesh.zone_count(), 0);
   object.visited.assign(mesh.zone_count(), 0);
   object.dirty.reserve(mesh.zone_count());
@@ -269,6 +268,9 @@ ObjectSnapshot snapshot_of(ObjectState& object, const Mesh& mesh) {
           false};
 }
 
+// A pool that grows moves its sources: a copy would have no room for the zones.
+static_assert(std::is_nothrow_move_constructible_v<SourceState>);
+
 // A source for every contact that the probes can have with an object.
 void make_sources(World& world, TouchState& touch, std::size_t contacts) {
   for (ObjectState& object : touch.objects) {
@@ -278,6 +280,7 @@ void make_sources(World& world, TouchState& touch, std::size_t contacts) {
       object.sources.push_back(
           make_source(make_contact(world.registry, object.entity, slot), world.meshes[deformable.mesh], deformable));
     object.probe_sources = static_cast<std::uint32_t>(object.sources.size());
+    object.tips.reserve(object.probe_sources);
     if (!world.fields[deformable.field].awake.empty()) {  // an earlier recovery continues
       object.listed = true;
       touch.awake.push_back(static_cast<std::uint32_t>(slot));
@@ -335,7 +338,8 @@ Status prepare_touch(World& world) {
   double reach = std::numeric_limits<double>::max();
   for (auto [entity, deformable, pose] : registry.view<Deformable, const Pose>()) {
     if (deformable.reach == 0.0) deformable.reach = default_reach(world.meshes[deformable.mesh]);
-    if (Status status = check(deformable, name_of(world, entity)); !status) return status.error();
+    if (Status status = check(deformable, name_of(world, entity, fmt::format("entity {}", entity.index))); !status)
+      return status.error();
     reach = std::min(reach, deformable.reach);
   }
   const TipCount tips = list_probes(registry, *touch, reach);
@@ -344,7 +348,7 @@ Status prepare_touch(World& world) {
   Snapshot snapshot;
   for (auto [entity, deformable, pose] : registry.view<Deformable, const Pose>()) {
     const Mesh& mesh = world.meshes[deformable.mesh];
-    check_in("preparing what is touched, now `" + name_of(world, entity) + "`");
+    check_in("preparing what is touched, now `" + name_of(world, entity, fmt::format("entity {}", entity.index)) + "`");
     ObjectState object = make_object(world, entity, pose, touch->dt, tips.all);
     object.accounts.resize(touch->probes.size());
     snapshot.objects.push_back(snapshot_of(object, mesh));
@@ -383,7 +387,8 @@ std::size_t touch_bytes(const Mesh& mesh, const HeightField& field) {
   std::size_t total = bytes(mesh.px, mesh.py, mesh.pz, mesh.nx, mesh.ny, mesh.nz, mesh.area, mesh.triangles,
                             mesh.across, mesh.zone_box, mesh.tree.nodes, mesh.zone_neighbour_first,
                             mesh.zone_neighbours, mesh.stiffness_factor, mesh.friction_factor, field.stream,
-                            field.residual, field.rate, field.arm, field.relaxed, field.zone_state, field.awake);
+                            field.residual, field.rate, field.arm, field.relaxed, field.zone_state, field.awake) +
+                      mesh.zone_count() * sizeof(ZoneBlocks);
   for (const auto& level : mesh.tree.levels) total += bytes(level);
   return total;
 }

@@ -41,6 +41,12 @@ struct TipPlace {
   dvec3 at(double along) const { return end + along * axis; }
 };
 
+// Around a tip nothing of the surface is nearer to `at` than `radius`. Object frame.
+struct ClearBall {
+  dvec3 at{0};          // [m]
+  double radius = 0.0;  // [m]
+};
+
 // Identifies a source by its object and index.
 struct SourceLink {
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -175,6 +181,13 @@ struct SetDent {
 };
 inline constexpr std::size_t kMostSets = 256;
 
+// A source that tracks a tip of a probe.
+struct TrackedTip {
+  Entity probe;
+  std::uint8_t tip = 0;
+  std::uint8_t source = 0;  // index into ObjectState::sources
+};
+
 // Energy between one hand and one object (systems/device/tissue_account.h). [J] of the world
 struct TissueAccount {
   double given = 0.0;   // by the hand so far, beside what it got back
@@ -205,6 +218,8 @@ struct ObjectState {
   ShareKernel kernel;                       // sharing of the load between contacts
   Box world_box;                            // of the rest surface, for the broad phase
   std::uint32_t probe_sources = 0;          // number of `sources` for probes; presses follow
+  std::vector<TrackedTip> tips;             // by source; some may have ended since this tick began. Capacity: all
+  std::uint64_t slipped = 0;                // newest HeldFoot::tick of a contact that slipped round a rim
   std::vector<Hole> holes;                  // capacity kMostHoles if it has layers
   std::vector<SetDent> sets;                // capacity kMostSets if it yields
   std::vector<std::uint32_t> set_zones;     // working memory; capacity: all zones if it yields
@@ -212,6 +227,7 @@ struct ObjectState {
   std::vector<TissueAccount> accounts;      // per probe
   bool listed = false;                      // it is in TouchState::awake
   std::vector<TipPlace> searched;           // per tip of every probe: place of the last search for walls
+  std::vector<ClearBall> clear;             // per tip of every probe: around the place of its last search
   bool on_gpu = false;                      // the field is `terms`, drawn by the GPU; there is no HeightField
   std::vector<Release> releases;            // GPU only; capacity kMaxReleases
   std::vector<FieldSource> terms;           // GPU only: the whole field at `time`
@@ -222,6 +238,7 @@ struct ObjectState {
   std::vector<SourceState> sources;         // a pool for probes, one per press, echoes; at most kMaxContactsPerObject
   std::uint32_t first_echo = 0;             // index into `sources`
   std::vector<PressState> presses;          // empty unless the level has a moving soft or rigid body
+  std::vector<ZoneBlocks> blocks;           // per zone
   std::vector<std::uint64_t> zone_sources;  // per zone: bits of the sources that reach it this tick
   std::vector<std::uint32_t> visited;       // per zone: stamp of the last flood fill that visited it
   std::uint32_t stamp = 0;
@@ -235,7 +252,7 @@ struct ProbeState {
   double lever = 0.0;  // [m] farthest that a tip is from its place
   dvec3 turned{0};     // [rad] sum of the small rotations
   std::vector<Tip> tips;
-  std::uint32_t first_tip = 0;  // index of its first tip in ObjectState::searched
+  std::uint32_t first_tip = 0;  // index of its first tip in ObjectState::searched and clear
   double stiffened = 0.0;       // [J] of the world: energy that its contacts gained in this tick as stiffness changed
   double stiffened_sum = 0.0;   // [J] of the hand: the sum of what it gained so far and may get back
 };
@@ -244,6 +261,15 @@ struct ProbeState {
 struct TrackedContact {
   Entity probe, contact;  // has a Contact
 };
+
+// Calls visit(SourceState&) for what the tip of the probe touches on the object, by source, until it returns true.
+template <class Object, class Visit>
+bool any_source_of(Object& object, Entity probe, std::uint8_t tip, Visit visit) {
+  for (const TrackedTip& at : object.tips)
+    if (at.probe == probe && at.tip == tip && object.sources[at.source].tracked && visit(object.sources[at.source]))
+      return true;
+  return false;
+}
 
 struct TouchState {
   std::vector<ObjectState> objects;
@@ -261,7 +287,7 @@ struct TouchState {
   std::vector<TouchEvent> events;                  // of this tick; capacity kMostEventsInATick (feed/touch_events.h)
   double pressed_at = 0.0;                         // [s] arrival of the newest presses
   std::uint64_t events_over = 0, events_lost = 0;  // of this tick, of all: `events` was full
-  std::vector<TrackedContact> tracked;             // by object; of collision; some may have ended since. Capacity: all
+  std::vector<TrackedContact> tracked;  // by probe, then object; of collision; some may have ended since. Capacity: all
 };
 
 }  // namespace pliant
