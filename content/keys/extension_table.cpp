@@ -615,9 +615,8 @@ std::vector<Key> soft_body_keys() {
              "what a contact acts on: `lattice`, the nodes beside it, too stiff where it is small against the cells; "
              "`split`, the lattice with its force smeared and an analytic dent in series"));
   keys.push_back(choice("integrator", s(&S::integrator),
-                        "step of its motion: `euler`, which damps; `second_order`, which keeps swings and costs about "
-                        "half as much again; `quasi_static`, the equilibrium of every step, for pinned tissue; the "
-                        "last two not of a tool"));
+                        "step of its motion: `euler`, which damps; `second_order`, which keeps swings; `quasi_static`, "
+                        "the equilibrium of every step, for pinned tissue; the last two not of a tool"));
   keys.push_back(vector("velocity", "m/s", {kVelocityRange, {-10.0, 10.0}}, s(&S::velocity),
                         "at the beginning, in the world; not of a tool; one number points down (-Y)"));
   keys.push_back(materials_key());

@@ -179,8 +179,6 @@ TEST(TwoStages, InFreeFlightEnergyAndMomentaStay) {
     EXPECT_NEAR(end.energy, begin.energy, 0.01 * begin.energy) << step;
     EXPECT_LT(length(end.momentum - begin.momentum), 1e-10 * length(begin.momentum)) << step;
     EXPECT_LT(length(end.spin_momentum - begin.spin_momentum), 1e-8 * length(begin.spin_momentum)) << step;
-    RecordProperty("energy_change", std::to_string(end.energy / begin.energy - 1.0));
-    if (getenv("SHOW")) printf("%g: %g\n", step, end.energy / begin.energy - 1.0);
   }
 }
 

@@ -7,10 +7,10 @@
 // the step would be of first order wherever stressed tissue turns (a W-method: Steihaug and Wolfbrandt 1979).
 //
 // Contacts: one problem for (V1, L1) as if the force lasted all the step, then one for the step's mean w and impulse L,
-// each with the operator J (A / gamma)^-1 J^T and the same gaps: g + T V1 >= 0, then g + T w >= 0. Both satisfy the same
-// monotone law, so the work L w + (L1 - L)(V1 - w) is never positive: contact and friction make no energy, also with
-// bodies that step otherwise, for which the first problem is a trial. A node that arrives has V1 = w = 0, so v1 = 0: it
-// does not rebound, as it would with the midpoint rule and with BDF2. Compared in the study `time_step`.
+// each with the operator J (A / gamma)^-1 J^T and the same gaps: g + T V1 >= 0, then g + T w >= 0. Both satisfy the
+// same monotone law, so the work L w + (L1 - L)(V1 - w) is never positive: contact and friction make no energy, also
+// with bodies that step otherwise, for which the first problem is a trial. A node that arrives has V1 = w = 0, so v1 =
+// 0: it does not rebound, as it would with the midpoint rule and with BDF2. Compared in the study `time_step`.
 #pragma once
 
 #include <limits>
