@@ -25,7 +25,7 @@ Vector6 free_twist(const Eigen::LLT<Matrix6>& factor, const TickHandle& handle, 
   return handle.moved ? handle.next : Vector6(factor.solve(handle.right + tissue_right));
 }
 
-const double* row_of(const Rows& m, Eigen::Index row) {
+const double* modes_at(const Rows& m, Eigen::Index row) {
   return m.data() + row * m.outerStride();
 }
 
@@ -36,7 +36,7 @@ dvec2 bent(const CondensedContacts& model, const CondensedState& state, int i) {
   dvec2 lean(0.0);
   for (int k = 0; k < 2; ++k) {
     const auto at = static_cast<std::size_t>(k);
-    rows_times(row_of(model.from_modes_by_slip[at], 3 * i), 0, 1, model.modes, state.q.data(), &lean[k]);
+    rows_times(modes_at(model.from_modes_by_slip[at], 3 * i), 0, 1, model.modes, state.q.data(), &lean[k]);
     lean[k] += model.from_handle_by_slip[at].row(3 * i).dot(state.d);
   }
   return lean;
@@ -55,7 +55,7 @@ void slide(const CondensedContacts& model, CondensedState& state, const Vector6&
     const double size = length(state.slip[c]);
     const dvec2 slip = size > model.farthest[c] ? model.farthest[c] / size * state.slip[c] : state.slip[c];
     const Rows &by_0 = model.from_modes_by_slip[0], &by_1 = model.from_modes_by_slip[1];
-    add_three_rows({row_of(by_0, 3 * i), row_of(by_1, 3 * i), by_0.outerStride(), slip.x, slip.y}, model.modes,
+    add_three_rows({modes_at(by_0, 3 * i), modes_at(by_1, 3 * i), by_0.outerStride(), slip.x, slip.y}, model.modes,
                    state.rate.data(), impulse.data(), &state.shift[c].x, on_modes.data());
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Index row = 3 * i + axis;

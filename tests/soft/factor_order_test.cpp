@@ -128,7 +128,7 @@ TEST(BlockCholesky, SolvesForColumnsOfTheLastMutualResponse) {
     }
     mix.close();  // an empty one
     Rows found(3 * size, mix.count());
-    EXPECT_FALSE(solver.solve_kept(mix, found));  // there is no response yet
+    EXPECT_FALSE(solver.solve_kept(mix, found));  // before any response
     BlockColumns pushes;
     pushes.clear(size);
     Rows columns = Rows::Zero(3 * size, 36);

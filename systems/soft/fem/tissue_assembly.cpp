@@ -9,7 +9,8 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kShares = 4, kSharedPacks = 500;  // tasks of an assembly; fewer packs are faster on one thread
+constexpr std::size_t kAssemblyShares = 4,
+                      kSharedPacks = 500;  // tasks of an assembly; fewer packs are faster on one thread
 
 // `to` (row major) += p_i c_j^T + q_j c_i^T + d I, with p = V lambda c, q = V mu c, d = V mu b_i . b_j: one K'_ij.
 inline void add_elastic_block(double* __restrict to, dvec3 pi, dvec3 cj, dvec3 qj, dvec3 ci, double d) {
@@ -33,7 +34,7 @@ void Tissue::share_packs() {
     for (std::size_t lane = 0; lane < pack.count; ++lane)
       for (const std::uint32_t node : pack.node[lane]) ++corners[node + 1];
   for (std::uint32_t node = 0; node < nodes; ++node) corners[node + 1] += corners[node];
-  const std::size_t count = packs_.size() < kSharedPacks ? 1 : kShares;
+  const std::size_t count = packs_.size() < kSharedPacks ? 1 : kAssemblyShares;
   for (std::size_t k = 0; k < count; ++k) {
     const auto at = [&](std::size_t share) {
       const auto found = std::lower_bound(corners.begin(), corners.end(), share * corners[nodes] / count);

@@ -13,20 +13,20 @@ PLIANT_KERNEL void add(double* __restrict u, const double* __restrict w, std::pt
   for (int i = 0; i < rows; ++i) u[i] += (w0[i] * d0 + w1[i] * d1) + w2[i] * d2;
 }
 
-constexpr int kParts = 8;
+constexpr int kRowParts = 8;
 
-inline double sum_of(const double (&parts)[kParts]) {
+inline double sum_of(const double (&parts)[kRowParts]) {
   return ((parts[0] + parts[4]) + (parts[2] + parts[6])) + ((parts[1] + parts[5]) + (parts[3] + parts[7]));
 }
 
 PLIANT_KERNEL void multiply_rows(const double* __restrict a, std::ptrdiff_t stride, int rows, int columns,
                                  const double* __restrict x, double* __restrict y) {
   for (int r = 0; r < rows; ++r, a += stride) {
-    double parts[kParts] = {};
+    double parts[kRowParts] = {};
     int c = 0;
-    for (; c + kParts <= columns; c += kParts)
-      for (int l = 0; l < kParts; ++l) parts[l] += a[c + l] * x[c + l];
-    for (; c < columns; ++c) parts[c % kParts] += a[c] * x[c];
+    for (; c + kRowParts <= columns; c += kRowParts)
+      for (int l = 0; l < kRowParts; ++l) parts[l] += a[c + l] * x[c + l];
+    for (; c < columns; ++c) parts[c % kRowParts] += a[c] * x[c];
     y[r] = sum_of(parts);
   }
 }
@@ -47,17 +47,17 @@ PLIANT_KERNEL void add_mixed_rows(const TwoRows& of, int columns, const double* 
     const double* __restrict a0 = of.a0 + r * of.stride;
     const double* __restrict a1 = of.a1 + r * of.stride;
     const double f = factor[r];
-    double parts[kParts] = {};
+    double parts[kRowParts] = {};
     int c = 0;
-    for (; c + kParts <= columns; c += kParts)
-      for (int l = 0; l < kParts; ++l) {
+    for (; c + kRowParts <= columns; c += kRowParts)
+      for (int l = 0; l < kRowParts; ++l) {
         const double mixed = s0 * a0[c + l] + s1 * a1[c + l];
         parts[l] += mixed * x[c + l];
         y[c + l] += f * mixed;
       }
     for (; c < columns; ++c) {
       const double mixed = s0 * a0[c] + s1 * a1[c];
-      parts[c % kParts] += mixed * x[c];
+      parts[c % kRowParts] += mixed * x[c];
       y[c] += f * mixed;
     }
     moved[r] = sum_of(parts);

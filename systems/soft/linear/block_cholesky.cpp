@@ -13,7 +13,7 @@ constexpr double kSharedWork = 5e7;   // [1] multiplications and additions: less
 constexpr double kSharedFront = 6e6;  // the same of one front
 constexpr int kBlockColumns = 64;   // columns of a panel whose diagonal block is factorised before the strips below it
 constexpr int kStripsTogether = 4;  // of a task
-constexpr int kColumnsTogether = 48;  // the same of an update
+constexpr int kUpdateColumns = 48;  // the same of an update
 
 int strips_of(std::size_t rows) {
   return static_cast<int>((rows + kStrip - 1) / kStrip);
@@ -271,11 +271,10 @@ bool BlockCholesky::factorise_top(std::uint32_t front, const BlockMatrix& a) {
       add_update(child, stack_[child.update].lane, f, own, triangle->lane, scratch(0), from, to);
     };
     if (!shared) return add(0, columns);
-    run_tasks(static_cast<std::size_t>((columns + kColumnsTogether - 1) / kColumnsTogether),
-              [&](std::size_t i, unsigned) {
-                const int from = static_cast<int>(i) * kColumnsTogether;
-                add(from, std::min(from + kColumnsTogether, columns));
-              });
+    run_tasks(static_cast<std::size_t>((columns + kUpdateColumns - 1) / kUpdateColumns), [&](std::size_t i, unsigned) {
+      const int from = static_cast<int>(i) * kUpdateColumns;
+      add(from, std::min(from + kUpdateColumns, columns));
+    });
   });
   double* const reciprocal = reciprocal_.data() + f.first;
   for (int first = 0; first < f.columns; first += kBlockColumns) {
