@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "components/deformable.h"
 #include "components/math.h"
 #include "components/mesh.h"
 #include "components/range.h"
@@ -18,6 +19,10 @@ struct SoftBody : SoftBodyParameters {
   Handle<TetMesh> tets;         // set at spawn
   Handle<Mesh> collision_mesh;  // set at spawn: the embedded surface, which collides and is drawn
 };
+
+// The law of a soft body's dents, of a node with PLIANT_deformable too (systems/soft/local/dent_spring.h). Writer:
+// content at spawn; `mesh` is the collision mesh, without a field.
+struct DentLaw : Deformable {};
 
 // A mesh that is only drawn and moves with the body around it (Carries). Writer: content at spawn.
 struct Carried {

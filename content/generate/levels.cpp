@@ -8,6 +8,7 @@
 #include "content/generate/lattice_sphere.h"
 #include "content/generate/layers_level.h"
 #include "content/generate/minimal.h"
+#include "content/generate/palpation_level.h"
 #include "content/generate/sky.h"
 #include "content/generate/stage.h"
 #include "content/generate/strokes.h"
@@ -301,6 +302,7 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   if (Status s = write_instrument_levels(levels); !s) return s;
   if (Status s = write_fields_level(levels); !s) return s;
   if (Status s = write_layers_level(levels); !s) return s;
+  if (Status s = write_palpation_level(levels); !s) return s;
   if (Status s = write_effects(levels); !s) return s;
   return write_minimal(levels);
 }

@@ -210,9 +210,34 @@ bool is_set(const Extension& extension, const Key& key, const Owner& owner) {
   return key.get(&owner) != key.get(&fresh);
 }
 
+// Keys of the law of a soft body's dents; the others are of a surface that does not bend.
+const std::set<std::string> kOfDentLaw = {
+    "spring",         "stiffness", "cubic",  "stiffening", "table",           "relaxation.stiffness",
+    "friction",       "shape",     "reach",  "volume",     "contact_radius",  "relaxation.time",
+    "young",          "poisson",   "sphere", "thickness",  "friction_static", "friction_sliding",
+    "contact_damping"};
+
+void find_in_dent_law(const LevelNode& node, std::size_t n, std::vector<UnusedKey>& found) {
+  const auto add = [&](const char* of, const std::string& key, const char* what, const char* cure) {
+    const Extension& extension = *find_extension(of);
+    const Key& it = *find_key(extension, key);
+    if (!it.alias && is_set(extension, it, node))
+      found.push_back({static_cast<std::int32_t>(n), fmt::format("PLIANT_{}/{}", of, key), what, cure});
+  };
+  for (const Key& key : find_extension("deformable")->keys)
+    if (!kOfDentLaw.contains(key.name))
+      add("deformable", key.name, "is of a surface alone: a soft body's dents take the law and its friction",
+          "remove the key, or PLIANT_soft_body");
+  for (const char* key : {"contact", "friction_static", "friction_sliding"})
+    add("soft_body", key, "is of a soft body alone: PLIANT_deformable is the law of its dents", "remove the key");
+}
+
 void find_in_node(const Level& level, std::size_t n, std::vector<UnusedKey>& found) {
   const LevelNode& node = level.nodes[n];
+  const bool both = node.soft_body && node.deformable;
+  if (both) find_in_dent_law(node, n, found);
   for (const UnusedRow& row : kRows) {
+    if (both && row.extension == std::string_view("deformable") && !kOfDentLaw.contains(row.key)) continue;
     const Extension& extension = *find_extension(row.extension);
     if (!extension.present(&node) || !row.unused(node)) continue;
     if (is_set(extension, *find_key(extension, row.key), node))

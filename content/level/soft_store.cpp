@@ -166,6 +166,13 @@ LevelNode only_tissue(const LevelNode& node) {
   body.mesh = node.soft_body->mesh;
   body.elements = node.soft_body->elements;
   body.pinned = node.soft_body->pinned;
+  body.contact = node.soft_body->contact;
+  if (node.deformable) {  // sizes of its dents
+    out.deformable.emplace();
+    out.deformable->shape = node.deformable->shape;
+    out.deformable->reach = node.deformable->reach;
+    out.deformable->contact_radius = node.deformable->contact_radius;
+  }
   if (node.handle) out.handle.emplace().box = node.handle->box;
   return out;
 }
@@ -179,6 +186,10 @@ std::uint64_t soft_key(const LevelNode& node, const LevelMesh* mesh, const mat4&
   add_box(hash, body.focus);
   hash.add(static_cast<int>(body.fill));
   hash.add(static_cast<int>(body.elements));
+  hash.add(static_cast<int>(body.contact));
+  hash.add(asked.deformable.has_value());
+  if (const auto& law = asked.deformable)
+    hash.add(static_cast<int>(law->shape)), hash.add(law->reach), hash.add(law->contact_radius);
   hash.add(body.thickness);
   add_text(hash, body.mesh);
   add_named_file(hash, folder, body.mesh);

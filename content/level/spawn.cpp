@@ -161,9 +161,15 @@ class Spawner {
     const Entity entity = state_.entities[n];
     world_.registry.add<Pose>(entity, pose);
     SoftBody& body = world_.registry.add<SoftBody>(entity, *node.soft_body);
+    body.contact = contact_of(node);
     if (body.contact == SoftContact::kSplit) parts->tets.samples = sample_surface(parts->surface.mesh, parts->tets);
     body.tets = world_.tet_meshes.add(std::move(parts->tets));
     body.collision_mesh = world_.meshes.add(std::move(parts->surface.mesh));
+    if (node.deformable) {
+      Deformable& law = world_.registry.add<DentLaw>(entity, {*node.deformable});
+      law.mesh = body.collision_mesh;
+      if (law.reach <= 0.0) law.reach = default_reach(world_.meshes[law.mesh]);
+    }
     world_.registry.add<Drawable>(entity, {world_.draw_meshes.add(std::move(parts->surface.draw))});
     return Done{};
   }

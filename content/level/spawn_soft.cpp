@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "content/level/inner_sheet.h"
+#include "content/mesh/mesh_finer.h"
 #include "content/mesh/mesh_refine.h"
 #include "content/tets/lattice.h"
 #include "content/tets/lattice_inside.h"
@@ -25,6 +26,8 @@ namespace {
 // [mean edges of the tetrahedra] Tissue is touched through the vertices of its collision mesh. If they are farther
 // apart, an object that presses between them moves distant vertices and sinks into the tissue below it.
 constexpr double kLongestEdge = 2.0;
+constexpr double kEdgeOfSplit = 0.5;    // of split contacts' dents, which are drawn
+constexpr double kLeastEdge = 0.15;     // of a DentLaw's, however fine
 constexpr double kEdgeOverCell = 0.91;  // [1] mean edge of the lattice's tetrahedra
 constexpr double kLeastFocus = 0.01;    // [1] of the diagonal: smallest half diagonal used for the author's focus box
 constexpr double kFocusOverBox = 2.0;   // [1] radius of the lattice's focus over half the diagonal of the author's box
@@ -77,6 +80,14 @@ double mean_edge(const TetMesh& mesh) {
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t k = i + 1; k < 4; ++k) sum += length(mesh.nodes[tet[k]] - mesh.nodes[tet[i]]);
   return sum / static_cast<double>(6 * mesh.tets.size());
+}
+
+// [m] Of the surface's edges: tissue is touched through its vertices, and dents are drawn by them.
+double longest_edge(const LevelNode& node, const Mesh& surface, double of_tets) {
+  if (contact_of(node) != SoftContact::kSplit) return kLongestEdge * of_tets;
+  if (!node.deformable) return kEdgeOfSplit * of_tets;
+  const double dents = kEdgeOfReach * dent_size(*node.deformable).radius(surface);
+  return of_tets * std::clamp(dents / of_tets, kLeastEdge, kEdgeOfSplit);
 }
 
 constexpr double kMostLost = 0.5;  // [1] of the tissue, in parts too small to keep
@@ -212,9 +223,6 @@ std::optional<Note> soft_fault(const LevelNode& node) {
   const auto fault = [&](const char* code, const char* what, const char* cure) {
     return Note{what, cure, code, node.name};
   };
-  if (node.soft_body && node.deformable)
-    return fault("level.soft_and_deformable", "has both PLIANT_soft_body and PLIANT_deformable",
-                 "keep one, a node is a soft body or a deformable surface");
   if (std::optional<Note> of_law = law_fault(node)) return of_law;
   if (node.soft_body && node.rigid_body)
     return fault("level.soft_and_rigid", "has both PLIANT_soft_body and PLIANT_rigid_body",
@@ -237,6 +245,10 @@ std::optional<Note> soft_fault(const LevelNode& node) {
   if (node.rigid_body && node.mesh < 0)
     return fault("level.no_mesh", "has PLIANT_rigid_body but no mesh", "give the node a mesh, or remove the extension");
   return std::nullopt;
+}
+
+SoftContact contact_of(const LevelNode& node) {
+  return node.deformable ? SoftContact::kSplit : node.soft_body->contact;
 }
 
 Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, const mat4& to_object,
@@ -277,7 +289,8 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     std::vector<Primitive> touched = mesh->primitives;
     const bool filled = parts.tets.report.wall > 0.0 && body.fill == Fill::kSolid;
     const bool outer = filled && leave_out(find_inner_sheet(parts.surface.mesh), parts.surface.mesh, touched);
-    const double longest = kLongestEdge * (focus ? kEdgeOverCell * parts.tets.report.cell : mean_edge(parts.tets));
+    const double mean = focus ? kEdgeOverCell * parts.tets.report.cell : mean_edge(parts.tets);
+    const double longest = longest_edge(node, parts.surface.mesh, mean);
     const bool finer =
         refine(touched, to_object, [&](dvec3 at) { return focus ? longest * focus->width_at(at) : longest; });
     if (outer || finer) {

@@ -25,6 +25,9 @@ inline constexpr std::size_t kManyTets = 8 * kUsualTets;
 // A sentence (without the body's name) if a body with so many tetrahedra locks; else "".
 std::optional<Note> locking_doubt(const SoftBody& body, std::size_t tetrahedra);
 
+// A soft body's contacts: with PLIANT_deformable, the law of its dents, they are split.
+SoftContact contact_of(const LevelNode& node);
+
 // Conflicting extensions of a node, as text that follows "node X"; "": none.
 std::optional<Note> soft_fault(const LevelNode& node);
 // The part of it that depends on keys that may change while a session runs.

@@ -62,7 +62,7 @@ dvec3 middle_of(const TetMesh& mesh, std::size_t element) {
 }
 
 // The paint at the place of the surface nearest to each element's middle.
-void paint_factors(const Mesh& surface, TetMesh& mesh) {
+void paint_factors(const Mesh& surface, const std::vector<float>& stiffness, TetMesh& mesh) {
   const auto at = [&](const std::vector<float>& values, uvec3 t, dvec3 weight) {
     if (values.empty()) return 1.0;
     return weight.x * static_cast<double>(values[t.x]) + weight.y * static_cast<double>(values[t.y]) +
@@ -81,7 +81,7 @@ void paint_factors(const Mesh& surface, TetMesh& mesh) {
         weight = dvec3(dot(cross(b - near.place, c - near.place), n), dot(cross(c - near.place, a - near.place), n),
                        dot(cross(a - near.place, b - near.place), n)) /
                  whole;
-      mesh.factors[e].stiffness = std::max(kLeastPaint, at(surface.stiffness_factor, t, weight));
+      mesh.factors[e].stiffness = std::max(kLeastPaint, at(stiffness, t, weight));
       mesh.factors[e].damping = std::max(0.0, at(surface.damping_factor, t, weight));
     }
   });
@@ -167,7 +167,8 @@ Status set_materials(const Level& level, const LevelNode& node, const dmat4& to_
     mesh.report.notes.push_back({std::move(what), std::move(cure), code, {}});
   };
   std::vector<std::string> unused;
-  if (!surface.friction_factor.empty()) unused.push_back("_FRICTION");
+  const bool dent_law = node.deformable.has_value();  // reads the paint of stiffness and friction
+  if (!surface.friction_factor.empty() && !dent_law) unused.push_back("_FRICTION");
   if (!surface.relaxation_factor.empty()) unused.push_back("_RELAXATION");
   if (!unused.empty())
     note(fmt::format("is painted with {}, which tissue does not read", fmt::join(unused, " and ")),
@@ -179,10 +180,11 @@ Status set_materials(const Level& level, const LevelNode& node, const dmat4& to_
                      fmt::join(unnamed, "`, `")),
          "name them in `materials`, if they are of another", "tissue.groups");
 
-  const bool painted = !surface.stiffness_factor.empty() || !surface.damping_factor.empty();
+  const std::vector<float>& stiffness = dent_law ? std::vector<float>() : surface.stiffness_factor;
+  const bool painted = !stiffness.empty() || !surface.damping_factor.empty();
   if (!painted && body.materials.empty()) return Done{};
   mesh.factors.assign(element_count(mesh), {});
-  if (painted) paint_factors(surface, mesh);
+  if (painted) paint_factors(surface, stiffness, mesh);
   std::vector<double> density(mesh.factors.size(), 1.0);
   bool weighs = false;
   for (const TissuePart& part : body.materials) {

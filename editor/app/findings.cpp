@@ -103,7 +103,7 @@ std::optional<QuickFix> fix_of(const State& state, const DocumentNode* node, con
   const LevelNode& it = node->node;
   const NodeId id = node->id;
   const auto is = [&](const char* code) { return finding.code == code; };
-  if ((is("level.soft_and_deformable") || is("level.rigid_and_deformable")) && it.deformable)
+  if (is("level.rigid_and_deformable") && it.deformable)
     return without("Remove the deformable surface", id, "deformable");
   if (is("level.soft_and_rigid")) return without("Remove the rigid body", id, "rigid_body");
   if (is("level.handle_of_nothing")) return without("Remove the handle", id, "handle");

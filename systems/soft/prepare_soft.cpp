@@ -60,6 +60,8 @@ Status add_soft(const World& world, SoftState& soft) {
                                                  handle, pose_of(world, entity), body.solver);
     state->friction_static = body.friction_static;
     state->friction_sliding = body.friction_sliding;
+    if (const DentLaw* law = world.registry.find<DentLaw>(entity))
+      state->set_dent_law(*law, world.simulation.soft_step);
     std::vector<const std::vector<uvec3>*> parts;
     for (const CarriedPart& part : world.tet_meshes[body.tets].parts)
       parts.push_back(&world.meshes[part.mesh].triangles);

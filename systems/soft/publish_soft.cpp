@@ -4,6 +4,7 @@
 
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/body/tool_body.h"
+#include "systems/soft/local/drawn_dents.h"
 #include "systems/soft/soft_state.h"
 #include "systems/touch/prepare/touch_state.h"
 
@@ -24,12 +25,14 @@ ContactMark mark(const SoftState& soft, const ContactPoint& contact, double T) {
           place(soft, contact.body_b, contact.b)};
 }
 
-void show_bodies(const SoftState& soft, SoftSnapshot& out) {
+void show_bodies(const SoftState& soft, double T, SoftSnapshot& out) {
   std::size_t handle = 0, object = 0;
   for (const std::uint32_t i : soft.moving) {
     const Body& body = *soft.bodies[i];
     if (body.kind == BodyKind::kProbe) continue;
-    body.show(out.objects[object++]);
+    SoftObjectSnapshot& shown = out.objects[object++];
+    body.show(shown);
+    draw_dents(soft.bodies, i, soft.contacts, T, shown);
     if (const auto* tissue = body.as_tissue())
       for (std::size_t part = 0; part < tissue->part_count(); ++part) tissue->show_part(part, out.objects[object++]);
     const auto* tool = body.as_tool();
@@ -60,7 +63,7 @@ void publish_soft(World& world, Tick tick) {
   out.step = soft.steps;
   out.time = tick.time;
   out.step_ms = soft.times.total;
-  show_bodies(soft, out);
+  show_bodies(soft, tick.dt, out);
   show_contacts(soft, tick.dt, out);
   world.soft_snapshots->publish();
 

@@ -173,6 +173,21 @@ TEST(SpawnSoft, ARigidBodyHasASkinAndIsDrawn) {
   EXPECT_TRUE(world.registry.has<Pose>(thing) && world.registry.has<Drawable>(thing));
 }
 
+TEST(SpawnSoft, ADeformableOnASoftBodyIsTheLawOfItsDents) {
+  Level level = ball();
+  level.nodes[0].deformable = Deformable{};
+  level.nodes[0].deformable->stiffness = 70.0;
+  const World world = spawned_tets(level);
+  const Entity thing = find_by_name(world, "thing");
+  EXPECT_FALSE(world.registry.has<Deformable>(thing));
+  const DentLaw& law = world.registry.get<DentLaw>(thing);
+  const SoftBody& body = world.registry.get<SoftBody>(thing);
+  EXPECT_EQ(law.stiffness, 70.0);
+  EXPECT_GT(law.reach, 0.0);
+  EXPECT_EQ(body.contact, SoftContact::kSplit);
+  EXPECT_FALSE(world.tet_meshes[body.tets].samples.empty());
+}
+
 TEST(SpawnSoft, ValidateReportsContradictionsNotesOfFilesAndTissueThatFallsApart) {
   const Temporary file("notes.vtk", std::string(kBlock).replace(std::string(kBlock).find("4 0 1 2 4"), 9, "4 0 2 1 4"));
   const auto findings = [&](auto change) {
@@ -186,8 +201,8 @@ TEST(SpawnSoft, ValidateReportsContradictionsNotesOfFilesAndTissueThatFallsApart
              "\n";
     return all;
   };
-  const std::string clash = findings([](Level& level) { level.nodes[0].deformable = Deformable{}; });
-  EXPECT_THAT(clash, HasSubstr("error /nodes/0: has both PLIANT_soft_body and PLIANT_deformable"));
+  const std::string clash = findings([](Level& level) { level.nodes[0].rigid_body = RigidBody{}; });
+  EXPECT_THAT(clash, HasSubstr("error /nodes/0: has both PLIANT_soft_body and PLIANT_rigid_body"));
   const std::string turned = findings([&](Level& level) {
     level.nodes[0].soft_body->mesh = file.path.filename().string();
     level.meshes[0].primitives[0].index.resize(30);
@@ -213,7 +228,6 @@ TEST(SpawnSoft, WhatCannotBeIsRefusedInOneSentenceThatNamesTheNode) {
     change(level, level.nodes[0]);
     EXPECT_THAT(refusal(level), testing::AllOf(HasSubstr("`thing`"), HasSubstr(part)));
   };
-  expect("PLIANT_soft_body and PLIANT_deformable", [](Level&, LevelNode& n) { n.deformable = Deformable{}; });
   expect("PLIANT_soft_body and PLIANT_rigid_body", [](Level&, LevelNode& n) { n.rigid_body = RigidBody{}; });
   expect("neither PLIANT_soft_body nor PLIANT_rigid_body", [](Level&, LevelNode& n) {
     n.soft_body.reset();

@@ -47,6 +47,28 @@ TEST(UnusedKeys, AScaleIsOfADeviceThatIsNoPath) {
   EXPECT_THAT(unused(with(DriverKind::kExternal)), IsEmpty());
 }
 
+TEST(UnusedKeys, WhatTheLawOfASoftBodysDentsDoesNotReadIsSaidOnce) {
+  const auto both = [](const std::function<void(LevelNode&)>& change) {
+    return level_with([&](LevelNode& n) {
+      n.soft_body.emplace();
+      n.deformable.emplace();
+      change(n);
+    });
+  };
+  EXPECT_THAT(unused(both([](LevelNode&) {})), IsEmpty());
+  EXPECT_THAT(unused(both([](LevelNode& n) {
+                n.deformable->stiffness = 90.0, n.deformable->friction_static = 0.6, n.deformable->reach = 0.01;
+                n.deformable->contact_damping = 0.5;
+              })),
+              IsEmpty());
+  EXPECT_THAT(unused(both([](LevelNode& n) {
+                n.deformable->settling_time = 0.2, n.deformable->texture_wavelength = 2e-3;
+                n.soft_body->friction_static = 0.9, n.soft_body->contact = SoftContact::kSplit;
+              })),
+              ::testing::UnorderedElementsAre("PLIANT_deformable/settling_time", "PLIANT_deformable/texture.wavelength",
+                                              "PLIANT_soft_body/contact", "PLIANT_soft_body/friction_static"));
+}
+
 TEST(UnusedKeys, FrictionBesideWhatItSetsIsSaid) {
   const auto with = [](std::set<std::string> stated, double stribeck = 0.0) {
     return level_with([&](LevelNode& n) {

@@ -128,7 +128,7 @@ TEST(TipLaw, ClosedLoopsOfTwoTipsGiveNothing) {
     }
     const double sigma = kSigmaOfRadius * smeared / k;
     const double own = k / (2 * e * smeared), between = h0(apart * smeared, sigma) / (M_PI * e);
-    const double pair = local_compliance(pair_place(tips[0]), pair_place(tips[1]), tissue, nullptr)(1, 1);
+    const double pair = pair_compliance(tips[0], tips[1], tissue, layer)(1, 1);
     double forces[2] = {0.0, 0.0};
     const auto solve_at = [&](double d0, double d1) {
       for (int sweep = 0; sweep < 200; ++sweep)

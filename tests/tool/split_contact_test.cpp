@@ -6,108 +6,12 @@
 
 #include "components/bonded_layer.h"
 #include "components/sphere_curve.h"
-#include "content/level/spawn_soft.h"
-#include "content/tets/surface_samples.h"
-#include "scenes/tool_stage.h"
 #include "systems/soft/local/smeared_load.h"
 #include "systems/tool/tool_touch_state.h"
+#include "tests/tool/split_block.h"
 
 namespace pliant {
 namespace {
-
-using scenes::ToolStage;
-
-constexpr double kSplitStep = 1.0 / 60.0;  // [s]
-
-// A block with its top at y = 0: `squares` across its top, bonded at its bottom.
-struct SplitBlock {
-  double half_width = 0.025, thickness = 0.02, cell = 0.004;  // [m]
-  double young = 1e4, poisson = 0.45, friction = 0.0;
-  int squares = 12;
-  SoftContact contact = SoftContact::kSplit;
-  double reduced() const { return young / (1 - poisson * poisson); }
-};
-
-Primitive block_surface(const SplitBlock& block) {
-  Primitive p;
-  const int n = block.squares;
-  const auto at = [&](int i) { return static_cast<float>(block.half_width * (2.0 * i / n - 1.0)); };
-  const auto corner = [&](int side, int i, int j) {
-    return static_cast<std::uint32_t>(side * (n + 1) * (n + 1) + i * (n + 1) + j);
-  };
-  for (int side = 0; side < 2; ++side)
-    for (int i = 0; i <= n; ++i)
-      for (int j = 0; j <= n; ++j)
-        p.position.emplace_back(at(i), side == 0 ? 0.0f : static_cast<float>(-block.thickness), at(j));
-  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-    p.index.insert(p.index.end(), {a, b, c, a, c, d});
-  };
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) {
-      quad(corner(0, i, j), corner(0, i, j + 1), corner(0, i + 1, j + 1), corner(0, i + 1, j));
-      quad(corner(1, i, j), corner(1, i + 1, j), corner(1, i + 1, j + 1), corner(1, i, j + 1));
-    }
-  for (int i = 0; i < n; ++i) {
-    quad(corner(0, i, 0), corner(0, i + 1, 0), corner(1, i + 1, 0), corner(1, i, 0));
-    quad(corner(0, i + 1, n), corner(0, i, n), corner(1, i, n), corner(1, i + 1, n));
-    quad(corner(0, 0, i + 1), corner(0, 0, i), corner(1, 0, i), corner(1, 0, i + 1));
-    quad(corner(0, n, i), corner(0, n, i + 1), corner(1, n, i + 1), corner(1, n, i));
-  }
-  return p;
-}
-
-Entity add_block(ToolStage& stage, const SplitBlock& block) {
-  LevelNode node;
-  node.name = "tissue";
-  node.mesh = 0;
-  SoftBody body;
-  body.young = block.young, body.poisson = block.poisson, body.cell = block.cell, body.contact = block.contact;
-  body.rayleigh = {0.0, 0.01};
-  body.friction_static = body.friction_sliding = block.friction;
-  const auto wide = static_cast<float>(2 * block.half_width), deep = static_cast<float>(block.thickness);
-  body.pinned.add(vec3(-wide, -2 * deep, -wide));
-  body.pinned.add(vec3(wide, -0.999f * deep, wide));
-  node.soft_body = body;
-  const LevelMesh mesh{"block", {block_surface(block)}};
-  auto parts = make_soft_parts(node, &mesh, mat4(1), {});
-  EXPECT_TRUE(parts) << parts.error().message();
-  World& world = stage.world;
-  if (block.contact == SoftContact::kSplit) parts->tets.samples = sample_surface(parts->surface.mesh, parts->tets);
-  body.collision_mesh = world.meshes.add(std::move(parts->surface.mesh));
-  body.tets = world.tet_meshes.add(std::move(parts->tets));
-  const Entity entity = world.registry.create();
-  world.registry.add(entity, Name{"tissue"});
-  world.registry.add(entity, Pose{});
-  world.registry.add(entity, body);
-  world.simulation.gravity = dvec3(0);
-  return entity;
-}
-
-struct SpherePress {
-  double depth = 0.0, force = 0.0;  // [m] of the sphere below the undeformed surface, [N] upwards on it
-  double aside = 0.0, felt = 0.0;   // [N] along the surface; of the touch clock
-};
-
-// A sphere held at (x, z), pressed `depth` deep by its device.
-SpherePress press_sphere(const SplitBlock& block, double radius, double depth, dvec2 at) {
-  ToolStage stage(kSplitStep);
-  const Entity tissue = add_block(stage, block);
-  const Entity probe = stage.add_probe({at.x, radius + 1e-3, at.y}, radius);
-  stage.device(probe).max_force = 100.0;
-  stage.world.registry.get<Probe>(probe).coupling = {3000.0, 10.0};
-  stage.prepare();
-  stage.lead(probe, dvec3(at.x, radius + 1e-3, at.y), 0.05);
-  stage.lead(probe, dvec3(at.x, radius - depth, at.y), 0.15);
-  stage.lead(probe, dvec3(at.x, radius - depth, at.y), 0.35);
-  SpherePress out;
-  const dvec3 on = stage.contact_force(probe, tissue);
-  const auto* tool = stage.body(probe).as_tool();
-  out.depth = radius - tool->handle().object_pose().position.y;
-  out.force = on.y;
-  out.aside = std::hypot(on.x, on.z);
-  out.felt = stage.read(probe).force.y;
-  return out;
-}
 
 // Hertz on a layer: the contact is a third of a cell, a half and two thirds wide. The lattice alone is beside it.
 TEST(SplitContact, ASphereOnCoarseCellsIsHertzSphere) {

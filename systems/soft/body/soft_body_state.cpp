@@ -7,6 +7,7 @@
 #include "runtime/long_work.h"
 #include "systems/soft/body/tissue_material.h"
 #include "systems/soft/fem/passive_step.h"
+#include "systems/soft/local/dent_spring.h"
 #include "systems/soft/local/smeared_response.h"
 #include "systems/soft/local/smearing_surface.h"
 
@@ -84,6 +85,11 @@ void SoftBodyState::smear() {
   smearing_ = std::make_unique<const SmearingSurface>(tets_, tissue_.material().poisson);
 }
 
+void SoftBodyState::set_dent_law(const Deformable& law, double T) {
+  dent_ = std::make_unique<const DentSpring>(law, T);
+  friction_static = law.friction_static, friction_sliding = law.friction_sliding;
+}
+
 void SoftBodyState::free_step(double T, dvec3 gravity) {
   T_ = T;
   if (quasi_static()) std::fill(tissue_.velocity().begin(), tissue_.velocity().end(), dvec3(0));
@@ -136,6 +142,7 @@ void SoftBodyState::set_material(const TissueMaterial& material) {
   tissue_.set_material(material);
   if (tie_) tie_->set_material(tissue_.material());
   if (smearing_) smear();
+  if (dent_) friction_static = dent_->deformable.friction_static, friction_sliding = dent_->deformable.friction_sliding;
 }
 
 void SoftBodyState::halt() {

@@ -14,6 +14,7 @@
 
 namespace pliant {
 
+struct DentSpring;       // systems/soft/local/dent_spring.h
 class SmearingSurface;   // systems/soft/local/smearing_surface.h
 struct LocalElasticity;  // systems/soft/local/local_compliance.h
 
@@ -70,7 +71,10 @@ class SoftBodyState final : public ToolBody {
   void set_tie_stiffness(double ratio) { tie_->stiffness = ratio; }  // [1] handle_tie.h; with spring attachment
   // Of a body whose contacts are split (SoftContact::kSplit); else null.
   const SmearingSurface* smearing() const { return smearing_.get(); }
-  LocalElasticity elasticity() const;  // of tissue(), for the laws of split contacts
+  // The law of its dents instead of the tissue's own, with steps of T [s], and its friction. Before the first step.
+  void set_dent_law(const Deformable& law, double T);
+  const DentSpring* dent() const { return dent_.get(); }  // or null
+  LocalElasticity elasticity() const;                     // of tissue(), for the laws of split contacts
   // [m/s] v* at a smeared load.
   dvec3 free_velocity(const SmearedLoad& load) const;
   bool yields() const override { return smearing_ != nullptr; }
@@ -116,6 +120,7 @@ class SoftBodyState final : public ToolBody {
   mutable BlockColumns pushed_;  // of the last respond(): columns that were solved for
   mutable Rows expand_;          // contacts' rows x those columns; empty: they are the contacts'
   std::unique_ptr<const SmearingSurface> smearing_;
+  std::unique_ptr<const DentSpring> dent_;
   Vector free_velocity_;      // v* of the step; only of a body with smearing
   dquat placed_{1, 0, 0, 0};  // object frame to world at the start
   std::vector<const std::vector<uvec3>*> part_triangles_;

@@ -28,6 +28,8 @@ struct ContactPoint {
   std::uint64_t key = 0;                     // the same pair of features has the same key in the next step: warm start
   dvec3 impulse{0};                          // [N s] along the axes, on a; of the last solve
   dvec3 strained{0};                         // [m] of a split contact: its local tangential displacement, world
+  double dented = 0.0;                       // [m] of a split contact: depth of its local dent, of the last solve
+  double relaxed = 0.0;                      // [N] of a DentLaw that relaxes: the part of its force that has
   bool sliding = false;
   bool joined = false;       // added although thinning dropped it: without it the bodies sink in
   std::uint32_t source = 0;  // an index of Proximity, in this step

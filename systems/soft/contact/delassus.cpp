@@ -115,18 +115,23 @@ bool linearise_tips(const std::vector<std::unique_ptr<Body>>& bodies, double T, 
   return changed;
 }
 
-// The local tangential displacement of split contacts, whole at every step's end.
-void keep_strain(double T, const Delassus& delassus, const ContactProblem& problem,
-                 std::vector<ContactPoint>& contacts) {
+// The local displacement of split contacts, whole at every step's end.
+void keep_strain(const std::vector<std::unique_ptr<Body>>& bodies, double T, const Delassus& delassus,
+                 const ContactProblem& problem, std::vector<ContactPoint>& contacts) {
   const auto rows = static_cast<Eigen::Index>(3 * contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     ContactPoint& c = contacts[i];
     if (!c.a.smeared && !c.b.smeared) continue;
     c.strained = dvec3(0.0);
     const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
-    if (!(problem.impulse[row] > 0.0)) continue;
-    for (int k = 1; k < 3; ++k)
-      c.strained += T * delassus.compliance.row(row + k).head(rows).dot(problem.impulse.head(rows)) * c.axes[k];
+    const auto displaced = [&](int k) {
+      return T * delassus.compliance.row(row + k).head(rows).dot(problem.impulse.head(rows));
+    };
+    const bool pressed = problem.impulse[row] > 0.0, by_spring = c.b.smeared && c.b.smeared->spring.of;
+    c.dented = pressed ? displaced(0) + offset_of(bodies, c) : by_spring ? c.b.smeared->spring.depth(0.0) : 0.0;
+    if (by_spring) c.relaxed = c.b.smeared->spring.relaxed_after(c.dented);
+    if (!pressed) continue;
+    for (int k = 1; k < 3; ++k) c.strained += displaced(k) * c.axes[k];
   }
 }
 
@@ -285,7 +290,7 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
     apply_impulses(bodies, delassus, contacts, problem.impulse - first);
     keep_impulses(problem, contacts);
   }
-  keep_strain(T, delassus, problem, contacts);
+  keep_strain(bodies, T, delassus, problem, contacts);
   return report;
 }
 

@@ -5,6 +5,7 @@
 
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/local/smearing_surface.h"
+#include "systems/soft/local/split_contacts.h"
 #include "systems/soft/local/surface_frame.h"
 #include "systems/soft/local/tip_law.h"
 #include "systems/touch/collide/foot.h"
@@ -168,6 +169,18 @@ std::size_t PointContacts::press(const Pressed& pair, std::size_t level, std::ve
     c.key = vertex_key(pair.a, pair.b, kPointFeature + static_cast<std::uint32_t>(level) * kPointsOfLevel + i, 0);
     const ContactPoint* before = last_.find(c.key);
     carry_over(before, c);
+    // Points take the secant of one dent's law, and leave out what takes time.
+    const double dented = pair.tissue_a && pair.tissue_b ? 0.0 : c.dented;
+    const auto spring = [&](SurfacePoint& side, const SoftBodyState* tissue) {
+      if (!side.smeared || !tissue->dent()) return;
+      auto load = std::make_shared<SmearedLoad>(*side.smeared);
+      load->spring = spring_at(*tissue, side, 0.0, 0.0, dented, 0.0);
+      side.smeared = std::move(load);
+      const Mesh& mesh = *tissue->collision_mesh;
+      const double grip = std::sqrt(painted(mesh.friction_factor, mesh, side.triangle, side.barycentric));
+      c.mu_static *= grip, c.mu_sliding *= grip;
+    };
+    spring(c.a, pair.tissue_a), spring(c.b, pair.tissue_b);
     if (!before && !pair.last.empty()) {  // of another level
       const ContactPoint* like = nullptr;
       double least_apart = 4.0 * points.spacing * points.spacing;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "systems/soft/local/dent_spring.h"
 #include "systems/soft/local/local_compliance.h"
 
 namespace pliant {
@@ -34,6 +35,7 @@ struct SmearedLoad {
   double tip_radius = 0.0;   // [m] R_s, of tip and surface together; 0: a point of fixed radius
   double tip_force = 0.0;    // [N] about which its law is linear in this solve
   double pair_radius = 0.0;  // [m] of its pair terms: they do not grow with the load
+  DentSpringAt spring;       // the law of its dent, if `spring.of`; else the tissue's own
 };
 
 }  // namespace pliant

@@ -11,7 +11,7 @@ Eigen::Vector3d normal_of(const SmearedLoad& load) {
   return {n.x, n.y, n.z};
 }
 
-// What the lattice lacks between two loads by anchors (SmearingSurface::missing), per unit along the normals.
+// The lattice lacks this between two loads by anchors (SmearingSurface::missing), per unit along the normals.
 Block lacking(const SmearedLoad& i, const SmearedLoad& j, double missing, const LocalElasticity& tissue) {
   const Block across = normal_of(i) * normal_of(j).transpose();
   const Block along_i = Block::Identity() - normal_of(i) * normal_of(i).transpose(),
@@ -46,8 +46,8 @@ void add_local_compliance(const SmearingSurface& smearing, const LocalElasticity
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) {
       const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-      Block of_law = i == j ? self_compliance(*loads[a], tissue, layer)
-                            : local_compliance(pair_place(*loads[a]), pair_place(*loads[b]), tissue, &layer);
+      Block of_law =
+          i == j ? self_compliance(*loads[a], tissue, layer) : pair_compliance(*loads[a], *loads[b], tissue, layer);
       of_law += lacking(*loads[a], *loads[b], missing(i, j), tissue);
       const Block pair = along(a) * of_law * along(b).transpose();
       L.block<3, 3>(3 * i, 3 * j) = pair;

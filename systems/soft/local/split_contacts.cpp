@@ -30,6 +30,10 @@ bool met_by_tips(const Body& a, const Body& b) {
   return (!a.tips.empty() && split_tissue(b)) || (!b.tips.empty() && split_tissue(a));
 }
 
+double paint_at(const std::vector<float>& factor, const Mesh& mesh, const SurfacePoint& at) {
+  return painted(factor, mesh, at.triangle, at.barycentric);
+}
+
 // [1/m] Mean curvature of the rest surface, > 0 where it bulges.
 double bend_at(const Mesh& mesh, std::uint32_t triangle) {
   const Corner3 c = corners(mesh, triangle);
@@ -152,9 +156,16 @@ void place_tips(const std::vector<std::unique_ptr<Body>>& bodies, std::uint32_t 
       wall.describe(its, c);
       if (c.gap - std::max(0.0, closing(its, body, c, T)) > kNotYet * radius) return;
       c.key = vertex_key(probe, tissue, kTipFeature + tip, number);
-      c.mu_static = body.friction_static;
-      c.mu_sliding = body.friction_sliding;
+      const double grip =
+          !body.dent() ? 1.0 : paint_at(body.collision_mesh->friction_factor, *body.collision_mesh, c.b);
+      c.mu_static = grip * body.friction_static;
+      c.mu_sliding = grip * body.friction_sliding;
       carry_over(before, c);
+      if (body.dent()) {
+        auto load = std::make_shared<SmearedLoad>(*c.b.smeared);
+        load->spring = spring_at(body, c.b, radius, T, c.dented, c.relaxed);
+        c.b.smeared = std::move(load);
+      }
       taken |= 1u << number;
       found.push_back(std::move(c));
     };
@@ -199,6 +210,12 @@ void fit_tips(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::v
 }
 
 }  // namespace
+
+DentSpringAt spring_at(const SoftBodyState& tissue, const SurfacePoint& at, double radius, double T, double dented,
+                       double relaxed) {
+  const Mesh& mesh = *tissue.collision_mesh;
+  return {tissue.dent(), paint_at(mesh.stiffness_factor, mesh, at), radius, T, dented, relaxed};
+}
 
 bool met_split(const Body& a, const Body& b) {
   return &a != &b && (split_tissue(a) || split_tissue(b));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "systems/soft/contact/contact_point.h"
+#include "systems/soft/local/dent_spring.h"
 
 namespace pliant {
 
@@ -25,6 +26,10 @@ class SplitContacts {
   std::vector<ContactPoint> tips_;  // of the last step
   std::unique_ptr<PointContacts> points_;
 };
+
+// The law of a contact's dent; of a body without a DentLaw none.
+DentSpringAt spring_at(const SoftBodyState& tissue, const SurfacePoint& at, double radius, double T, double dented,
+                       double relaxed);
 
 // Whether contacts between two bodies are placed here: their surfaces without dents are in each other.
 bool met_split(const Body& a, const Body& b);

@@ -22,6 +22,10 @@ double hertz_radius(double force, double tip_radius, double reduced) {
 }
 
 TipState tip_law(const SmearedLoad& tip, double force, const LocalElasticity& tissue, const LayerKernel& layer) {
+  if (tip.spring.of) {
+    const double depth = tip.spring.depth(force);
+    return {depth, 1 / tip.spring.slope(depth), 0.0};
+  }
   const LocalPlace& at = tip.place;
   const double reduced = tissue.reduced(),
                widest = std::min(tip.pair_radius, kWidestTip * at.smeared / at.lattice.normal);
@@ -45,12 +49,6 @@ TipState tip_law(const SmearedLoad& tip, double force, const LocalElasticity& ti
   return out;
 }
 
-LocalPlace pair_place(const SmearedLoad& load) {
-  LocalPlace out = load.place;
-  out.own = load.pair_radius;
-  return out;
-}
-
 namespace {
 
 // The place of a contact's own part: a tip's at its tip_force.
@@ -63,14 +61,53 @@ LocalPlace own_place(const SmearedLoad& load, const LocalElasticity& tissue, con
 
 }  // namespace
 
+namespace {
+
+// [m/N] Along the normal, of a DentSpring.
+double spring_compliance(const SmearedLoad& load) {
+  if (!(load.tip_radius > 0.0)) return load.spring.secant_compliance();
+  return 1 / load.spring.slope(load.spring.depth(load.tip_force));
+}
+
+// Along the surfaces by Cerruti's ratio of a half-space's compliances, of the law at small depth.
+Block block_of_spring(dvec3 at_i, dvec3 at_j, double normal, double first, double poisson) {
+  const auto vector = [](dvec3 n) { return Eigen::Vector3d(n.x, n.y, n.z); };
+  const Eigen::Vector3d i = vector(at_i), j = vector(at_j);
+  const Block flat_i = Block::Identity() - i * i.transpose(), flat_j = Block::Identity() - j * j.transpose();
+  return normal * i * j.transpose() + (2 - poisson) / (2 * (1 - poisson)) * first * flat_i * flat_j;
+}
+
+LocalPlace pair_place(const SmearedLoad& load) {
+  LocalPlace out = load.place;
+  out.own = load.pair_radius;
+  return out;
+}
+
+}  // namespace
+
 Block self_compliance(const SmearedLoad& load, const LocalElasticity& tissue, const LayerKernel& layer) {
+  if (load.spring.of)
+    return block_of_spring(load.place.normal, load.place.normal, spring_compliance(load),
+                           load.spring.first_compliance(), tissue.poisson);
   return local_self_compliance(own_place(load, tissue, layer), tissue, &layer);
+}
+
+Block pair_compliance(const SmearedLoad& i, const SmearedLoad& j, const LocalElasticity& tissue,
+                      const LayerKernel& layer) {
+  if (!i.spring.of || !j.spring.of) return local_compliance(pair_place(i), pair_place(j), tissue, &layer);
+  const dvec3 apart = i.place.at - j.place.at;
+  const double shared = i.spring.of->shared.at(dot(apart, apart)) * std::max(0.0, dot(i.place.normal, j.place.normal));
+  return block_of_spring(i.place.normal, j.place.normal,
+                         shared * std::sqrt(spring_compliance(i) * spring_compliance(j)),
+                         shared * std::sqrt(i.spring.first_compliance() * j.spring.first_compliance()), tissue.poisson);
 }
 
 double tip_offset(const SmearedLoad& load, const LocalElasticity& tissue, const LayerKernel& layer) {
   if (!(load.tip_radius > 0.0)) return 0.0;
-  const double slope = local_normal_compliance(own_place(load, tissue, layer), tissue, &layer);
-  return tip_law(load, load.tip_force, tissue, layer).depth - slope * load.tip_force;
+  const TipState at = tip_law(load, load.tip_force, tissue, layer);
+  const double slope =
+      load.spring.of ? at.slope : local_normal_compliance(own_place(load, tissue, layer), tissue, &layer);
+  return at.depth - slope * load.tip_force;
 }
 
 void make_positive(Eigen::MatrixXd& compliance) {
@@ -83,6 +120,7 @@ void make_positive(Eigen::MatrixXd& compliance) {
 
 double tip_force(const SmearedLoad& tip, double compliance, double depth, const LocalElasticity& tissue,
                  const LayerKernel& layer) {
+  if (tip.spring.of && compliance == 0.0) return tip.spring.force(depth);
   // delta is concave: from any start the next iterate is below the root, from there on they ascend.
   double force = 4.0 / 3.0 * tissue.reduced() * std::sqrt(tip.tip_radius) * std::pow(depth, 1.5);
   for (int i = 0; i < kTipSteps; ++i) {

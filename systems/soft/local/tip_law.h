@@ -22,10 +22,10 @@ struct TipState {
 };
 TipState tip_law(const SmearedLoad& tip, double force, const LocalElasticity& tissue, const LayerKernel& layer);
 
-// [m/N] A contact's own part of L, in the frame of its place, a tip's slope at its tip_force; the place for its pair
-// terms.
+// [m/N] A contact's own part of L, in the frame of its place, a tip's slope at its tip_force; and that of two contacts.
 Block self_compliance(const SmearedLoad& load, const LocalElasticity& tissue, const LayerKernel& layer);
-LocalPlace pair_place(const SmearedLoad& load);
+Block pair_compliance(const SmearedLoad& i, const SmearedLoad& j, const LocalElasticity& tissue,
+                      const LayerKernel& layer);
 // [m] Of the law's tangent at tip_force, at no force; of a point zero.
 double tip_offset(const SmearedLoad& load, const LocalElasticity& tissue, const LayerKernel& layer);
 
