@@ -209,9 +209,9 @@ std::optional<Note> law_fault(const LevelNode& node) {
   if (body.mesh.empty() && body.elements == Elements::kHexahedra && (body.fibres.young > 0.0 || !body.cavities.empty()))
     return Note{"has `fibres` or `cavities`, which are of tetrahedra", "leave out `elements` `hexahedra`",
                 "level.not_of_hexahedra", node.name};
-  if ((body.prony.count > 0 || body.fibres.young > 0.0) && body.contact == SoftContact::kSplit)
+  if ((body.prony.count > 0 || body.fibres.young > 0.0) && contact_of(node) == SoftContact::kSplit)
     return Note{"has `prony` or `fibres`, and the analytic dent of `contact` `split` neither relaxes nor has fibres",
-                "take `contact` `lattice`", "level.not_with_split", node.name};
+                "take `contact` `lattice` and no PLIANT_deformable", "level.not_with_split", node.name};
   if (body.integrator != StepMethod::kEuler &&
       (body.prony.count > 0 || body.fibres.young > 0.0 || !body.cavities.empty()))
     return Note{"has `prony`, `fibres` or `cavities`, which only the step of `integrator` `euler` takes",
