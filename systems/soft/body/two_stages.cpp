@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kRoot2 = std::numbers::sqrt2;
 constexpr double kMostCredit = 0.01;  // [1] of the energy: truncation errors of both signs
-constexpr int kMostHalvings = 20;
-constexpr double kRounding = 1e-9;  // [1] of the energy
+constexpr int kMostShortenings = 20;
+constexpr double kEnergyRounding = 1e-9;  // [1] of the energy
 // [1] of the velocity: bound of the motion by r. Linear stages are stable with contacts for any length of the step; a
 // force from elements that the first stage would turn inside out is not.
 constexpr double kBend = 0.3;
@@ -154,9 +154,9 @@ TwoStages::End TwoStages::finish(const Tissue& tissue, const Vector& w, double s
   // Motion into more elastic energy than there is is shortened, as in passive_step.h.
   const Vector drift = free ? drift_of(tissue, w) : Vector(Vector::Zero(w.size()));
   double left = 0.0, scale = 1.0;  // [J] for the end's velocity
-  for (int i = 0; i < kMostHalvings; ++i) {
+  for (int i = 0; i < kMostShortenings; ++i) {
     left = spare + push.dot(end.motion) - tissue.elastic_energy(moved(tissue, end.motion, share * T_));
-    if (left >= -kRounding * before) break;
+    if (left >= -kEnergyRounding * before) break;
     scale *= 0.5;
     end.motion = drift + scale * (w - drift);
     end.shortened = true;

@@ -12,7 +12,7 @@ constexpr int kDepthSteps = 100;       // of Newton's method within a bracket
 constexpr double kDepthExact = 1e-13;  // [1]
 constexpr double kLeastSphere = 1e-3;  // [1] of a tip's radius: depth of Hertz' first slope, which is 0 at none
 constexpr double kFirstDepth = 1e-6;   // [m] of a bracket
-constexpr double kDeepest = 1e3;       // [m]: a softening law has no depth of this force
+constexpr double kDeepestDent = 1e3;   // [m]: a softening law has no depth of this force
 
 double share_of_contact(const Deformable& it) {
   return contact_radius(it, it.reach) / it.reach;
@@ -55,7 +55,7 @@ double DentSpringAt::slope(double depth) const {
 double DentSpringAt::depth(double wanted) const {
   double low = 0.0, high = std::max(kFirstDepth, dented);
   if (force(low) >= wanted) return 0.0;
-  while (force(high) < wanted && high < kDeepest) low = high, high *= 2;
+  while (force(high) < wanted && high < kDeepestDent) low = high, high *= 2;
   double at = high;
   for (int i = 0; i < kDepthSteps && high - low > kDepthExact * high; ++i) {
     const double over = force(at) - wanted;
