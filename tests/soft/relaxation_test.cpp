@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kEdge = 0.1, kModulus = 1e4;
+constexpr double kCubeEdge = 0.1, kCubeModulus = 1e4;
 constexpr double kLight = 1e-6;  // [kg/m3] no inertia
 
 Prony two_arms() {
@@ -25,27 +25,27 @@ double stays(const Prony& prony, double t) {
 }
 
 TissueMaterial relaxing(TissueLaw law, double poisson, const Prony& prony, double density = kLight) {
-  return {.young = kModulus, .poisson = poisson, .density = density, .law = law, .stiffening = 0.3, .prony = prony};
+  return {.young = kCubeModulus, .poisson = poisson, .density = density, .law = law, .stiffening = 0.3, .prony = prony};
 }
 
-// A cube with its faces x = 0 and x = kEdge bonded to plates.
+// A cube with its faces x = 0 and x = kCubeEdge bonded to plates.
 struct BondedCube {
-  TetMesh mesh = tets::box(3, 3, 3, dvec3(0), dvec3(kEdge));
+  TetMesh mesh = tets::box(3, 3, 3, dvec3(0), dvec3(kCubeEdge));
   std::unique_ptr<Tissue> tissue;
   std::unique_ptr<LinearSolver> solver = make_solver(SolverKind::kBlockCholesky, 1);
 
   BondedCube(const TissueMaterial& material, bool far_plate = true) {
-    tets::hold(mesh, [&](dvec3 p) { return p.x < 1e-9 || (far_plate && p.x > kEdge - 1e-9); });
+    tets::hold(mesh, [&](dvec3 p) { return p.x < 1e-9 || (far_plate && p.x > kCubeEdge - 1e-9); });
     tissue = std::make_unique<Tissue>(mesh, material, mesh.free_count);
     solver->analyse(tissue->inner());
   }
-  bool on_plate(std::uint32_t i) const { return mesh.nodes[i].x > kEdge - 1e-9; }
+  bool on_plate(std::uint32_t i) const { return mesh.nodes[i].x > kCubeEdge - 1e-9; }
   // Takes the shape of the elastic cube at this strain, at once.
   void jump(TissueMaterial material, dvec3 way) {
     material.prony = {};
     BondedCube elastic(material);
     for (std::uint32_t i = 0; i < mesh.node_count(); ++i)
-      elastic.tissue->position()[i] += mesh.nodes[i].x / kEdge * way;
+      elastic.tissue->position()[i] += mesh.nodes[i].x / kCubeEdge * way;
     settle_tissue(*elastic.tissue, *elastic.solver, dvec3(0), {.iterations = 200, .tolerance = 1e-12});
     tissue->position() = elastic.tissue->position();
     tissue->end_step(0.0);
@@ -101,7 +101,7 @@ TEST(Relaxation, CreepUnderADeadLoadIsThatOfTheStandardLinearSolid) {
   const Prony arm{.count = 1, .arms = {Prony::Arm{0.6, 0.2}}};
   for (const double T : {0.002, 0.01}) {
     BondedCube cube(relaxing(TissueLaw::kCorotational, 0.0, arm), false);
-    const double strain = 0.01, force = kModulus * strain * kEdge * kEdge;
+    const double strain = 0.01, force = kCubeModulus * strain * kCubeEdge * kCubeEdge;
     std::vector<dvec3> push(cube.mesh.node_count(), dvec3(0));
     double count = 0.0;
     for (std::uint32_t i = 0; i < cube.mesh.node_count(); ++i) count += cube.on_plate(i);
@@ -118,9 +118,9 @@ TEST(Relaxation, CreepUnderADeadLoadIsThatOfTheStandardLinearSolid) {
       cube.step(T, &push);
       double moved = 0.0;
       for (std::uint32_t n = 0; n < cube.mesh.node_count(); ++n)
-        if (cube.on_plate(n)) moved += (cube.tissue->position()[n].x - kEdge) / count;
+        if (cube.on_plate(n)) moved += (cube.tissue->position()[n].x - kCubeEdge) / count;
       const double left = arm.remains(), want = 1 / left - (1 / left - 1) * std::exp(-left * i * T / 0.2);
-      EXPECT_NEAR(moved / (strain * kEdge), want, 5e-3 * want) << T << ' ' << i;
+      EXPECT_NEAR(moved / (strain * kCubeEdge), want, 5e-3 * want) << T << ' ' << i;
     }
   }
 }
@@ -132,7 +132,7 @@ TEST(Relaxation, ALoopLosesTheEnergyOfTheLossModulus) {
   double work = 0.0, before = 0.0, place = 0.0;
   const int cycle = static_cast<int>(std::lround(2 * std::numbers::pi / rate / T));
   for (int i = 1; i <= 8 * cycle; ++i) {
-    const double next = strain * kEdge * std::sin(rate * i * T);
+    const double next = strain * kCubeEdge * std::sin(rate * i * T);
     for (std::uint32_t n = 0; n < cube.mesh.node_count(); ++n)
       if (cube.on_plate(n)) cube.tissue->velocity()[n].x = (next - place) / T;
     cube.step(T);
@@ -143,9 +143,9 @@ TEST(Relaxation, ALoopLosesTheEnergyOfTheLossModulus) {
   double loss = 0.0;
   for (std::size_t i = 0; i < prony.count; ++i) {
     const double x = rate * prony.arms[i].time;
-    loss += kModulus * prony.arms[i].share * x / (1 + x * x);
+    loss += kCubeModulus * prony.arms[i].share * x / (1 + x * x);
   }
-  EXPECT_NEAR(work, std::numbers::pi * loss * strain * strain * kEdge * kEdge * kEdge, 0.01 * work);
+  EXPECT_NEAR(work, std::numbers::pi * loss * strain * strain * kCubeEdge * kCubeEdge * kCubeEdge, 0.01 * work);
 }
 
 // One element through a random closed path: the hand gets nothing back.

@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kSoftCube = 0.05, kSoftStep = 1.0 / 60.0;  // [m], [s]
+constexpr double kSoftCube = 0.05, kFrame = 1.0 / 60.0;  // [m], [s]
 
 SoftBody relaxing_rubber(TissueLaw law) {
   SoftBody body;
@@ -26,7 +26,7 @@ SoftBody relaxing_rubber(TissueLaw law) {
 TEST(RelaxingBody, AHeldSquashRelaxesByTheSeries) {
   for (const TissueLaw law : {TissueLaw::kCorotational, TissueLaw::kNeoHookean}) {
     const SoftBody body = relaxing_rubber(law);
-    scenes::ToolStage stage(kSoftStep);
+    scenes::ToolStage stage(kFrame);
     stage.world.simulation.gravity = dvec3(0);
     RigidBody still = test::fixed();
     still.friction_static = still.friction_sliding = 0.0;
@@ -37,12 +37,12 @@ TEST(RelaxingBody, AHeldSquashRelaxesByTheSeries) {
     stage.prepare();
     auto& moving = dynamic_cast<FixedBody&>(stage.body(plate));
     const int press = 12;
-    moving.set_velocity(dvec3(0, -0.1 * kSoftCube / (press * kSoftStep), 0), dvec3(0));
+    moving.set_velocity(dvec3(0, -0.1 * kSoftCube / (press * kFrame), 0), dvec3(0));
     for (int i = 0; i < press; ++i) stage.step();
     moving.set_velocity(dvec3(0), dvec3(0));
     stage.step();
     // Of a ramp from 0 to T0, in units of the stress at once, at a time t after its beginning.
-    const double T0 = press * kSoftStep;
+    const double T0 = press * kFrame;
     const auto ramp = [&](double t) {
       double g = body.prony.remains();
       for (std::size_t i = 0; i < body.prony.count; ++i) {
@@ -51,11 +51,11 @@ TEST(RelaxingBody, AHeldSquashRelaxesByTheSeries) {
       }
       return g;
     };
-    const double first = stage.contact_force(floor, cube).y, begin = T0 + kSoftStep;
+    const double first = stage.contact_force(floor, cube).y, begin = T0 + kFrame;
     ASSERT_LT(first, -1.0);
     for (int i = 1; i <= 120; ++i) {
       stage.step();
-      EXPECT_NEAR(stage.contact_force(floor, cube).y / first, ramp(begin + i * kSoftStep) / ramp(begin), 0.01)
+      EXPECT_NEAR(stage.contact_force(floor, cube).y / first, ramp(begin + i * kFrame) / ramp(begin), 0.01)
           << static_cast<int>(law) << ' ' << i;
     }
   }
