@@ -43,6 +43,7 @@ Level palpation() {
   lump.name = "lump";
   lump.young = 1.6e5;
   pad.soft_body->materials = {lump};
+  pad.soft_body->carries = Carries::kInside;
   LevelNode& inside = add_shape(level, "lump", ball(kLumpRadius), around(dvec3(kLumpRadius + 0.002)), 0.002,
                                 add_material(level, "lump", kCoral, 0.6f));
   place(inside, {0.0, kLump, dvec3(0)});

@@ -68,14 +68,14 @@ TEST(EditorFindings, AProbeThatNothingMovesGetsADevice) {
   EXPECT_FALSE(editor.state().find("finger")->node.device);
 }
 
-TEST(EditorFindings, ANodeThatIsSoftAndDeformableBecomesOneOfThem) {
+TEST(EditorFindings, ANodeThatIsRigidAndDeformableBecomesOneOfThem) {
   const OwnFolder folder("findings_both");
   Level level = testing::sheet_and_finger();
-  level.nodes[0].soft_body.emplace();
+  level.nodes[0].rigid_body.emplace();
   Editor editor;
   take(editor, level, folder.path);
-  expect_mended(editor, "PLIANT_soft_body and PLIANT_deformable", "sheet");
-  EXPECT_TRUE(editor.state().find("sheet")->node.soft_body);
+  expect_mended(editor, "PLIANT_rigid_body and PLIANT_deformable", "sheet");
+  EXPECT_TRUE(editor.state().find("sheet")->node.rigid_body);
   EXPECT_FALSE(editor.state().find("sheet")->node.deformable);
 }
 

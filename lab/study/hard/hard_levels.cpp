@@ -120,8 +120,10 @@ void judge(Judged& judged, const fs::path& file, bool sound, bool bodies) {
     judged.worst.need(added.ok(), added ? "" : added.error().message());
     if (!added) return;
   }
-  for (LevelNode& node : level.nodes)
-    if (node.device) node.device->driver = DriverKind::kOrbit;
+  const bool surface = std::any_of(level.nodes.begin(), level.nodes.end(),
+                                   [](const LevelNode& node) { return node.deformable && !node.soft_body; });
+  for (LevelNode& node : level.nodes)  // a probe orbits over a surface; without one it follows its script
+    if (node.device && (surface || !node.probe)) node.device->driver = DriverKind::kOrbit;
   ++judged.files;
   orbit(judged, level, name);
   without_friction(level);

@@ -353,7 +353,9 @@ bool SoftBodyState::respond_at(std::span<const Eigen::Index> rows, Rows& out) co
   }
   out.resize(size(), mix.count());
   out.bottomRows(size() - handle_row()).setZero();
-  return solver_.solve_kept(mix, out.topRows(handle_row()));
+  if (!solver_.solve_kept(mix, out.topRows(handle_row()))) return false;
+  out *= response_;
+  return true;
 }
 
 void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,

@@ -79,7 +79,7 @@ void Tissue::assemble_share(const Share& share, const Scale& scale, const std::v
     std::memcpy(now.q, pack.q, sizeof now.q);
     turn_gradients(pack, now);
     take_forces(pack, lambda_, mu_, now);
-    if (!memory_.empty()) add_history(p, now);
+    if (!memory_.empty()) take_gradients(pack, now), add_history(p, now);
     for (std::size_t lane = 0; lane < pack.count; ++lane) {
       const std::size_t element = p * kElementLanes + lane;
       add_forces(pack.node[lane], lane, now, 1.0, mesh_.node_count(), force_);
