@@ -122,7 +122,7 @@ TEST(TissueKeys, AHollowIsFoundWithItsVolume) {
   its.level.nodes[0].soft_body->cavities = {{.name = "gall"}, {}};
   EXPECT_NE(its.set().error().message().find("no hollow remains"), std::string::npos);
   its.level.meshes[0].primitives.pop_back();
-  its.parts = std::move(*make_soft_parts(its.level.nodes[0], &its.level.meshes[0], mat4(1), {}));
+  its.parts = *make_soft_parts(its.level.nodes[0], &its.level.meshes[0], mat4(1), {});
   EXPECT_NE(its.set().error().message().find("no closed hollow"), std::string::npos);
 }
 
