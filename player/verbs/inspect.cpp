@@ -148,6 +148,22 @@ OrderedJson describe_tools(const Level& level) {
   return list;
 }
 
+std::set<std::string> extensions_of(const Level& level) {
+  std::set<std::string> extensions;
+  for (const LevelNode& node : level.nodes) {
+    if (node.deformable) extensions.insert("PLIANT_deformable");
+    if (node.probe) extensions.insert("PLIANT_probe");
+    if (node.device) extensions.insert("PLIANT_haptic_device");
+    if (node.soft_body) extensions.insert("PLIANT_soft_body");
+    if (node.handle) extensions.insert("PLIANT_handle");
+    if (node.rigid_body) extensions.insert("PLIANT_rigid_body");
+    if (node.motion) extensions.insert("PLIANT_motion");
+    if (node.effect) extensions.insert("PLIANT_effect");
+  }
+  if (level.environment) extensions.insert("PLIANT_environment");
+  return extensions;
+}
+
 // The complete result as JSON; the text form reads from it.
 OrderedJson describe(const Level& level, const std::vector<ObjectReport>& objects) {
   OrderedJson json;
@@ -185,20 +201,10 @@ OrderedJson describe(const Level& level, const std::vector<ObjectReport>& object
                     {"as_tissue", object.as_tissue}});
   }
   std::vector<std::string> probes, devices;
-  std::set<std::string> extensions;
   for (const LevelNode& node : level.nodes) {
     if (node.probe || node.handle) probes.push_back(node.name);
     if (node.device) devices.push_back(node.name);
-    if (node.deformable) extensions.insert("PLIANT_deformable");
-    if (node.probe) extensions.insert("PLIANT_probe");
-    if (node.device) extensions.insert("PLIANT_haptic_device");
-    if (node.soft_body) extensions.insert("PLIANT_soft_body");
-    if (node.handle) extensions.insert("PLIANT_handle");
-    if (node.rigid_body) extensions.insert("PLIANT_rigid_body");
-    if (node.motion) extensions.insert("PLIANT_motion");
-    if (node.effect) extensions.insert("PLIANT_effect");
   }
-  if (level.environment) extensions.insert("PLIANT_environment");
 
   json["file"] = level.path.string();
   json["nodes"] = level.nodes.size();
@@ -207,7 +213,7 @@ OrderedJson describe(const Level& level, const std::vector<ObjectReport>& object
   json["triangles"] = triangles;
   json["materials"] = level.materials.size();
   json["images"] = level.images.size();
-  json["extensions"] = extensions;
+  json["extensions"] = extensions_of(level);
   json["probes"] = probes;
   json["devices"] = devices;
   json["tools"] = describe_tools(level);

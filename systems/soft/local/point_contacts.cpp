@@ -53,6 +53,31 @@ struct Seed {
   dvec3 outward{0};            // [1] of the other, world
 };
 
+// The secants of the dents' laws of both sides, without what takes time, and their painted friction.
+void take_springs(const SoftBodyState* tissue_a, const SoftBodyState* tissue_b, ContactPoint& c) {
+  const double dented = tissue_a && tissue_b ? 0.0 : c.dented;
+  for (const auto& [side, tissue] : {std::pair{&c.a, tissue_a}, {&c.b, tissue_b}}) {
+    if (!side->smeared || !tissue->dent()) continue;
+    auto load = std::make_shared<SmearedLoad>(*side->smeared);
+    load->spring = spring_at(*tissue, *side, 0.0, 0.0, dented, 0.0);
+    side->smeared = std::move(load);
+    const Mesh& mesh = *tissue->collision_mesh;
+    const double grip = std::sqrt(painted(mesh.friction_factor, mesh, side->triangle, side->barycentric));
+    c.mu_static *= grip, c.mu_sliding *= grip;
+  }
+}
+
+// Friction goes on from the nearest contact of the last step, whose points were of another level.
+void carry_from_another_level(const std::vector<ContactPoint>& last, double spacing, ContactPoint& c) {
+  const ContactPoint* like = nullptr;
+  double least_apart = 4.0 * spacing * spacing;
+  for (const ContactPoint& old : last) {
+    const dvec3 d = old.a.position - c.a.position;
+    if (dot(d, d) < least_apart) least_apart = dot(d, d), like = &old;
+  }
+  if (like) c.strained = like->strained - dot(like->strained, c.normal) * c.normal, c.sliding = like->sliding;
+}
+
 }  // namespace
 
 // One pair in one step: body a presses on body b.
@@ -169,27 +194,8 @@ std::size_t PointContacts::press(const Pressed& pair, std::size_t level, std::ve
     c.key = vertex_key(pair.a, pair.b, kPointFeature + static_cast<std::uint32_t>(level) * kPointsOfLevel + i, 0);
     const ContactPoint* before = last_.find(c.key);
     carry_over(before, c);
-    // Points take the secant of one dent's law, and leave out what takes time.
-    const double dented = pair.tissue_a && pair.tissue_b ? 0.0 : c.dented;
-    const auto spring = [&](SurfacePoint& side, const SoftBodyState* tissue) {
-      if (!side.smeared || !tissue->dent()) return;
-      auto load = std::make_shared<SmearedLoad>(*side.smeared);
-      load->spring = spring_at(*tissue, side, 0.0, 0.0, dented, 0.0);
-      side.smeared = std::move(load);
-      const Mesh& mesh = *tissue->collision_mesh;
-      const double grip = std::sqrt(painted(mesh.friction_factor, mesh, side.triangle, side.barycentric));
-      c.mu_static *= grip, c.mu_sliding *= grip;
-    };
-    spring(c.a, pair.tissue_a), spring(c.b, pair.tissue_b);
-    if (!before && !pair.last.empty()) {  // of another level
-      const ContactPoint* like = nullptr;
-      double least_apart = 4.0 * points.spacing * points.spacing;
-      for (const ContactPoint& old : pair.last) {
-        const dvec3 d = old.a.position - c.a.position;
-        if (dot(d, d) < least_apart) least_apart = dot(d, d), like = &old;
-      }
-      if (like) c.strained = like->strained - dot(like->strained, c.normal) * c.normal, c.sliding = like->sliding;
-    }
+    take_springs(pair.tissue_a, pair.tissue_b, c);
+    if (!before) carry_from_another_level(pair.last, points.spacing, c);
     out.push_back(std::move(c));
   }
   return pressing;
