@@ -131,7 +131,7 @@ void BlockCholesky::solve(const Vector& b, Vector& x) const {
 }
 
 void BlockCholesky::solve_many(Eigen::Ref<Rows> columns) const {
-  if (columns.cols() > 1) return solve_packs(columns);
+  if (columns.cols() != 1) return solve_packs(columns);  // none: nothing to do
   Vector x;
   solve(columns.col(0), x);
   columns.col(0) = x;
