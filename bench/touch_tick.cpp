@@ -241,19 +241,14 @@ Many measure_many(int objects, int probes, Deformable d = {}) {
   return out;
 }
 
-}  // namespace
-}  // namespace pliant
-
-int main(int argc, char** argv) {
-  using namespace pliant;
-  const BenchArguments arguments(argc, argv, "--large");
+// Rows of the JSON's list `tick`; the medians at 1e4 and 1e6 vertices.
+std::string ticks_of_sizes(bool large, double& first, double& at_1e6) {
   fmt::print("One touch tick, probe sliding, ~2,000 awake vertices\n");
   fmt::print("{:>10} {:>7} {:>9} {:>9} {:>9} {:>10} {:>10} {:>12}\n", "vertices", "awake", "p50 us", "p99 us", "max us",
              "bytes/vtx", "ready s", "error/ampl.");
   std::vector<std::pair<int, std::uint32_t>> sizes{{41, 2000}, {130, 2000}, {409, 2000}, {409, kManyAwake}};
-  if (arguments.on) sizes.push_back({1291, 2000});
-  std::string json = "{\n  \"tick\": [";
-  double first = 0, at_1e6 = 0;
+  if (large) sizes.push_back({1291, 2000});
+  std::string json;
   for (const auto& [n, awake] : sizes) {
     const Row r = measure(n, awake, Distance::kChord, kPace);
     if (first == 0) first = r.p50;
@@ -266,10 +261,14 @@ int main(int argc, char** argv) {
         "\"bytes_per_vertex\": {:.1f}, \"ready_s\": {:.3f}, \"error_of_amplitude\": {:.3e}}}",
         n == 41 ? "" : ",", r.vertices, r.awake, r.p50, r.p99, r.max, r.bytes, r.prepare_s, r.error);
   }
+  return json;
+}
+
+std::string ticks_along_the_surface() {
   fmt::print(
       "\ndistance along the surface against the chord\n{:>8} {:>10} {:>6} {:>9} {:>9} {:>9} {:>9} {:>8} {:>12} {:>7}\n",
       "body", "vertices", "pace", "distance", "p50 us", "p99 us", "max us", "ready s", "error/ampl.", "ratio");
-  json += "\n  ],\n  \"distance\": [";
+  std::string json;
   const char* comma = "";
   for (const bool bumps : {false, true}) {
     for (const int n : {41, 130, 409}) {
@@ -292,13 +291,12 @@ int main(int argc, char** argv) {
       }
     }
   }
-  const AllAwake all = measure_all_awake(409);
-  fmt::print(
-      "\ntick at 1e6 / tick at 1e4: {:.2f}\nall awake, {} vertices: {:.2f} ms a step, {:.2f} ms a copy of the same "
-      "bytes, ratio {:.2f}\n",
-      at_1e6 / first, all.vertices, all.step_ms, all.copy_ms, all.step_ms / all.copy_ms);
+  return json;
+}
+
+std::string ticks_of_many() {
   fmt::print("\n{:>8} {:>9} {:>7} {:>9} {:>9}\n", "objects", "contacts", "awake", "p50 us", "p99 us");
-  json += "\n  ],\n  \"many\": [";
+  std::string json;
   for (const auto& [objects, probes] : {std::pair{1, 1}, {40, 1}, {4000, 1}, {1, 8}, {1, 64}}) {
     const Many m = measure_many(objects, probes);
     fmt::print("{:>8} {:>9} {:>7} {:>9.2f} {:>9.2f}\n", m.objects, m.contacts, m.awake, m.p50, m.p99);
@@ -307,7 +305,11 @@ int main(int argc, char** argv) {
         "{}\n    {{\"objects\": {}, \"contacts\": {}, \"awake\": {}, \"p50_us\": {:.3f}, \"p99_us\": {:.3f}}}",
         objects == 1 && probes == 1 ? "" : ",", m.objects, m.contacts, m.awake, m.p50, m.p99);
   }
-  json += "\n  ],\n  \"effects\": [";
+  return json;
+}
+
+std::string ticks_with_effects() {
+  std::string json;
   fmt::print("\none contact on one object\n{:>10} {:>9} {:>9}\n", "effect", "p50 us", "p99 us");
   const auto with = [](auto change) {
     Deformable d;
@@ -326,6 +328,25 @@ int main(int argc, char** argv) {
     json += fmt::format("{}\n    {{\"effect\": \"{}\", \"p50_us\": {:.3f}, \"p99_us\": {:.3f}}}",
                         &d == &effects[0].second ? "" : ",", name, m.p50, m.p99);
   }
+  return json;
+}
+
+}  // namespace
+}  // namespace pliant
+
+int main(int argc, char** argv) {
+  using namespace pliant;
+  const BenchArguments arguments(argc, argv, "--large");
+  double first = 0, at_1e6 = 0;
+  std::string json = "{\n  \"tick\": [" + ticks_of_sizes(arguments.on, first, at_1e6);
+  json += "\n  ],\n  \"distance\": [" + ticks_along_the_surface();
+  const AllAwake all = measure_all_awake(409);
+  fmt::print(
+      "\ntick at 1e6 / tick at 1e4: {:.2f}\nall awake, {} vertices: {:.2f} ms a step, {:.2f} ms a copy of the same "
+      "bytes, ratio {:.2f}\n",
+      at_1e6 / first, all.vertices, all.step_ms, all.copy_ms, all.step_ms / all.copy_ms);
+  json += "\n  ],\n  \"many\": [" + ticks_of_many();
+  json += "\n  ],\n  \"effects\": [" + ticks_with_effects();
   json += fmt::format(
       "\n  ],\n  \"ratio_1e6_to_1e4\": {:.3f},\n  \"all_awake\": {{\"vertices\": {}, \"step_ms\": {:.3f}, \"copy_ms\": "
       "{:.3f}, "

@@ -57,6 +57,20 @@ vec4 target_of(Source source, uint block) {
   return field_target_at(source.place, source.push, source.kind, d, N, has_offsets != 0u ? N : source.push.xyz);
 }
 
+// The relaxation of tissue that follows a probe from one target to the next.
+void relax(vec4 last, vec4 target, float r1, inout vec4 arm, inout vec4 relaxed) {
+  vec4 before = strained(last), now = strained(target);
+  relaxed = now - (arm_decay * (before - relaxed) + arm_ramp * (now - before));
+  float held = r1 > 0.0 && now.w < 0.0 ? now.w * (1.0 + 1.0 / r1) : 0.0;
+  if (relaxed.w < held && relaxed.w < 0.0) {
+    vec4 left = (1.0 - held / relaxed.w) * relaxed;
+    arm -= r1 * left;
+    relaxed -= left;
+  } else if (target == vec4(0)) {
+    relaxed = vec4(0);
+  }
+}
+
 void main() {
   uvec2 mine = steps[first_zone + gl_WorkGroupID.x].xy;
   lane = gl_LocalInvocationID.x;
@@ -95,18 +109,7 @@ void main() {
       for (uint block = blocks.x; next_bit(mask, bit); ++block)
         target += target_of(sources[from.x + rank(known.xy, bit)], block);
 
-      if (solid && follows) {
-        vec4 before = strained(shown - residual), now = strained(target);
-        relaxed = now - (arm_decay * (before - relaxed) + arm_ramp * (now - before));
-        float held = r1 > 0.0 && now.w < 0.0 ? now.w * (1.0 + 1.0 / r1) : 0.0;
-        if (relaxed.w < held && relaxed.w < 0.0) {
-          vec4 left = (1.0 - held / relaxed.w) * relaxed;
-          arm -= r1 * left;
-          relaxed -= left;
-        } else if (target == vec4(0)) {
-          relaxed = vec4(0);
-        }
-      }
+      if (solid && follows) relax(shown - residual, target, r1, arm, relaxed);
 
       vec4 pulled = follows ? vec4(0) : target;
       if (way >= 2u) {

@@ -53,6 +53,18 @@ struct Seed {
   dvec3 outward{0};            // [1] of the other, world
 };
 
+// A point of the pressing body over the other's surface.
+struct Standing {
+  const PressedPoint* point = nullptr;
+  dvec3 start{0}, x{0};                      // [m] world: of its triangle, and without its dent
+  dvec3 out_of_a{0};                         // [1] world
+  Foot foot;                                 // on the other, at rest
+  SurfaceFrame frame;                        // of the other there
+  double far = 0.0;                          // [m] largest gap of a contact
+  std::shared_ptr<SmearedLoad> over, under;  // of split tissue; else null
+  double facing() const { return -dot(out_of_a, frame.turn * foot.normal); }
+};
+
 // The secants of the dents' laws of both sides, without what takes time, and their painted friction.
 void take_springs(const SoftBodyState* tissue_a, const SoftBodyState* tissue_b, ContactPoint& c) {
   const double dented = tissue_a && tissue_b ? 0.0 : c.dented;
@@ -91,6 +103,16 @@ struct PointContacts::Pressed {
   std::vector<ContactPoint> last;  // contacts of the last step
   dvec3 low{1e300}, high{-1e300};  // [m] around the seeds
   Surface& surface;
+
+  // The place where the bodies are near each other that faces x and is nearest to it; null: none.
+  const Seed* nearest_seed(dvec3 x, dvec3 out_of_a) const;
+  // The point over b's surface; false: not near or not facing. `ready` [m]: gap of contacts that are kept ready.
+  bool stand(double around, double ready, Standing& at) const;
+  // [m] by which the gap closes in this step.
+  double closing(const Standing& at) const;
+  // The loads of both tissues, and the point where they put it; `kept` is that of a at rest. False: nothing to load.
+  bool smear(std::shared_ptr<const SmearedLoad>& kept, Standing& at) const;
+  ContactPoint contact(Standing& at) const;
 };
 
 void PointContacts::remember(const std::vector<ContactPoint>& contacts) {
@@ -108,89 +130,100 @@ PointContacts::Surface& PointContacts::surface_of(const std::vector<std::unique_
   return out;
 }
 
+const Seed* PointContacts::Pressed::nearest_seed(dvec3 x, dvec3 out_of_a) const {
+  const Seed* nearest = nullptr;
+  double least = 1e300;
+  for (const Seed& seed : seeds) {
+    const dvec3 d = seed.at - x;
+    if (dot(d, d) < least && dot(out_of_a, seed.outward) < 0.0) least = dot(d, d), nearest = &seed;
+  }
+  return nearest;
+}
+
+bool PointContacts::Pressed::stand(double around, double ready, Standing& at) const {
+  const PressedPoint& point = *at.point;
+  at.start = at.x = on_mesh(of_a, of_a.surface_position, point.triangle, point.barycentric);
+  if (glm::any(glm::lessThan(at.x, low - around)) || glm::any(glm::greaterThan(at.x, high + around))) return false;
+  at.out_of_a = outward_at(of_a, point.triangle);
+  const Seed* nearest = nearest_seed(at.x, at.out_of_a);
+  if (!nearest) return false;
+  const Mesh& mesh = *of_b.collision_mesh;
+  at.foot = descend(mesh, nearest->triangle, nearest->barycentric, nearest->frame.to_rest(at.x));
+  if (!at.foot.valid() || at.foot.at_border) return false;
+  at.frame = tissue_b ? nearest->frame : frame_of_triangle(of_b, at.foot.triangle);
+  at.far = ready + std::max(0.0, closing(at));
+  return !(at.facing() < kFacesBody || at.foot.height > 2.0 * at.far);
+}
+
+double PointContacts::Pressed::closing(const Standing& at) const {
+  const PressedPoint& point = *at.point;
+  return T * dot(at.frame.turn * at.foot.normal,
+                 on_mesh(of_b, of_b.surface_velocity, at.foot.triangle, at.foot.barycentric) -
+                     on_mesh(of_a, of_a.surface_velocity, point.triangle, point.barycentric));
+}
+
+bool PointContacts::Pressed::smear(std::shared_ptr<const SmearedLoad>& kept, Standing& at) const {
+  const PressedPoint& point = *at.point;
+  if (tissue_a) {
+    if (!kept) {
+      const Corner3 corner = corners(*of_a.collision_mesh, point.triangle);
+      const SurfaceFoot foot = surface_point(corner, point.triangle, point.barycentric, 0.0);
+      kept = std::make_shared<SmearedLoad>(tissue_a->smearing()->load_at(point.at, foot.normal, 1.0));
+    }
+    if (kept->nodes.empty()) return false;
+    at.over = std::make_shared<SmearedLoad>(*kept);
+    tissue_a->smearing()->follow(tissue_a->tissue().position(), *at.over);
+    at.x = at.over->to_world(point.at);
+  }
+  if (tissue_b) {
+    const SmearingSurface& smearing = *tissue_b->smearing();
+    at.under = std::make_shared<SmearedLoad>(smearing.load_at(at.foot.p, at.foot.normal, 1.0));
+    if (at.under->nodes.empty()) return false;
+    smearing.follow(tissue_b->tissue().position(), *at.under);
+    at.frame = {at.under->turn, at.under->mean, at.under->moved};
+  }
+  if (!tissue_a && !tissue_b) return true;
+  at.foot = descend(*of_b.collision_mesh, at.foot.triangle, at.foot.barycentric, at.frame.to_rest(at.x));
+  if (!at.foot.valid() || at.foot.at_border) return false;
+  if (!tissue_b) at.frame = frame_of_triangle(of_b, at.foot.triangle);
+  return true;
+}
+
+ContactPoint PointContacts::Pressed::contact(Standing& at) const {
+  ContactPoint c;
+  c.body_a = a, c.body_b = b;
+  c.a.triangle = at.point->triangle, c.a.barycentric = at.point->barycentric, c.a.position = at.start;
+  c.gap = at.foot.height;
+  c.normal = at.frame.turn * at.foot.normal;
+  c.b.triangle = at.foot.triangle, c.b.barycentric = at.foot.barycentric;
+  c.b.position = at.frame.to_world(at.foot.p);
+  const double own = kFlatOfDisc * std::sqrt(at.facing() * at.point->area / M_PI);
+  const auto give = [&](SmearedLoad& load, dvec3 outward) {
+    load.place.normal = outward * load.turn;
+    load.place.own = load.pair_radius = std::min(own, kWidestTip * load.place.smeared / load.place.lattice.normal);
+  };
+  if (at.over) give(*at.over, -c.normal);
+  if (at.under) at.under->place.at = at.foot.p, give(*at.under, c.normal);
+  c.a.smeared = std::move(at.over), c.b.smeared = std::move(at.under);
+  c.over_b = dmat2(1.0);
+  c.mu_static = mu_static, c.mu_sliding = mu_sliding;
+  return c;
+}
+
 // The contacts of a level's points. Returns how many press without a dent, or will at the end of the step.
 std::size_t PointContacts::press(const Pressed& pair, std::size_t level, std::vector<ContactPoint>& out) {
   out.clear();
   std::size_t pressing = 0;
   const PointLevel& points = pair.surface.levels[level];
-  std::vector<std::shared_ptr<const SmearedLoad>>& loads = pair.surface.loads[level];
   const double around = kAround * points.spacing;
   for (std::uint32_t i = 0; i < points.points.size(); ++i) {
-    const PressedPoint& point = points.points[i];
-    dvec3 x = on_mesh(pair.of_a, pair.of_a.surface_position, point.triangle, point.barycentric);
-    if (glm::any(glm::lessThan(x, pair.low - around)) || glm::any(glm::greaterThan(x, pair.high + around))) continue;
-    const dvec3 out_of_a = outward_at(pair.of_a, point.triangle);
-    const Seed* nearest = nullptr;
-    double least = 1e300;
-    for (const Seed& seed : pair.seeds) {
-      const dvec3 d = seed.at - x;
-      if (dot(d, d) < least && dot(out_of_a, seed.outward) < 0.0) least = dot(d, d), nearest = &seed;
-    }
-    if (!nearest) continue;
-    const Mesh& mesh = *pair.of_b.collision_mesh;
-    Foot foot = descend(mesh, nearest->triangle, nearest->barycentric, nearest->frame.to_rest(x));
-    if (!foot.valid() || foot.at_border) continue;
-    SurfaceFrame frame = nearest->frame;
-    if (!pair.tissue_b) frame = frame_of_triangle(pair.of_b, foot.triangle);
-    ContactPoint c;
-    c.body_a = pair.a, c.body_b = pair.b;
-    c.a.triangle = point.triangle, c.a.barycentric = point.barycentric, c.a.position = x;
-    const auto facing = [&] { return -dot(out_of_a, frame.turn * foot.normal); };
-    const auto closing = [&] {
-      return pair.T * dot(frame.turn * foot.normal,
-                          on_mesh(pair.of_b, pair.of_b.surface_velocity, foot.triangle, foot.barycentric) -
-                              on_mesh(pair.of_a, pair.of_a.surface_velocity, c.a.triangle, c.a.barycentric));
-    };
-    const double far = kReadyAt * points.spacing + std::max(0.0, closing());
-    if (facing() < kFacesBody || foot.height > 2.0 * far) continue;
-    if (pair.tissue_a) {
-      if (!loads[i]) {
-        const Corner3 corner = corners(*pair.of_a.collision_mesh, point.triangle);
-        const SurfaceFoot at = surface_point(corner, point.triangle, point.barycentric, 0.0);
-        loads[i] = std::make_shared<SmearedLoad>(pair.tissue_a->smearing()->load_at(point.at, at.normal, 1.0));
-      }
-      if (loads[i]->nodes.empty()) continue;
-      auto load = std::make_shared<SmearedLoad>(*loads[i]);
-      pair.tissue_a->smearing()->follow(pair.tissue_a->tissue().position(), *load);
-      x = load->to_world(point.at);
-      c.a.smeared = std::move(load);
-    }
-    std::shared_ptr<SmearedLoad> under;
-    if (pair.tissue_b) {
-      const SmearingSurface& smearing = *pair.tissue_b->smearing();
-      under = std::make_shared<SmearedLoad>(smearing.load_at(foot.p, foot.normal, 1.0));
-      if (under->nodes.empty()) continue;
-      smearing.follow(pair.tissue_b->tissue().position(), *under);
-      frame = {under->turn, under->mean, under->moved};
-    }
-    if (pair.tissue_a || pair.tissue_b) {
-      foot = descend(mesh, foot.triangle, foot.barycentric, frame.to_rest(x));
-      if (!foot.valid() || foot.at_border) continue;
-      if (!pair.tissue_b) frame = frame_of_triangle(pair.of_b, foot.triangle);
-    }
-    c.gap = foot.height;
-    pressing += c.gap - closing() < 0.0;
-    if (facing() < kFacesBody || c.gap > far) continue;
-    c.normal = frame.turn * foot.normal;
-    c.b.triangle = foot.triangle, c.b.barycentric = foot.barycentric, c.b.position = frame.to_world(foot.p);
-    const double own = kFlatOfDisc * std::sqrt(facing() * point.area / M_PI);
-    const auto give = [&](SmearedLoad& load, dvec3 outward) {
-      load.place.normal = outward * load.turn;
-      load.place.own = load.pair_radius = std::min(own, kWidestTip * load.place.smeared / load.place.lattice.normal);
-    };
-    if (c.a.smeared) {
-      auto load = std::make_shared<SmearedLoad>(*c.a.smeared);
-      give(*load, -c.normal);
-      c.a.smeared = std::move(load);
-    }
-    if (under) {
-      under->place.at = foot.p;
-      give(*under, c.normal);
-      c.b.smeared = std::move(under);
-    }
-    c.over_b = dmat2(1.0);
+    Standing at;
+    at.point = &points.points[i];
+    if (!pair.stand(around, kReadyAt * points.spacing, at) || !pair.smear(pair.surface.loads[level][i], at)) continue;
+    pressing += at.foot.height - pair.closing(at) < 0.0;
+    if (at.facing() < kFacesBody || at.foot.height > at.far) continue;
+    ContactPoint c = pair.contact(at);
     c.reach = around;
-    c.mu_static = pair.mu_static, c.mu_sliding = pair.mu_sliding;
     c.key = vertex_key(pair.a, pair.b, kPointFeature + static_cast<std::uint32_t>(level) * kPointsOfLevel + i, 0);
     const ContactPoint* before = last_.find(c.key);
     carry_over(before, c);
