@@ -89,17 +89,26 @@ Json schema_of(const Key& key, const Json& standard) {
   return out;
 }
 
-std::string table_row(const std::string& name, const Key& key, const Json& standard) {
-  std::string range;
-  if (key.choices)
-    for (const std::string& each : key.choices()) range += (range.empty() ? "`" : " · `") + each + "`";
+// The words of a choice; else the range with its unit, and what is usual.
+std::string values_of(const Key& key) {
+  std::string out;
+  if (key.choices) {
+    for (const std::string& each : key.choices()) out += (out.empty() ? "`" : " · `") + each + "`";
+    return out;
+  }
   const bool plain = key.type == KeyType::kText || key.type == KeyType::kNode || key.type == KeyType::kFlag ||
                      key.type == KeyType::kItems;
-  if (range.empty() && !plain) range = range_text(key);
+  if (!plain) out = range_text(key);
+  if (!key.unit.empty() && key.unit != "1") out += (out.empty() ? "" : " ") + key.unit;
+  const std::string usual = usual_text(key);
+  return usual.empty() ? out : out + " (" + usual + ")";
+}
+
+std::string table_row(const std::string& name, const Key& key, const Json& standard) {
   const std::string shown = key.alias || standard.is_null() || standard == Json("") ? ""
                             : standard.is_string()                                  ? standard.get<std::string>()
                                                                                     : standard.dump();
-  return fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", name, key.unit, range, usual_text(key), shown, key.doc);
+  return fmt::format("| `{}` | {} | {} | {} |\n", name, values_of(key), shown, key.doc);
 }
 
 // An object with this extension at its defaults.
@@ -145,8 +154,7 @@ std::string extension_tables() {
   for (const Extension& extension : extension_table()) {
     Defaults defaults(extension);
     out += fmt::format(
-        "### {} extension `PLIANT_{}`\n\n{}\n\n| key | unit | range | usual | default | meaning "
-        "|\n|---|---|---|---|---|---|\n",
+        "### {} extension `PLIANT_{}`\n\n{}\n\n| key | values (usual) | default | meaning |\n|---|---|---|---|\n",
         extension.on_scene ? "Scene" : "Node", extension.name, extension.doc);
     for (const Key& key : extension.keys) out += table_row(key.name, key, key.get(defaults.owner));
     for (const Key& key : extension.keys)

@@ -6,7 +6,7 @@ namespace pliant {
 
 const std::array<HandImpedance, 4>& hand_impedances() {
   static const std::array<HandImpedance, 4> all{{
-      {"none", 0.0, 0.0, 0.0, 0.0, 0.0, "nobody holds the device"},
+      {"none", 0.0, 0.0, 0.0, 0.0, 0.0, "no hand holds the device"},
       {"finger", 0.01, 300.0, 3.0, 2000.0, 5.0,
        "Hajian and Howe 1997 (ASME J. Biomech. Eng. 119): a fingertip of about 6 g, 2 to 5 N s/m, 200 to 800 N/m; the "
        "skin's own stiffness assumed"},

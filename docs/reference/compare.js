@@ -1,4 +1,4 @@
-// Draws each scene with Pliant and with three.js, and writes pictures and figures of the difference. See README.md.
+// Draws each scene with Pliant and with three.js, and writes pictures and figures of the difference. See docs/reference.md.
 import { execFileSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';

@@ -230,7 +230,7 @@ bool key_field(Editor& editor, const Key& key, Json& value) {
     case KeyType::kText: {
       std::string text = value.is_string() ? value.get<std::string>() : "";
       const bool device = &key == device_id_key();
-      changed = ui::text_field(key.name.c_str(), text, device ? "none: nobody moves it" : "none",
+      changed = ui::text_field(key.name.c_str(), text, device ? "none: it does not move" : "none",
                                device ? ImGui::GetContentRegionAvail().x / ui::scale() - 30 : 0,
                                ImGuiInputTextFlags_EnterReturnsTrue);
       if (device) {

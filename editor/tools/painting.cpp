@@ -187,7 +187,7 @@ std::string Painting::lacks() const {
   if (has_component(editor_.state(), node(), text.extension)) return {};
   std::string name = text.extension;
   std::replace(name.begin(), name.end(), '_', ' ');
-  return "The node has no " + name + ": what is painted is kept, and nobody feels it.";
+  return "The node has no " + name + ": the paint is kept, but not felt.";
 }
 
 std::optional<std::pair<double, double>> Painting::painted_range() const {

@@ -24,6 +24,7 @@
 //   hear TEXT                                                until the console's text contains it
 //   say TEXT                                                 an error unless the console's text contains it
 //   screenshot FILE.png                                      into the folder of --out
+//   felt FILE.csv                                            tick, time, force, depth of each probe and tool, likewise
 //   figures NAME                                             prints frame times since the last `figures`
 //   drop FILE [| FILE...]
 //   close

@@ -165,7 +165,7 @@ void look(HeldDevice& held, double seconds, const Interrupt& interrupt, Force&& 
   if (const std::string frames = describe(dropped); !frames.empty())
     note(fmt::format("{} frames or lines were dropped: {}; {}", dropped.dropped(), frames, cure_for(dropped)));
   if (samples == 0)
-    note("no sample came; is the device switched on, and does nobody else hold it?");
+    note("no sample arrived; is the device switched on, and free of other programs?");
   else if (not_ready > 0)
     note(
         fmt::format("{} of {} samples say that the device is not ready; calibrate or home it, release its emergency "

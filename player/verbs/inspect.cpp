@@ -222,7 +222,7 @@ OrderedJson describe(const Level& level, const std::vector<ObjectReport>& object
   json["touchable"] = touchable;
   json["bare_mesh"] = !level.has_pliant();
   json["objects"] = list;
-  json["flesh"] = describe_tissue(level);
+  json["tissue"] = describe_tissue(level);
   std::vector<std::string> notes = level.notes;
   for (const Note& unused : unused_key_notes(level)) notes.push_back(unused.message());
   for (const DeviceFault& idle : find_unmoved_probes(level))
@@ -274,7 +274,7 @@ void print_text(const OrderedJson& json, const Box& box) {
   }
   for (const OrderedJson& asked : json["device_ids"])
     print("  asks for a device: {} by `{}`\n", asked["moves"].get<std::string>(), asked["id"].get<std::string>());
-  print_tissue(json["flesh"]);
+  print_tissue(json["tissue"]);
   for (const OrderedJson& sentence : json["notes"]) print("  note: {}\n", sentence.get<std::string>());
   if (!json["touchable"].get<bool>())
     print("  cannot be touched: there is no triangle in the scene that is shown\n");

@@ -64,7 +64,7 @@ void add_unit(CLI::App* verb, std::optional<double>& unit, const char* what) {
 
 void add_limits(CLI::App* verb) {
   verb->add_option_function<double>("--limits", set_limit_factor,
-                                    "multiplies what a file may ask for: nodes, instances, pictures, tetrahedra (1)")
+                                    "factor on the limits on files (docs/cli.md), 1e-6 to 1000 (1)")
       ->check(within(kLimitFactor.min, kLimitFactor.max))
       ->type_name("N");
 }

@@ -21,18 +21,18 @@ namespace pliant {
 
 void add_inspect(CLI::App& app, int& status) {
   const auto options = std::make_shared<InspectOptions>();
-  CLI::App* verb = app.add_subcommand("inspect", "what is in a file, whether it can be touched, what is wrong with it");
+  CLI::App* verb = app.add_subcommand("inspect", "contents and defects of a file");
   verb->add_option("file", options->file,
                    fmt::format("level, mesh, tetrahedra ({}) or EXR panorama", fmt::join(tet_endings(), ", ")))
       ->required()
       ->check(named());
   verb->add_flag("--json", options->json, "as JSON");
-  CLI::Option* fit = verb->add_flag("--fit", options->fit, "which models error budgets choose, and the evidence");
+  CLI::Option* fit = verb->add_flag("--fit", options->fit, "candidates of error budgets, measured");
   verb->add_option("--error", options->error,
                    "with --fit: error budget of every surface and soft body; of a bare mesh 0.1 by default")
       ->check(within(kErrorBudget.min, kErrorBudget.max))
       ->needs(fit);
-  add_unit(verb, options->unit, "what one unit of a bare mesh is (m)");
+  add_unit(verb, options->unit, "unit of a bare mesh (m; required of one over 5 m across)");
   add_limits(verb);
   verb->footer(
       "Examples:\n  pliant inspect organ.glb\n  pliant inspect scan.stl --unit mm\n  pliant inspect organ.glb --fit "
@@ -44,18 +44,19 @@ void add_convert(CLI::App& app, int& status) {
   const auto options = std::make_shared<ConvertOptions>();
   CLI::App* verb =
       app.add_subcommand("convert", "any mesh format to glTF or GLB; an EXR panorama to a cube map preview (PNG)");
-  verb->add_option("in", options->in, "what to read")->required()->check(named());
-  verb->add_option("out", options->out, "what to write: .glb, .gltf, or .png for a panorama")
+  verb->add_option("in", options->in,
+                   "glTF, tetrahedra, OBJ, OFF, PLY, STL, any mesh that Assimp reads, or an EXR panorama")
       ->required()
       ->check(named());
+  verb->add_option("out", options->out, "the result: .glb, .gltf, or .png of a panorama")->required()->check(named());
   CLI::Option* draco =
-      verb->add_option("--draco", options->draco_bits, "compress (anew) with this many bits per position (8 to 24)")
+      verb->add_option("--draco", options->draco_bits, "compresses with so many bits per position (8 to 24)")
           ->check(within(SaveOptions::kDracoBits.min, SaveOptions::kDracoBits.max));
-  verb->add_flag("--no-draco", options->no_draco, "write plain what is compressed, for every viewer")->excludes(draco);
-  verb->add_flag("--reorder", options->reorder, "weld, clean and put vertices in spatial order");
+  verb->add_flag("--no-draco", options->no_draco, "decompresses, for every viewer")->excludes(draco);
+  verb->add_flag("--reorder", options->reorder, "welds, cleans, orders vertices in space, writes mended winding");
   verb->add_flag("--force", options->force, "replace what is there");
   add_limits(verb);
-  add_unit(verb, options->unit, "what one unit of the input is (m)");
+  add_unit(verb, options->unit, "unit of the input (m; required of one over 5 m across)");
   verb->footer(
       "Examples:\n  pliant convert organ.ply organ.glb --unit mm --draco 14\n  pliant convert sky.exr sky.png");
   verb->callback([options, &status] { status = convert(*options); });
@@ -66,7 +67,7 @@ void add_validate(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("validate", "every finding of a level with its JSON pointer");
   verb->add_option("level", options->level, "level or mesh")->required()->check(named());
   verb->add_flag("--json", options->json, "as JSON, with codes (docs/codes.md)");
-  add_unit(verb, options->unit, "what one unit of a bare mesh is (m)");
+  add_unit(verb, options->unit, "unit of a bare mesh (m; required of one over 5 m across)");
   add_limits(verb);
   verb->footer("Example:\n  pliant validate level.gltf");
   verb->callback([options, &status] { status = validate(*options); });
@@ -84,17 +85,22 @@ void add_author(CLI::App& app, int& status) {
   verb->add_option("in", options->in, "mesh or level")->required()->check(named());
   verb->add_option("-o,--out", options->out, "the level: .glb or .gltf")->required()->check(named())->type_name("FILE");
   for (const auto& [name, nodes, what] :
-       {std::tuple("--soft", &options->soft, "becomes a soft body (default: the largest mesh); may be repeated"),
+       {std::tuple("--soft", &options->soft, "becomes a soft body (the largest mesh); may be repeated"),
         std::tuple("--surface", &options->surface, "becomes a deformable surface instead; may be repeated")})
     verb->add_option(name, *nodes, what)->take_all()->allow_extra_args(false)->check(named())->type_name("NODE");
-  verb->add_option("--preset", options->preset, "tissue: " + joined(presets) + " (liver)")->check(one_of(presets));
-  verb->add_option("--pin", options->pin, "which side of what is soft is held: " + joined(sides) + " (bottom)")
+  verb->add_option("--preset", options->preset, "material: " + joined(presets) + " (liver)")->check(one_of(presets));
+  verb->add_option("--pin", options->pin,
+                   "pins 15 % of a soft body on that side; top and bottom along gravity, front +Z, right +X: " +
+                       joined(sides) + " (bottom)")
       ->check(one_of(sides));
-  verb->add_option("--tool", options->tool, joined(tools) + " (rod where something is soft)")->check(one_of(tools));
-  verb->add_flag("--probe", options->probe, "a probe, too");
+  verb->add_option(
+          "--tool", options->tool,
+          joined(tools) + " over the first object, with a script; meets soft bodies only (rod over a soft body)")
+      ->check(one_of(tools));
+  verb->add_flag("--probe", options->probe, "adds a probe with a script (default without a tool)");
   verb->add_flag("--force", options->force, "replace what is there");
   add_limits(verb);
-  add_unit(verb, options->unit, "what one unit of a bare mesh is (m)");
+  add_unit(verb, options->unit, "unit of a bare mesh (m; required of one over 5 m across)");
   verb->footer(
       "Examples:\n"
       "  pliant author organ.glb -o level.glb\n"
@@ -118,7 +124,7 @@ void add_edit(CLI::App& app, int& status) {
         options->height = size.height;
       },
       "of the window, WxH [1600x900]");
-  verb->add_option("--input", options->input, "a script of what a hand does (docs/editor.md)");
+  verb->add_option("--input", options->input, "script of mouse and keys (docs/editor.md)");
   verb->add_option("--out", options->out, "folder of the script's screenshots")->capture_default_str();
   verb->add_option("--config", options->config, "folder of settings; else ~/.config/pliant");
   verb->footer("Examples:\n  pliant edit\n  pliant edit organ.glb --unit mm");

@@ -13,38 +13,43 @@ CLI::App* add_run_options(CLI::App& app, RunOptions& run) {
   CLI::Option* level =
       verb->add_option("level", run.level, "level or mesh: a file, or the name of a shipped level (three_probes)")
           ->check(named());
-  verb->add_flag("--list", run.list, "which levels ship, and what they show")->excludes(level);
-  verb->add_option("--probe", run.probes,
-                   "NAME=SOURCE: script:FILE.csv, orbit, hand[:FILE.csv], mouse, device:ID; may be repeated")
+  verb->add_flag("--list", run.list, "shipped levels, each with its content")->excludes(level);
+  verb->add_option(
+          "--probe", run.probes,
+          "NAME=SOURCE moves that probe or tool, or adds a point probe: script:FILE.csv, orbit, hand[:WORDS], mouse, "
+          "device:ID; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
-  verb->add_option("--set", run.sets, "NODE.EXT.KEY=VALUE for this run; NODE may be *; may be repeated")
+  verb->add_option(
+          "--set", run.sets,
+          "one key of the level for this run: NODE.EXT.KEY=VALUE, NODE a name, a glTF number or *; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
-  add_unit(verb, run.unit, "what one unit of a bare mesh is (m)");
-  verb->add_option("--seconds", run.seconds, "how long [s]; default: to the end of the longest script, else 4")
+  add_unit(verb, run.unit, "unit of a bare mesh (m; required of one over 5 m across)");
+  verb->add_option("--seconds", run.seconds,
+                   "duration [s], up to 86400; default: to the end of the longest script, else 4")
       ->check(within(1e-4, 86400.0));
   verb->add_option("--rate", run.rate, "touch clock [Hz]; default: the level's")
       ->check(within(kTouchRateRange.min, kTouchRateRange.max));
   CLI::Option* lockstep =
-      verb->add_flag("--lockstep", run.lockstep, "virtual time, the same bits every time (default without a window)");
-  verb->add_flag("--realtime", run.realtime, "run the clocks; overruns are counted")->excludes(lockstep);
-  verb->add_option("--field", run.field, "where the surface is computed: auto, cpu, gpu")
+      verb->add_flag("--lockstep", run.lockstep, "virtual time, repeats to the bit (default without a window)");
+  verb->add_flag("--realtime", run.realtime, "real time; overruns are counted")->excludes(lockstep);
+  verb->add_option("--field", run.field,
+                   "computes the drawn surface on: auto, cpu, gpu, which requires a graphics context (auto)")
       ->check(one_of({"auto", "cpu", "gpu"}));
   verb->add_option("--tool-force", run.tool_force,
-                   "how every tool's force is made: " + joined(words_of<ToolForce>()) + "; default: each tool's key")
+                   "1 kHz force of every tool: " + joined(words_of<ToolForce>()) + "; default: each tool's key")
       ->check(one_of(words_of<ToolForce>()));
-  verb->add_option("--max-force", run.max_force, "the most that the level may ask of a device [N] (10)")
+  verb->add_option("--max-force", run.max_force, "limit on the force that the level asks for [N] (10)")
       ->check(within(1e-3, DeviceRange::kMaxForce.max));
   verb->add_option("--error", run.error, "error budget of every surface and soft body: the cheapest models within it")
       ->check(within(kErrorBudget.min, kErrorBudget.max));
   add_limits(verb);
-  verb->add_option("--out", run.out,
-                   "folder for what is written; default: out/<level name>; FOLDER-2 and on where one has results")
+  verb->add_option("--out", run.out, "folder of the results (out/<level name>); FOLDER-2 and on where one has results")
       ->check(named());
   verb->add_flag("--force", run.force, "replace the results of an earlier run in that folder, and its recording");
-  CLI::Option* frames =
-      verb->add_option("--frames", run.frames, "pictures spread over the run (12); 0: none")->check(within(0, 9999));
+  CLI::Option* frames = verb->add_option("--frames", run.frames, "pictures spread over the run (12); 0: no graphics")
+                            ->check(within(0, 9999));
   verb->add_option("--fps", run.fps, "pictures per simulated second instead")
       ->check(within(1e-3, 1000))
       ->excludes(frames);
@@ -53,7 +58,7 @@ CLI::App* add_run_options(CLI::App& app, RunOptions& run) {
       [&run](const std::string& text) {
         if (const std::string wrong = parse_size(text, run); !wrong.empty()) throw CLI::ValidationError(wrong);
       },
-      "of the pictures and the window, WxH (960x540, 1280x720)");
+      "of pictures and window, WxH, 16 to 8192 (960x540, 1280x720)");
   CLI::Option* headless = verb->add_flag("--headless", run.headless, "no window (default where there is no display)");
   verb->add_flag("--window", run.window, "in a window (default where there is a display)")
       ->excludes(headless)
@@ -61,9 +66,11 @@ CLI::App* add_run_options(CLI::App& app, RunOptions& run) {
   verb->add_option("--input", run.input, "events for the window from a CSV file")
       ->group("")
       ->check(named());  // docs/cli.md
-  verb->add_option("--record", run.record, "write every probe's pose per tick to FILE")->check(named());
-  verb->add_option("--replay", run.replay, "move the probes as FILE says, in lockstep")->check(named());
-  verb->add_option("--threads", run.threads, "threads for loading, preparing and the soft step; 0: all")->check(within(0, 1024));
+  verb->add_option("--record", run.record, "writes the pose of every probe and tick to FILE")->check(named());
+  verb->add_option("--replay", run.replay, "moves the probes by FILE, in lockstep")->check(named());
+  verb->add_option("--threads", run.threads,
+                   "threads for loading, preparing and the soft step; results do not depend on it; 0: all (0)")
+      ->check(within(0, 1024));
   verb->add_option("--soft-store", run.soft_store, "folder of soft bodies that the runs of a sweep share")
       ->group("")
       ->check(named());  // player/sweep

@@ -15,12 +15,11 @@ void add_study(CLI::App& app, int& status) {
   const auto options = std::make_shared<StudyOptions>();
   CLI::App* verb = app.add_subcommand("study", "speed against error: figures, data and a plot");
   CLI::Option* name = verb->add_option("name", options->name, "of a study, or all");
-  CLI::Option* list = verb->add_flag("--list", options->list, "which studies there are");
-  verb->add_option("--out", options->out,
-                   "folder for what is written; default: out/study; FOLDER-2 and on where one has results")
+  CLI::Option* list = verb->add_flag("--list", options->list, "names of the studies");
+  verb->add_option("--out", options->out, "folder of the results (out/study); FOLDER-2 and on where one has results")
       ->check(named());
   verb->add_flag("--force", options->force, "replace the results of an earlier study in that folder");
-  verb->add_flag("--quick", options->quick, "a shorter run, for a look");
+  verb->add_flag("--quick", options->quick, "less than a minute");
   name->excludes(list);
   verb->footer("Example:\n  pliant study all --quick");
   verb->callback([options, &status] { status = study(*options); });
@@ -31,22 +30,27 @@ void add_sweep(CLI::App& app, int& status) {
   const auto merging = std::make_shared<MergeOptions>();
   options->check = check_run_arguments;
   CLI::App* verb = app.add_subcommand("sweep", "one level over many settings, on one machine or many");
-  verb->add_option("plan", options->plan, "what is varied (docs/sweep.md)")->check(named())->type_name("PLAN.json");
-  verb->add_option("--out", options->out, "folder of what was done; default: out/<plan's name>; a sweep there goes on")
+  verb->add_option("plan", options->plan, "level, options and axes (docs/sweep.md)")
+      ->check(named())
+      ->type_name("PLAN.json");
+  verb->add_option("--out", options->out, "folder of the lines (out/<plan's name>); a sweep there goes on")
       ->check(named());
   verb->add_option("--shard", options->shard,
-                   "I/N: only each Nth run, from the Ith on; default: by Slurm's array or MPI's rank, else all")
+                   "only the runs I, I + N, I + 2N, ... of the plan; default: by Slurm's array or MPI's rank, else all")
       ->check(named())
       ->type_name("I/N");
-  verb->add_flag("--retry-failed", options->retry_failed, "does runs that failed again");
-  verb->add_flag("--list", options->list, "every run with its id, its state and its values; writes nothing");
-  verb->add_flag("--dry-run", options->dry_run, "the commands that would run; writes nothing");
-  verb->add_option("--jobs", options->jobs, "runs at a time (1)")->check(within(1, 1024));
+  verb->add_flag("--retry-failed", options->retry_failed, "failed runs are done again");
+  verb->add_flag("--list", options->list,
+                 "every run of the shard: id, `to do`, `done` or `failed`, values; writes nothing");
+  verb->add_flag("--dry-run", options->dry_run, "the commands that would run, for a shell; writes nothing");
+  verb->add_option("--jobs", options->jobs,
+                   "runs at a time (1); above 1 each has one thread, unless the plan gives `threads`")
+      ->check(within(1, 1024));
   verb->footer(
       "Examples:\n"
       "  pliant sweep plan.json --out out/sweep --jobs 4\n"
       "  pliant sweep merge out/sweep --out out/merged");
-  CLI::App* merge = verb->add_subcommand("merge", "tables, a report and plots of what sweeps did");
+  CLI::App* merge = verb->add_subcommand("merge", "tables, a report and plots of finished runs");
   merge->add_option("folders", merging->folders, "--out of one sweep, or of its shards")->required()->check(named());
   merge->add_option("--out", merging->out, "folder of the tables; FOLDER-2 and on where one has results")
       ->required()
@@ -77,22 +81,22 @@ void add_fit(CLI::App& app, int& status) {
                    "folder of figures and plots (out/fit); FOLDER-2 and on where one has results")
       ->check(named());
   verb->add_flag("--force", options->force, "replace what is there");
-  verb->add_option("--radius", options->radius,
-                   "of the indenter [m] (measured: a point; finite elements: as the level says)")
+  verb->add_option(
+          "--radius", options->radius,
+          "of a spherical indenter (measured: a point) or of the punch [m] (the level's contact radius, else a fifth "
+          "of the reach, or the probe's)")
       ->check(within(0, 1));
-  verb->add_option("--level", options->level, "into which level the keys go")->check(named())->group(measured);
+  verb->add_option("--level", options->level, "level that gets the keys")->check(named())->group(measured);
   verb->add_option("--law", options->law, joined(laws) + " (auto)")->check(one_of(laws))->group(measured);
-  verb->add_option("--probe", options->probe, "which probe of a run's forces.csv, or of a sweep's runs")
-      ->check(named());
-  verb->add_option("--hold-out", options->hold_out, "share of the rows that the fit does not see (0.25)")
+  verb->add_option("--probe", options->probe, "probe of a run's forces.csv, or of a sweep's runs")->check(named());
+  verb->add_option("--hold-out", options->hold_out, "share of the rows that the fit does not use, up to 0.5 (0.25)")
       ->check(within(0, 0.5))
       ->group(measured);
-  verb->add_option("--confidence", options->confidence, "of the intervals (0.95)")
+  verb->add_option("--confidence", options->confidence, "of the intervals, 0.5 to 0.9999 (0.95)")
       ->check(within(0.5, 0.9999))
       ->group(measured);
-  verb->add_flag("--damping", options->damping, "fit contact_damping, too")->group(measured);
-  verb->add_flag("--contact", options->contact, "fit the depth at which the indenter met the surface, too")
-      ->group(measured);
+  verb->add_flag("--damping", options->damping, "fits contact_damping, too")->group(measured);
+  verb->add_flag("--contact", options->contact, "fits the depth of first contact, too")->group(measured);
   verb->add_option("--young", options->young, "Young's modulus [Pa] (the level's)")
       ->check(within(1e-3, 1e12))
       ->group(elements);
@@ -104,27 +108,25 @@ void add_fit(CLI::App& app, int& status) {
   verb->add_option("--cell", options->cell, "of the lattice under the indenter [m] (half its radius)")
       ->check(within(0, 1e3))
       ->group(elements);
-  verb->add_option("--pin", options->pin, "which side is held: " + joined(sides) + " (the level's, else bottom)")
+  verb->add_option("--pin", options->pin, "side that is pinned: " + joined(sides) + " (the level's, else bottom)")
       ->check(one_of(sides))
       ->group(elements);
-  verb->add_option("--reach", options->reach, "reach of the dents [m] (what fits best)")
+  verb->add_option("--reach", options->reach,
+                   "reach of the dents [m] (the best: 1.5 to 3.5 punch radii, up to 10 for wider dents)")
       ->check(within(0, 1e3))
       ->group(elements);
-  verb->add_flag("--linear", options->linear, "small strains instead of the co-rotational ones of a run")
-      ->group(elements);
+  verb->add_flag("--linear", options->linear, "small strains instead of co-rotational ones")->group(elements);
   verb->add_option("--points", options->points, "places that law and shape are fitted at (24)")
       ->check(within(4, 500))
       ->group(elements);
-  verb->add_option("--held", options->held, "places that the fit does not see (12)")
-      ->check(within(1, 500))
-      ->group(elements);
-  verb->add_option("--sweep", options->sweep, "folder of a sweep: which of its runs comes nearest to --target")
+  verb->add_option("--held", options->held, "places for the errors (12)")->check(within(1, 500))->group(elements);
+  verb->add_option("--sweep", options->sweep, "folder of a sweep: its runs nearest to --target")
       ->check(named())
       ->group(sweep);
   verb->add_option("--target", options->target, "measured presses that a sweep's runs are compared with")
       ->check(named())
       ->group(sweep);
-  add_unit(verb, options->unit, "what one unit of a bare mesh is (m)");
+  add_unit(verb, options->unit, "unit of a bare mesh (m; required of one over 5 m across)");
   add_limits(verb);
   verb->parse_complete_callback([=] {
     for (const auto& [group, said] : {std::pair{measured, &options->of_measured}, {elements, &options->of_elements}})

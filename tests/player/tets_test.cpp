@@ -47,7 +47,7 @@ TEST_F(Tets, ConvertMakesTheBoundaryAMesh) {
   const Json json = Json::parse(pliant({"inspect", "one.glb", "--json"}).out);
   EXPECT_EQ(json["triangles"], 4);
   EXPECT_EQ(json["objects"][0]["closed"], true);
-  EXPECT_TRUE(json["flesh"].empty());
+  EXPECT_TRUE(json["tissue"].empty());
 }
 
 }  // namespace
