@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "editor/app/files.h"
-#include "editor/tools/painting.h"
+#include "editor/core/painting.h"
 #include "runtime/clock.h"
 #include "viewer/ui/fonts.h"
 #include "viewer/ui/seen.h"

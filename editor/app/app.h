@@ -8,20 +8,20 @@
 #include <set>
 #include <string>
 
+#include "editor/app/crease_lines.h"
 #include "editor/app/findings.h"
+#include "editor/app/guide_lines.h"
 #include "editor/app/layout.h"
-#include "editor/app/panel.h"
 #include "editor/app/question.h"
-#include "editor/app/settings.h"
+#include "editor/app/view_bar.h"
+#include "editor/core/panel.h"
+#include "editor/core/settings.h"
 #include "editor/edit.h"
 #include "editor/play/play.h"
 #include "editor/play/rendered.h"
 #include "editor/ui/host.h"
 #include "editor/ui/script.h"
-#include "editor/viewport/crease_lines.h"
-#include "editor/viewport/guide_lines.h"
 #include "editor/viewport/stage.h"
-#include "editor/viewport/view_bar.h"
 
 namespace pliant {
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "editor/app/app.h"
-#include "editor/tools/painting.h"
+#include "editor/core/painting.h"
 #include "viewer/picture/window_png.h"
 
 namespace pliant {

@@ -1,6 +1,6 @@
 #include "editor/app/autosave.h"
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 
 namespace pliant {
 

@@ -12,7 +12,7 @@
 #include "content/tets/tet_file.h"
 #include "editor/app/app.h"
 #include "editor/app/files.h"
-#include "editor/app/path_editing.h"
+#include "editor/core/path_editing.h"
 #include "runtime/printable.h"
 
 namespace pliant {

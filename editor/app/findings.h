@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 
 namespace pliant {
 

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <optional>
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 #include "editor/document/stated_keys.h"
 #include "engine/choice/model_choice.h"
 

@@ -1,7 +1,7 @@
 // The fields of the paint brush.
 #pragma once
 
-#include "editor/tools/painting.h"
+#include "editor/core/painting.h"
 
 namespace pliant {
 

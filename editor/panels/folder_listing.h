@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "editor/app/jobs.h"
+#include "editor/core/jobs.h"
 
 namespace pliant {
 

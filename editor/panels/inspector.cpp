@@ -11,7 +11,7 @@
 #include "editor/panels/panels.h"
 #include "editor/panels/place_fields.h"
 #include "editor/panels/property_row.h"
-#include "editor/tools/gizmo_math.h"
+#include "editor/viewport/gizmo_math.h"
 #include "runtime/printable.h"
 #include "viewer/ui/widgets.h"
 

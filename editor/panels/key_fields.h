@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "content/keys/extension_table.h"
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 
 namespace pliant {
 

@@ -14,8 +14,8 @@
 
 #include "content/files/image.h"
 #include "content/level_file.h"
-#include "editor/app/editor.h"
-#include "editor/app/settings.h"
+#include "editor/core/editor.h"
+#include "editor/core/settings.h"
 #include "runtime/printable.h"
 
 extern char** environ;

@@ -1,7 +1,7 @@
 // The fields of a node's light and of its camera; nothing where it has none.
 #pragma once
 
-#include "editor/app/panel.h"
+#include "editor/core/panel.h"
 
 namespace pliant {
 

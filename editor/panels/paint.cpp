@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "editor/app/app.h"
+#include "editor/core/painting.h"
 #include "editor/panels/brush_fields.h"
 #include "editor/panels/panels.h"
-#include "editor/tools/painting.h"
 #include "runtime/printable.h"
 #include "viewer/ui/widgets.h"
 

@@ -1,7 +1,7 @@
 // All panels, each in its own file.
 #pragma once
 
-#include "editor/app/panel.h"
+#include "editor/core/panel.h"
 
 namespace pliant {
 

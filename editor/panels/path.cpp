@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "editor/app/app.h"
-#include "editor/app/path_editing.h"
+#include "editor/core/path_editing.h"
 #include "editor/panels/panels.h"
 #include "editor/play/record_path.h"
 #include "runtime/printable.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "editor/panels/property_row.h"
-#include "editor/tools/gizmo_math.h"
+#include "editor/viewport/gizmo_math.h"
 #include "viewer/ui/widgets.h"
 
 namespace pliant {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "editor/app/panel.h"
+#include "editor/core/panel.h"
 
 namespace pliant {
 

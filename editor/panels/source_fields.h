@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "editor/app/panel.h"
+#include "editor/core/panel.h"
 #include "editor/play/play.h"
 
 namespace pliant {

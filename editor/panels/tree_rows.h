@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "editor/app/panel.h"
+#include "editor/core/panel.h"
 
 namespace pliant {
 

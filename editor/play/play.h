@@ -13,7 +13,7 @@
 
 #include "content/device_answers.h"
 #include "content/level/device_request.h"
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 #include "editor/play/play_run.h"
 #include "editor/viewport/stage.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "editor/app/path_editing.h"
+#include "editor/core/path_editing.h"
 
 namespace pliant {
 namespace {

@@ -2,7 +2,7 @@
 // picture is shown meanwhile.
 #pragma once
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 #include "editor/viewport/stage.h"
 
 namespace pliant {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "components/haptic_device.h"
-#include "editor/app/path_editing.h"
+#include "editor/core/path_editing.h"
 #include "systems/safety/safety.h"
 
 namespace pliant {

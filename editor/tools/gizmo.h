@@ -2,9 +2,9 @@
 // drag is one step of the document, and shown at once.
 #pragma once
 
-#include "editor/app/panel.h"
-#include "editor/app/settings.h"
-#include "editor/tools/gizmo_math.h"
+#include "editor/core/panel.h"
+#include "editor/core/settings.h"
+#include "editor/viewport/gizmo_math.h"
 
 namespace pliant {
 

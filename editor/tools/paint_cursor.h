@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "editor/tools/painting.h"
+#include "editor/core/painting.h"
 #include "editor/tools/tools.h"
 
 namespace pliant {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "editor/tools/painting.h"
+#include "editor/core/painting.h"
 #include "plot/heat.h"
 #include "viewer/ui/imgui_pen.h"
 #include "viewer/ui/widgets.h"

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "editor/app/app.h"
+#include "editor/core/painting.h"
 #include "editor/tools/paint_cursor.h"
 #include "editor/tools/paint_legend.h"
-#include "editor/tools/painting.h"
 #include "editor/tools/tools.h"
 #include "runtime/printable.h"
 #include "viewer/ui/widgets.h"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "components/kinematic.h"
-#include "editor/app/path_editing.h"
+#include "editor/core/path_editing.h"
 #include "editor/tools/path_drawing.h"
 #include "editor/tools/tools.h"
 #include "editor/viewport/solid_view.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "editor/app/path_editing.h"
+#include "editor/core/path_editing.h"
 #include "editor/tools/tools.h"
 
 namespace pliant {

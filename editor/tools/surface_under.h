@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 
 namespace pliant {
 

@@ -1,7 +1,7 @@
 // All tools of the viewport, each in its own file.
 #pragma once
 
-#include "editor/app/panel.h"
+#include "editor/core/panel.h"
 
 namespace pliant {
 

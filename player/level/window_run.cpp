@@ -6,7 +6,7 @@
 
 #include "content/device_answers.h"
 #include "content/files/file_io.h"
-#include "editor/app/settings.h"
+#include "editor/core/settings.h"
 #include "viewer/window/keys.h"
 
 namespace pliant {

@@ -7,10 +7,10 @@
 #include "content/author/save_script.h"
 #include "content/level_file.h"
 #include "editor/app/add.h"
-#include "editor/app/editor.h"
+#include "editor/app/guide_lines.h"
+#include "editor/core/editor.h"
 #include "editor/document/edits.h"
 #include "editor/viewport/frames.h"
-#include "editor/viewport/guide_lines.h"
 #include "editor/viewport/signs.h"
 
 namespace pliant {

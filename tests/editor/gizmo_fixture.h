@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "editor/app/editor.h"
-#include "editor/tools/gizmo_math.h"
+#include "editor/core/editor.h"
+#include "editor/viewport/gizmo_math.h"
 
 namespace pliant::test {
 

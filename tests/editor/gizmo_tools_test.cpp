@@ -1,7 +1,7 @@
 // The tools that move, turn and scale, as the viewport drives them.
 #include <thread>
 
-#include "editor/app/settings.h"
+#include "editor/core/settings.h"
 #include "editor/tools/tools.h"
 #include "tests/editor/gizmo_fixture.h"
 

@@ -1,9 +1,9 @@
 // Painting by tool and panel, without a window: the effect on the document.
-#include "editor/tools/painting.h"
+#include "editor/core/painting.h"
 
 #include <thread>
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 #include "editor/tools/paint_legend.h"
 #include "plot/heat.h"
 #include "tests/content/mesh_shapes.h"

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "editor/app/autosave.h"
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 #include "editor/document/named_files.h"
 #include "tests/editor/small_level.h"
 

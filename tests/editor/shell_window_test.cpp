@@ -7,7 +7,7 @@
 
 #include "content/files/image.h"
 #include "editor/app/autosave.h"
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 
 namespace pliant::testing {
 namespace {

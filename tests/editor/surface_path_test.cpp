@@ -9,7 +9,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "content/level/script.h"
-#include "editor/app/path_editing.h"
+#include "editor/core/path_editing.h"
 #include "tests/editor/small_level.h"
 
 namespace pliant {

@@ -1,11 +1,11 @@
-#include "editor/tools/painting.h"
+#include "editor/core/painting.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 
 namespace pliant {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "content/level/finding.h"
-#include "editor/app/jobs.h"
+#include "editor/core/jobs.h"
 #include "editor/document/document.h"
 #include "editor/document/edits.h"
 #include "editor/paint/paint_surface.h"
@@ -108,7 +108,7 @@ class Editor {
   };
   Ground ground_of(NodeId id);               // begins to prepare it
   Ground ground_now(NodeId id);              // at once, where it takes that long
-  const std::unique_ptr<Painting> painting;  // the brush, and what is done with it (editor/tools/painting.h)
+  const std::unique_ptr<Painting> painting;  // the brush, and what is done with it (editor/core/painting.h)
 
   // --- Clipboard
   State clipboard;
@@ -117,7 +117,7 @@ class Editor {
   void cut();
   void paste();
 
-  // --- The edited path (app/path_editing.h)
+  // --- The edited path (core/path_editing.h)
   std::size_t path_key = 0;   // the active one
   double path_depth = 0.005;  // [m] of the next key
   double path_speed = 0.02;   // [m/s] on the way to the next key

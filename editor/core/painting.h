@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "editor/app/jobs.h"
+#include "editor/core/jobs.h"
+#include "editor/core/live_stroke.h"
 #include "editor/document/state.h"
 #include "editor/paint/brush.h"
 #include "editor/paint/coarse.h"
 #include "editor/paint/paint.h"
-#include "editor/tools/live_stroke.h"
 #include "viewer/hand/camera_control.h"
 
 namespace pliant {

@@ -1,4 +1,4 @@
-#include "editor/app/path_editing.h"
+#include "editor/core/path_editing.h"
 
 #include <algorithm>
 

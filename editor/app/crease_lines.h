@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 
 namespace pliant {
 

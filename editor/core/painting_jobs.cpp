@@ -3,8 +3,8 @@
 
 #include <numeric>
 
-#include "editor/app/editor.h"
-#include "editor/tools/painting.h"
+#include "editor/core/editor.h"
+#include "editor/core/painting.h"
 
 namespace pliant {
 namespace {

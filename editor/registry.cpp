@@ -4,8 +4,8 @@
 #include "editor/app/add.h"
 #include "editor/app/app.h"
 #include "editor/app/files.h"
+#include "editor/core/painting.h"
 #include "editor/panels/panels.h"
-#include "editor/tools/painting.h"
 #include "editor/tools/tools.h"
 #include "viewer/window/keys.h"
 

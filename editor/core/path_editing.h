@@ -1,7 +1,7 @@
 // Editing the paths of a document's probes and tools as keys.
 #pragma once
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 #include "editor/document/surface_path.h"
 
 namespace pliant {

@@ -4,7 +4,7 @@
 
 #include <imgui.h>
 
-#include "editor/app/panel.h"
+#include "editor/core/panel.h"
 #include "editor/viewport/stage.h"
 
 namespace pliant {

@@ -1,4 +1,4 @@
-#include "editor/viewport/view_bar.h"
+#include "editor/app/view_bar.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "editor/tools/gizmo_math.h"
 #include "editor/viewport/frames.h"
+#include "editor/viewport/gizmo_math.h"
 #include "editor/viewport/signs.h"
 #include "plot/heat.h"
 #include "runtime/printable.h"

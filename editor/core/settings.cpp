@@ -1,4 +1,4 @@
-#include "editor/app/settings.h"
+#include "editor/core/settings.h"
 
 #include <algorithm>
 #include <cstdlib>

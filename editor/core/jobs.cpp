@@ -1,9 +1,9 @@
-#include "editor/app/jobs.h"
+#include "editor/core/jobs.h"
 
 #include <algorithm>
 #include <exception>
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 #include "runtime/clock.h"
 #include "runtime/long_work.h"
 

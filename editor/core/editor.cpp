@@ -1,11 +1,11 @@
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 
 #include <algorithm>
 #include <unordered_set>
 
 #include "devices/choose.h"
+#include "editor/core/painting.h"
 #include "editor/document/resting_mesh.h"
-#include "editor/tools/painting.h"
 #include "editor/viewport/frames.h"
 
 namespace pliant {

@@ -1,4 +1,4 @@
-// Interfaces of panels, viewport tools and actions. Each is one file and one line in app/registry.cpp.
+// Interfaces of panels, viewport tools and actions. Each is one file and one line in registry.cpp.
 #pragma once
 
 #include <imgui.h>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 
 namespace pliant {
 

@@ -1,4 +1,4 @@
-#include "editor/viewport/crease_lines.h"
+#include "editor/app/crease_lines.h"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "editor/app/editor.h"
+#include "editor/core/editor.h"
 
 namespace pliant {
 

@@ -1,4 +1,4 @@
-#include "editor/tools/gizmo_math.h"
+#include "editor/viewport/gizmo_math.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "editor/viewport/guide_lines.h"
+#include "editor/app/guide_lines.h"
 
 #include "content/files/file_io.h"
 #include "content/level/script.h"

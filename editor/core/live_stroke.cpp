@@ -1,4 +1,4 @@
-#include "editor/tools/live_stroke.h"
+#include "editor/core/live_stroke.h"
 
 #include <algorithm>
 
