@@ -36,7 +36,7 @@ struct HidFound {
 std::vector<HidFound> find_hid(std::span<const HidMatch> matches);
 
 // Opens the matching device with this id or path; empty id: the first that can be opened. After unplugging, a port
-// stays dead; call again to reopen. Errors tell what is missing.
+// stays dead; call again to reopen. Errors name what is missing.
 Result<std::unique_ptr<PacketPort>> open_hid(std::span<const HidMatch> matches, const std::string& id);
 
 // One sentence for an open() that failed with this errno.

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -69,6 +70,7 @@ int validate(const ValidateOptions& options) {
     print("{}: {} error{}, {} warning{}\n", file->string(), errors, errors == 1 ? "" : "s", warnings,
           warnings == 1 ? "" : "s");
   if (errors == 0) return kDone;
+  std::fflush(stdout);  // the findings stand above the error, also in a pipe
   return fail(kFailed, {file->string(), fmt::format("{} error{}", errors, errors == 1 ? "" : "s"),
                         fmt::format("see the finding{} above", errors == 1 ? "" : "s")});
 }

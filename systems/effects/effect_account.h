@@ -7,11 +7,11 @@
 //
 //   T += s (U - U before) + (rise of the gate's share) U,   0 <= T <= U,
 //
-// where s is the mean share of the force that was sent. While all of it is sent T = U. Where less was sent on the way
-// up than would be on the way down (a limit that has risen, missed ticks), T is spent before U is, and the rest of the
-// force goes to the observer as any other force does. So the hand gets at most what it gave and what the potentials
-// held where they let it in. The work of a torque that the device does not render is left out: no hand gave it. The work
-// of a moving effect is the motion's. Drag is always the observer's.
+// where s is the mean share of the force that was sent. While all of it is sent T = U. A limit that rises and missed
+// ticks send less on the way up than on the way down: T is spent before U, and the rest of the force goes to the
+// observer like any other force. So the hand gets at most what it gave and what the potentials held where they let it
+// in. The work of a torque that the device does not render is left out: no hand gave it. The work of a moving effect is
+// the motion's. Drag is always the observer's.
 #pragma once
 
 #include "components/world.h"

@@ -7,9 +7,9 @@
 // may give back what it took, and kPassivityShare of the most that the hand had stored beside. What would go beyond is
 // taken out by damping: only the component along the motion is reduced, and early enough that the slew limit suffices.
 // Setting the force to zero instead lost: in the middle of a contact that is a jump, and the hand feels a hole.
-// Where the account is spent (a surface that stiffens under a hand, a gate that opened in contact) the force is that of
-// a spring, kSpentSpring as stiff as what is touched, which holds what is left of it, and it comes back as that spring
-// is pressed. Damping alone switched it with the sign of the last step for as long as the hand rested there.
+// A spent account (a surface that stiffens under a hand, a gate that opened in contact) limits the force to that of a
+// spring, kSpentSpring as stiff as the touched surface, which stores the remaining energy. The force returns as the
+// spring is pressed. Damping alone switched the force with the sign of the last step while the hand rested.
 //
 // A tool without weight compensation hangs in the hand: on reconnection of a device, the wanted force is never small.
 // Its weight is known beforehand, so the gate opens on the wanted force without the weight. The weight then fades in

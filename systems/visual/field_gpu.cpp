@@ -47,7 +47,7 @@ std::size_t FieldOnGpu::evaluate(const FieldProgram& program, std::span<const Fi
   glUniform1ui(program.vertex_count_, vertices_);
   const GLuint bindings[] = {stream.id(), rest_.id(), rest_yz_.id(), sources_.id()};
   for (GLuint i = 0; i < 4; ++i) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, bindings[i]);
-  glDispatchCompute((vertices_ + 127) / 128, 1, 1);
+  glDispatchCompute((vertices_ + kZoneSize - 1) / kZoneSize, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
   return travelled;
 }

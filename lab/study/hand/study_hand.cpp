@@ -8,6 +8,7 @@
 #include "devices/guard/guard.h"
 #include "devices/wrappers/wrapper.h"
 #include "engine/run/driver_link.h"
+#include "engine/run/runner.h"
 #include "engine/run/simulated_hands.h"
 #include "lab/console/print.h"
 #include "lab/console/progress.h"
@@ -18,7 +19,6 @@
 #include "plot/panel.h"
 #include "systems/device/hands.h"
 #include "systems/device/reading.h"
-#include "systems/schedule.h"
 #include "systems/touch/prepare/prepare.h"
 
 namespace pliant {
@@ -210,7 +210,7 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
     }
     held.push_back(std::move(h));
   }
-  Schedule<World> schedule(touch_schedule());
+  Runner runner(*world);
   const auto ticks = static_cast<std::uint64_t>(seconds * rate);
   for (std::uint64_t n = 0; n < ticks; ++n) {
     const Tick tick{n, 1.0 / rate, static_cast<double>(n) / rate};
@@ -227,7 +227,7 @@ Result<HandRun> run_hand(const std::string& level, const std::string& profile, d
       device.sensed_at = tick.time;
       device.status = DeviceStatus::kReady;
     }
-    schedule.run(*world, tick);
+    runner.step(tick);
     for (Held& h : held) {
       if (guarded)
         h.link.write(*world, h.probe, h.device, tick);

@@ -16,7 +16,7 @@ namespace {
 constexpr float kAgrees = 8e-4f, kAgreesAtMost = 1e-2f;
 constexpr std::size_t kRings = 16;
 // [1] largest difference between the slopes of an edge against the tangent planes at its two ends: zero on a sphere.
-// Normals that differ more do not tell the slope at a distance.
+// Normals that differ more do not determine the slope at a distance.
 constexpr float kSmooth = 0.05f;
 // [1] of the reach: longest edge. Between distant vertices nothing is compared; a march over few is fast.
 constexpr float kLongest = 0.25f;
@@ -84,7 +84,7 @@ class Comparison {
   std::vector<std::uint32_t> zones_;
 };
 
-// Around edges that are long or whose normals do not tell the surface.
+// Around edges that are long or whose normals do not determine the surface.
 std::vector<std::uint8_t> rough_vertices(const Mesh& mesh, float reach) {
   std::vector<std::uint8_t> rough(mesh.vertex_count, 0);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -62,8 +62,8 @@ struct CubicAt {
 };
 
 CubicAt clough_tocher(const std::array<dvec3, 3>& p, const std::array<VertexPaint, 3>& at, dvec3 b) {
-  // Ordinates: corner[i] at vertex i, towards[i][j] next to it on the edge to j, inward[i] next to it on the line to
-  // the centroid, middle[i] between the edge opposite of i and the centroid, outward[i] next to the centroid.
+  // Ordinates: corner[i] at vertex i; next to it, towards[i][j] on the edge to j and inward[i] on the line to the
+  // centroid; outward[i] next to the centroid; middle[i] between centroid and the edge opposite of i.
   double corner[3], towards[3][3], inward[3], middle[3], outward[3];
   for (int i = 0; i < 3; ++i) {
     corner[i] = at[i].value;

@@ -1,6 +1,5 @@
-// Roughness that is felt: a height h(x) of the surface, of plane waves through the object's rest frame, so that it
-// needs no texture coordinates, is the same in every run, and goes on over edges and seams of the mesh
-// (methods.md 1.11).
+// Roughness that is felt: a height h(x) of the surface, of plane waves through the object's rest frame (methods.md
+// 1.11). It needs no texture coordinates, repeats in every run, and continues over edges and seams of the mesh.
 #pragma once
 
 #include <array>
