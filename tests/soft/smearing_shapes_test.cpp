@@ -1,4 +1,4 @@
-// Split contacts where the surface is no plane (methods.md 2.10): a ball against its series, and beside a right-angled
+// Split contacts on surfaces that are not plane (methods.md 2.10): a ball against its series, and beside a right-angled
 // edge against cells of the contact's size, which carry it without the split.
 #include <gtest/gtest.h>
 
