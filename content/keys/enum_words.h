@@ -86,6 +86,8 @@ constexpr const char* word_of(SoftContact contact) {
       return "lattice";
     case SoftContact::kSplit:
       return "split";
+    case SoftContact::kAuto:
+      return "auto";
   }
   return nullptr;
 }

@@ -610,10 +610,11 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(
       choice("carries", s(&S::carries),
              "drawn meshes that go with its tissue: none, or those inside of it or below its node (vessels, lumps)"));
-  keys.push_back(
-      choice("contact", s(&S::contact),
-             "what a contact acts on: `lattice`, the nodes beside it, too stiff where it is small against the cells; "
-             "`split`, the lattice with its force smeared and an analytic dent in series"));
+  keys.push_back(choice(
+      "contact", s(&S::contact),
+      "what a contact acts on: `lattice`, the nodes beside it, too stiff where it is small against the cells; "
+      "`split`, the lattice with its force smeared and an analytic dent in series; `auto`, `split` where that is "
+      "measured and in time"));
   keys.push_back(choice("integrator", s(&S::integrator),
                         "step of its motion: `euler`, which damps; `second_order`, which keeps swings; `quasi_static`, "
                         "the equilibrium of every step, for pinned tissue; the last two not of a tool"));

@@ -16,7 +16,7 @@ namespace {
 
 fs::path g_soft_store;
 
-constexpr std::uint64_t kBegin = 0x34746f6f66546c50, kEnd = ~kBegin;  // of a file
+constexpr std::uint64_t kBegin = 0x35746f6f66546c50, kEnd = ~kBegin;  // of a file
 
 // A structured binding names every member: a new one stops the build here.
 void visit_members(auto& io, auto& of, const BuiltMesh*) {
@@ -55,8 +55,8 @@ void visit_members(auto& io, auto& of, const Note*) {
   io(what, cure, code, about);
 }
 void visit_members(auto& io, auto& of, const SoftParts*) {
-  auto& [surface, tets, notes, groups] = of;
-  io(surface, tets, notes, groups);
+  auto& [surface, tets, notes, groups, split] = of;
+  io(surface, tets, notes, groups, split);
 }
 
 template <class T>

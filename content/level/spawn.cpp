@@ -7,6 +7,7 @@
 #include "components/soft_body.h"
 #include "content/level/device_use.h"
 #include "content/level/level.h"
+#include "content/level/soft_contact.h"
 #include "content/level/soft_store.h"
 #include "content/level/spawn_carried.h"
 #include "content/level/spawn_device.h"
@@ -147,7 +148,10 @@ class Spawner {
     const dmat4& to_world = state_.motions.world[n];
     const Pose pose = rigid_part(to_world);
     state_.say_preparing(n, node.name);
-    Result<SoftParts> parts = find_soft_parts(node, mesh, mat4(world_to(pose) * to_world), state_.folder);
+    LevelNode asked = node;
+    if (asked.soft_body->contact == SoftContact::kAuto && !why_plain(level_, node).empty())
+      asked.soft_body->contact = SoftContact::kLattice;
+    Result<SoftParts> parts = find_soft_parts(asked, mesh, mat4(world_to(pose) * to_world), state_.folder);
     if (!parts) return state_.around(n, parts.error());
     if (Status s = set_materials(level_, node, world_to(pose), state_.motions.world, *parts); !s)
       return state_.around(n, s.error());
@@ -161,8 +165,8 @@ class Spawner {
     const Entity entity = state_.entities[n];
     world_.registry.add<Pose>(entity, pose);
     SoftBody& body = world_.registry.add<SoftBody>(entity, *node.soft_body);
-    body.contact = contact_of(node);
-    if (body.contact == SoftContact::kSplit) parts->tets.samples = sample_surface(parts->surface.mesh, parts->tets);
+    body.contact = parts->split ? SoftContact::kSplit : SoftContact::kLattice;
+    if (parts->split) parts->tets.samples = sample_surface(parts->surface.mesh, parts->tets);
     body.tets = world_.tet_meshes.add(std::move(parts->tets));
     body.collision_mesh = world_.meshes.add(std::move(parts->surface.mesh));
     if (node.deformable) {

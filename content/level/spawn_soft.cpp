@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "content/level/inner_sheet.h"
+#include "content/level/soft_contact.h"
 #include "content/mesh/mesh_finer.h"
 #include "content/mesh/mesh_refine.h"
 #include "content/tets/lattice.h"
@@ -83,8 +84,8 @@ double mean_edge(const TetMesh& mesh) {
 }
 
 // [m] Of the surface's edges: tissue is touched through its vertices, and dents are drawn by them.
-double longest_edge(const LevelNode& node, const Mesh& surface, double of_tets) {
-  if (contact_of(node) != SoftContact::kSplit) return kLongestEdge * of_tets;
+double longest_edge(const LevelNode& node, bool split, const Mesh& surface, double of_tets) {
+  if (!split) return kLongestEdge * of_tets;
   if (!node.deformable) return kEdgeOfSplit * of_tets;
   const double dents = kEdgeOfReach * dent_size(*node.deformable).radius(surface);
   return of_tets * std::clamp(dents / of_tets, kLeastEdge, kEdgeOfSplit);
@@ -247,10 +248,6 @@ std::optional<Note> soft_fault(const LevelNode& node) {
   return std::nullopt;
 }
 
-SoftContact contact_of(const LevelNode& node) {
-  return node.deformable ? SoftContact::kSplit : node.soft_body->contact;
-}
-
 Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, const mat4& to_object,
                                   const std::filesystem::path& folder) {
   const SoftBody& body = *node.soft_body;
@@ -284,13 +281,17 @@ Result<SoftParts> make_soft_parts(const LevelNode& node, const LevelMesh* mesh, 
     group = std::move(*grouped);
     report_parts(count_parts(parts.tets), count_parts(parts.surface.mesh), parts.tets.report);
   }
+  const SoftContact contact = contact_of(node);
+  const bool pinned = std::find(group.begin(), group.end(), NodeGroup::kPinned) != group.end();
+  parts.split = contact == SoftContact::kSplit ||
+                (contact == SoftContact::kAuto && why_plain(parts.surface.mesh, parts.tets, pinned).empty());
   if (mesh) {
     const std::optional<LatticeFocus> focus = focus_of(body, parts.surface.mesh);
     std::vector<Primitive> touched = mesh->primitives;
     const bool filled = parts.tets.report.wall > 0.0 && body.fill == Fill::kSolid;
     const bool outer = filled && leave_out(find_inner_sheet(parts.surface.mesh), parts.surface.mesh, touched);
     const double mean = focus ? kEdgeOverCell * parts.tets.report.cell : mean_edge(parts.tets);
-    const double longest = longest_edge(node, parts.surface.mesh, mean);
+    const double longest = longest_edge(node, parts.split, parts.surface.mesh, mean);
     const bool finer =
         refine(touched, to_object, [&](dvec3 at) { return focus ? longest * focus->width_at(at) : longest; });
     if (outer || finer) {

@@ -15,6 +15,7 @@ struct SoftParts {
   TetMesh tets;                     // nodes in the order free, handle, pinned
   std::vector<std::string> notes;   // on the tetrahedra file
   std::vector<std::string> groups;  // names of the file's physical groups: of TetMesh::group, from 1 on
+  bool split = false;               // its contacts are
 };
 
 // From this Poisson's ratio on, linear tetrahedra lock. A patch pressed into a block with the lattice's usual number of
@@ -24,9 +25,6 @@ inline constexpr double kLockingPoisson = 0.47, kLockingPoissonOfMany = 0.49;  /
 inline constexpr std::size_t kManyTets = 8 * kUsualTets;
 // A sentence (without the body's name) if a body with so many tetrahedra locks; else "".
 std::optional<Note> locking_doubt(const SoftBody& body, std::size_t tetrahedra);
-
-// A soft body's contacts: with PLIANT_deformable, the law of its dents, they are split.
-SoftContact contact_of(const LevelNode& node);
 
 // Conflicting extensions of a node, as text that follows "node X"; "": none.
 std::optional<Note> soft_fault(const LevelNode& node);

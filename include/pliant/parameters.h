@@ -160,6 +160,7 @@ enum class UnderGravity : std::uint8_t {
 enum class SoftContact : std::uint8_t {
   kLattice,  // the lattice's nodes beside it: too stiff where it is small against the cells
   kSplit,    // the lattice with its force smeared, and in series an analytic dent (systems/soft/local)
+  kAuto,     // kSplit where it is proved, else kLattice (content/level/soft_contact.h)
 };
 
 // The elastic law of tissue. All have the same slope at rest; methods.md 2.11.
@@ -257,7 +258,7 @@ struct SoftBodyParameters {
   double error = 0.0;  // [1] error budget from which unset model parameters are chosen; 0: none
   UnderGravity under_gravity = UnderGravity::kFalls;
   Carries carries = Carries::kNothing;
-  SoftContact contact = SoftContact::kLattice;
+  SoftContact contact = SoftContact::kAuto;
   StepMethod integrator = StepMethod::kEuler;
   dvec3 velocity{0, 0, 0};  // [m/s] world, at the beginning; not of a tool
 };

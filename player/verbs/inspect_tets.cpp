@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "content/level/soft_contact.h"
 #include "content/level/soft_preview.h"
 #include "content/level/spawn_soft.h"
 #include "content/level_file.h"
@@ -77,6 +78,17 @@ Level tissue_of(const Level& level) {
   return bodies;
 }
 
+// "split"; or "of the lattice", with the engine's reason if the level leaves it to the engine.
+std::string contacts_of(const Level& level, std::size_t node, const SoftBody& body, const World& world) {
+  const LevelNode& its = level.nodes[node];
+  if (body.contact == SoftContact::kSplit || its.deformable) return "split";
+  const TetMesh& tets = world.tet_meshes[body.tets];
+  if (its.soft_body->contact != SoftContact::kAuto) return "of the lattice";
+  std::string why = why_plain(level, its);
+  if (why.empty()) why = why_plain(world.meshes[body.collision_mesh], tets, tets.pinned_begin() < tets.node_count());
+  return "of the lattice: " + why;
+}
+
 }  // namespace
 
 OrderedJson messages(const std::vector<Note>& notes) {
@@ -97,6 +109,7 @@ OrderedJson describe_tissue(const Level& level) {
   for (auto [entity, body] : world->registry.view<const SoftBody>()) {
     const TetMesh& tets = world->tet_meshes[body.tets];
     OrderedJson tissue = describe(tets);
+    tissue["contacts"] = contacts_of(level, entity.index, body, *world);
     tissue["mass_kg"] = body.density * tissue_volume(tets);
     if (const LatticeErrors errors = expected_errors(tets, world->meshes[body.collision_mesh], body.poisson);
         errors.across > 0.0) {
@@ -139,13 +152,12 @@ void print_tissue(const OrderedJson& tissue) {
     print("    {:.4g} kg", body["mass_kg"].get<double>());
     if (body.contains("across"))
       print(
-          ", {:.1f} cells across at the median: its section {:+.0f} %, bending {:+.0f} %, torsion {:+.0f} %, contacts "
-          "of {} {:+.0f} % of "
-          "the stiffness (estimates)",
+          ", {:.1f} cells across at the median: its section {:+.0f} %, bending {:+.0f} %, torsion {:+.0f} %, plain "
+          "contacts of {} {:+.0f} % of the stiffness (estimates)",
           body["across"].get<double>(), 1e2 * body["section_error"].get<double>(),
           1e2 * body["bending_error"].get<double>(), 1e2 * body["torsion_error"].get<double>(),
           length_text(body["contact_radius_m"].get<double>()), 1e2 * body["contact_error"].get<double>());
-    print("\n");
+    print("\n    contacts {}\n", body["contacts"].get<std::string>());
     for (const OrderedJson& problem : body.value("problems", OrderedJson::array()))
       print("    {}\n", problem.get<std::string>());
   }

@@ -190,6 +190,7 @@ Status prepare_soft(World& world) {
   if (world.touch->presses) add_yielding(world, *soft);  // with probes alone, P1 handles these surfaces
   settle_tools(world, *soft);
   soft->proximity = std::make_unique<Proximity>(soft->bodies);
+  soft->split.prepare(soft->bodies);
   world.soft_snapshots = std::make_unique<TripleBuffer<SoftSnapshot>>(first_snapshot(*soft));
   world.soft = std::move(soft);
   return Done{};

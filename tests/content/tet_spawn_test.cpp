@@ -188,6 +188,43 @@ TEST(SpawnSoft, ADeformableOnASoftBodyIsTheLawOfItsDents) {
   EXPECT_FALSE(world.tet_meshes[body.tets].samples.empty());
 }
 
+TEST(SpawnSoft, ContactsLeftToTheEngineAreSplitWhereThatIsMeasured) {
+  const auto contact = [](const Level& level) {
+    const World world = spawned_tets(level);
+    const SoftBody& body = world.registry.get<SoftBody>(find_by_name(world, "thing"));
+    EXPECT_EQ(body.contact == SoftContact::kSplit, !world.tet_meshes[body.tets].samples.empty());
+    return body.contact;
+  };
+  Level level = ball();
+  EXPECT_EQ(contact(level), SoftContact::kLattice) << "nothing pins it";
+  SoftBody& body = *level.nodes[0].soft_body;
+  body.contact = SoftContact::kSplit;
+  EXPECT_EQ(contact(level), SoftContact::kSplit) << "asked for";
+  body.contact = SoftContact::kAuto;
+  body.pinned = {{-0.1f, -0.1f, -0.1f}, {0.1f, -0.03f, 0.1f}};
+  EXPECT_EQ(contact(level), SoftContact::kSplit);
+  const auto expect_plain = [&](const char* why, const auto& change) {
+    Level other = level;
+    change(other);
+    EXPECT_EQ(contact(other), SoftContact::kLattice) << why;
+  };
+  expect_plain("asked for", [](Level& l) { l.nodes[0].soft_body->contact = SoftContact::kLattice; });
+  expect_plain("large strain", [](Level& l) { l.nodes[0].soft_body->law = TissueLaw::kNeoHookean; });
+  expect_plain("beyond the calibration", [](Level& l) { l.nodes[0].soft_body->poisson = 0.498; });
+  expect_plain("uneven cells", [](Level& l) { l.nodes[0].soft_body->focus = {{0, 0, 0}, vec3(0.02f)}; });
+  expect_plain("thinner than two cells", [](Level& l) { l.nodes[0].soft_body->cell = 0.055; });
+  expect_plain("painted", [](Level& l) {
+    Primitive& surface = l.meshes[0].primitives[0];
+    surface.stiffness.assign(surface.position.size(), 2.0f);
+  });
+  expect_plain("a soft tool", [](Level& l) {
+    l.nodes.push_back(l.nodes[0]);
+    l.nodes.back().name = "tool";
+    l.nodes.back().handle = Handle6{};
+    l.nodes.back().handle->box = {{-0.1f, 0.03f, -0.1f}, {0.1f, 0.1f, 0.1f}};
+  });
+}
+
 TEST(SpawnSoft, ValidateReportsContradictionsNotesOfFilesAndTissueThatFallsApart) {
   const Temporary file("notes.vtk", std::string(kBlock).replace(std::string(kBlock).find("4 0 1 2 4"), 9, "4 0 2 1 4"));
   const auto findings = [&](auto change) {

@@ -56,6 +56,24 @@ inline Primitive block_surface(const SplitBlock& block) {
   return p;
 }
 
+// A cylinder with its lower face at y = 0.
+inline Primitive cylinder_of_triangles(double radius) {
+  constexpr std::uint32_t kSides = 32;
+  Primitive p;
+  for (const double y : {0.0, 2 * radius})
+    for (std::uint32_t i = 0; i < kSides; ++i) {
+      const double turn = 2 * M_PI * i / kSides;
+      p.position.emplace_back(radius * std::cos(turn), y, radius * std::sin(turn));
+    }
+  p.position.emplace_back(0.0f, 0.0f, 0.0f);
+  p.position.emplace_back(0.0f, static_cast<float>(2 * radius), 0.0f);
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const std::uint32_t j = (i + 1) % kSides, up = kSides;
+    p.index.insert(p.index.end(), {2 * up, i, j, 2 * up + 1, j + up, i + up, i, i + up, j, j, i + up, j + up});
+  }
+  return p;
+}
+
 inline Entity add_block(ToolStage& stage, const SplitBlock& block) {
   LevelNode node;
   node.name = "tissue";

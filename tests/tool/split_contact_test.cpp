@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "components/bonded_layer.h"
 #include "components/sphere_curve.h"
@@ -41,24 +42,6 @@ TEST(SplitContact, ASphereOnCoarseCellsIsHertzSphere) {
   }
 }
 
-// A cylinder with its lower face at y = 0.
-Primitive cylinder(double radius) {
-  constexpr std::uint32_t kSides = 32;
-  Primitive p;
-  for (const double y : {0.0, 2 * radius})
-    for (std::uint32_t i = 0; i < kSides; ++i) {
-      const double turn = 2 * M_PI * i / kSides;
-      p.position.emplace_back(radius * std::cos(turn), y, radius * std::sin(turn));
-    }
-  p.position.emplace_back(0.0f, 0.0f, 0.0f);
-  p.position.emplace_back(0.0f, static_cast<float>(2 * radius), 0.0f);
-  for (std::uint32_t i = 0; i < kSides; ++i) {
-    const std::uint32_t j = (i + 1) % kSides, up = kSides;
-    p.index.insert(p.index.end(), {2 * up, i, j, 2 * up + 1, j + up, i + up, i, i + up, j, j, i + up, j + up});
-  }
-  return p;
-}
-
 // A flat punch, twice as thick as wide a block of cells as large as the punch: methods.md 2.10.
 TEST(SplitContact, AFlatPunchOnABlockOfCellsOfItsRadiusHasHayesForce) {
   constexpr double kRadius = 0.004, kDepth = 1e-4;
@@ -72,7 +55,7 @@ TEST(SplitContact, AFlatPunchOnABlockOfCellsOfItsRadiusHasHayesForce) {
     handle.rotation = {100.0, 0.1};
     handle.max_force = 1000, handle.max_torque = 100;
     RigidBody body;
-    const Entity punch = stage.add_rigid(cylinder(kRadius), body, Pose{dvec3(0, 1e-3, 0)}, &handle);
+    const Entity punch = stage.add_rigid(cylinder_of_triangles(kRadius), body, Pose{dvec3(0, 1e-3, 0)}, &handle);
     stage.prepare();
     stage.lead(punch, dvec3(0, 1e-3, 0), 0.05);
     stage.lead(punch, dvec3(0, -kDepth, 0), 0.1);
@@ -182,6 +165,53 @@ TEST(SplitContact, ABallOfTrianglesPressedDeepIsSteadyAndAsHeavyAsABall) {
   press.go(dvec3(0.0023, -0.0045, -0.0031), 0.5);
   EXPECT_LT(press.ripple(), 0.001);
   EXPECT_LT(press.aside.back(), 0.01 * press.force.back());
+}
+
+// Hertz' law ends where the contact is as wide as its smeared load: tips of over 1.5 R = 9 mm press the lattice alone.
+TEST(SplitContact, AWideTipPressesTheLatticeAlone) {
+  for (const double radius : {0.008, 0.010}) {
+    SplitBlock block{.half_width = 0.024, .thickness = 0.02, .cell = 0.004, .squares = 12};
+    ToolStage stage(kSplitStep);
+    add_block(stage, block);
+    const Entity probe = stage.add_probe({0, radius + 1e-3, 0}, radius);
+    stage.prepare();
+    stage.lead(probe, dvec3(0, radius - 1e-3, 0), 0.1);
+    ASSERT_FALSE(stage.soft().contacts.empty());
+    EXPECT_GT(stage.read(probe).force.y, 0.01);
+    for (const ContactPoint& c : stage.soft().contacts) EXPECT_EQ(bool(c.a.smeared || c.b.smeared), radius < 0.009);
+  }
+}
+
+// Row 15: a hand that presses, slides and leaves at random gains no energy, with friction and without.
+TEST(SplitContact, RandomPathsAtThreeSpeedsGiveTheHandNoEnergy) {
+  constexpr double kTip = 0.002;  // [m]
+  for (const double friction : {0.0, 0.3})
+    for (const double speed : {0.02, 0.1, 0.5}) {
+      SplitBlock block{.half_width = 0.024, .thickness = 0.02, .cell = 0.004, .friction = friction, .squares = 12};
+      ToolStage stage(kSplitStep);
+      add_block(stage, block);
+      const dvec3 above(0, kTip + 0.002, 0);
+      const Entity probe = stage.add_probe(above, kTip);
+      stage.prepare();
+      stage.lead(probe, above, 0.05);
+      scenes::WorkMeter meter;
+      double lent = 0.0, most = 0.0;  // [J] the least work so far, below; [N]
+      std::mt19937 random(static_cast<unsigned>(1e3 * speed) + 1);
+      const auto any = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+      dvec3 from = above;
+      for (int way = 0; way < 12; ++way) {
+        const dvec3 to = way == 11 ? above : dvec3(any(-0.005, 0.005), kTip + any(-0.0015, 0.0005), any(-0.005, 0.005));
+        stage.lead(probe, to, std::max(length(to - from) / speed, 0.004), [&] {
+          meter.add(stage.read(probe));
+          lent = std::max(lent, meter.work());
+          most = std::max(most, length(stage.read(probe).force));
+        });
+        from = to;
+      }
+      EXPECT_GT(most, 0.05) << speed;
+      EXPECT_LT(meter.work(), 0.0) << speed << ' ' << friction;
+      EXPECT_LT(lent, 1e-9) << "[J] " << speed << ' ' << friction;
+    }
 }
 
 }  // namespace

@@ -145,6 +145,7 @@ Result<Indentation> press_tissue(const Indented& what, PressRun& run) {
   body.poisson = what.poisson;
   body.rayleigh = {0.0, 0.01};
   body.cell = run.cell;
+  body.contact = run.contact;
   if (run.focus) {
     const auto half = static_cast<float>(kFocus * what.radius);
     body.focus.add(vec3(-half, -half, -half));

@@ -36,6 +36,7 @@ struct FidelityRow {
 struct FidelityPlan {
   std::vector<int> cells;                  // of the block, per punch radius
   std::vector<double> level_cells, focus;  // [m] of lattices: uniform, and fine only under the punch
+  std::vector<double> split;               // [m] of uniform lattices with split contacts
   std::vector<double> lattice, lens;       // [1] radii per cell, small block: uniform, and fine under the punch only
   double seconds;                          // [s] of a press in a level
   std::vector<Shape> shapes;               // of P1
@@ -46,6 +47,7 @@ FidelityPlan fidelity_plan(StudySize size) {
       return {{2, 3, 4, 5},
               {0.01, 0.005, 0.01 / 3, 0.0025},
               {0.002, 0.001},
+              {0.01, 0.02 / 3, 0.005, 0.004},
               {2.0, 1.0, 0.5, 1.0 / 3, 0.25, 2.0 / 9},
               {0.5, 0.25, 1.0 / 6},
               0.25,
@@ -54,6 +56,7 @@ FidelityPlan fidelity_plan(StudySize size) {
       return {{1, 2, 3},
               {0.01, 0.005},
               {0.002},
+              {0.01, 0.02 / 3, 0.005},
               {2.0, 1.0, 0.5},
               {0.5},
               0.1,
@@ -61,7 +64,7 @@ FidelityPlan fidelity_plan(StudySize size) {
     case StudySize::kSmall:
       break;
   }
-  return {{1, 2, 3}, {0.01}, {0.004}, {2.0, 1.0}, {1.0}, 0.05, {Shape::kPunch, Shape::kGaussian}};
+  return {{1, 2, 3}, {0.01}, {0.004}, {0.01}, {2.0, 1.0}, {1.0}, 0.05, {Shape::kPunch, Shape::kGaussian}};
 }
 
 // A smaller block, in radii, so that fine lattices are affordable. Its width and thickness are whole numbers of cells
@@ -189,16 +192,23 @@ class Fidelity {
   }
 
   Status press_bodies() {
+    const struct {
+      const char *group, *label;
+      const std::vector<double>& cells;
+      bool focus;
+      SoftContact contact;
+    } kinds[] = {{"FEM, in a level, plain", "plain", plan_.level_cells, false, SoftContact::kLattice},
+                 {"FEM, in a level, focus", "focus", plan_.focus, true, SoftContact::kLattice},
+                 {"FEM, in a level, split", "split", plan_.split, false, SoftContact::kSplit}};
     double done = 0.0;
-    for (const bool focus : {false, true})
-      for (const double cell : focus ? plan_.focus : plan_.level_cells) {
-        PressRun press{cell, plan_.seconds, 0, [&] { return !interrupt_.requested(); }, focus};
+    for (const auto& kind : kinds)
+      for (const double cell : kind.cells) {
+        PressRun press{cell, plan_.seconds, 0, [&] { return !interrupt_.requested(); }, kind.focus, kind.contact};
         auto model = press_tissue(what_, press);
         if (!model) return model.error();
-        rows_.push_back({focus ? "FEM, in a level, focus" : "FEM, in a level",
-                         fmt::format("{}, cell {:.3g} mm, {} tets", focus ? "focus" : "level", 1000 * cell, press.tets),
+        rows_.push_back({kind.group, fmt::format("{}, cell {:.3g} mm, {} tets", kind.label, 1000 * cell, press.tets),
                          model->us, force_error(*model, truth_), surface_error(*model, judged_), press.tets});
-        const double all = static_cast<double>(plan_.level_cells.size() + plan_.focus.size());
+        const double all = static_cast<double>(plan_.level_cells.size() + plan_.focus.size() + plan_.split.size());
         if (const Status on = goes_on(0.62 + 0.13 * (done += 1.0) / all); !on) return on;
       }
     return Done{};

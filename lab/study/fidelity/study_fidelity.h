@@ -41,6 +41,7 @@ struct PressRun {
   std::size_t tets = 0;                                 // output: of the lattice
   std::function<bool()> goes_on = [] { return true; };  // called in every tick; false ends the press with an error
   bool focus = false;                                   // cell size under the punch; larger away from it
+  SoftContact contact = SoftContact::kLattice;
 };
 Result<Indentation> press_tissue(const Indented& what, PressRun& press);
 // A sequence of block presses at these depths [m], solved anew in every soft step of 1/60 s: force and cost.

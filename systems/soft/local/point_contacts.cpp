@@ -210,6 +210,18 @@ ContactPoint PointContacts::Pressed::contact(Standing& at) const {
   return c;
 }
 
+// The body of smaller surface.
+std::uint32_t PointContacts::pressing(const std::vector<std::unique_ptr<Body>>& bodies, std::uint32_t i,
+                                      std::uint32_t k) {
+  const double area_i = surface_of(bodies, i).area, area_k = surface_of(bodies, k).area;
+  return area_i <= area_k ? i : k;
+}
+
+void PointContacts::prepare(const std::vector<std::unique_ptr<Body>>& bodies, std::uint32_t i, std::uint32_t k) {
+  Surface& surface = surface_of(bodies, pressing(bodies, i, k));
+  if (surface.levels.empty()) surface.levels = pressed_points(*bodies[pressing(bodies, i, k)]->collision_mesh);
+}
+
 // The contacts of a level's points. Returns how many press without a dent, or will at the end of the step.
 std::size_t PointContacts::press(const Pressed& pair, std::size_t level, std::vector<ContactPoint>& out) {
   out.clear();
@@ -237,8 +249,7 @@ std::size_t PointContacts::press(const Pressed& pair, std::size_t level, std::ve
 void PointContacts::place(const std::vector<std::unique_ptr<Body>>& bodies, std::uint32_t i, std::uint32_t k, double T,
                           std::vector<ContactPoint>& contacts) {
   const auto between = [&](const ContactPoint& c) { return std::minmax(c.body_a, c.body_b) == std::minmax(i, k); };
-  const double area_i = surface_of(bodies, i).area, area_k = surface_of(bodies, k).area;
-  const std::uint32_t a = area_i <= area_k ? i : k, b = a == i ? k : i;
+  const std::uint32_t a = pressing(bodies, i, k), b = a == i ? k : i;
   const auto split = [&](std::uint32_t body) {
     const SoftBodyState* tissue = bodies[body]->as_tissue();
     return tissue && tissue->smearing() ? tissue : nullptr;
@@ -288,9 +299,7 @@ void PointContacts::place(const std::vector<std::unique_ptr<Body>>& bodies, std:
     return true;
   });
   if (pair.seeds.empty()) return;
-  if (pair.surface.levels.empty()) {
-    pair.surface.levels = pressed_points(*of_a.collision_mesh);
-  }
+  prepare(bodies, i, k);
   if (const double poisson = pair.tissue_a ? pair.tissue_a->elasticity().poisson : 0.0;
       pair.surface.poisson != poisson) {
     pair.surface.poisson = poisson;

@@ -17,6 +17,8 @@ namespace pliant {
 
 class PointContacts {
  public:
+  // Of bodies that may be pressed on each other: the points of the smaller surface.
+  void prepare(const std::vector<std::unique_ptr<Body>>& bodies, std::uint32_t i, std::uint32_t k);
   // Before Proximity::find replaces the last step's contacts.
   void remember(const std::vector<ContactPoint>& contacts);
   // After it: replaces the contacts between these two bodies, i < k, of which one is split tissue.
@@ -33,6 +35,7 @@ class PointContacts {
   };
   struct Pressed;
   Surface& surface_of(const std::vector<std::unique_ptr<Body>>& bodies, std::uint32_t body);
+  std::uint32_t pressing(const std::vector<std::unique_ptr<Body>>& bodies, std::uint32_t i, std::uint32_t k);
   std::size_t press(const Pressed& pair, std::size_t level, std::vector<ContactPoint>& out);
 
   ContactMemory last_;

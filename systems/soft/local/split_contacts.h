@@ -17,6 +17,7 @@ class SplitContacts {
  public:
   SplitContacts();
   ~SplitContacts();
+  void prepare(const std::vector<std::unique_ptr<Body>>& bodies);  // once: takes time on surfaces that may press
   // Before Proximity::find replaces the last step's contacts.
   void remember(const std::vector<ContactPoint>& contacts);
   // After it: contacts of split tissue get their smeared loads, radii and gaps, in a step of T [s].
