@@ -18,6 +18,29 @@ std::string body_name(const World& world, std::uint32_t body) {
   return name ? "`" + name->value + "`" : fmt::format("body {}", body);
 }
 
+// [s] Mean age of a force that is held and fades in, in lockstep: sensed a tick ago, kept for a soft step.
+double age_of_held(const Simulation& s) {
+  const double tick = 1.0 / s.touch_rate;
+  return tick + (s.soft_step > tick ? 0.5 * (1.0 + kJoinShare) * s.soft_step : 0.5 * tick);
+}
+
+// A spring k whose force is that old pushes a hand on like a damping of -k age.
+void explain_held(const World& world, const std::string& name, std::vector<Note>& notes) {
+  const Entity tool = find_by_name(world, name);
+  const Handle6* const handle = tool == kNoEntity ? nullptr : world.registry.find<Handle6>(tool);
+  if (!handle || handle->force != ToolForce::kHeld) return;
+  const auto [k, b] = handle->translation;
+  const double least = k * age_of_held(world.simulation);
+  if (b >= least) return;
+  notes.push_back({fmt::format("tool `{}`: its held force is {:.3g} ms old on average, and pushes the hand on unless "
+                               "the hand damps more than {:.2g} N s/m",
+                               name, 1e3 * age_of_held(world.simulation), least - b),
+                   fmt::format("use --tool-force contacts, make soft_step shorter, or raise the damping of its "
+                               "`coupling.translation` to {:.2g}",
+                               least),
+                   "tool.held", name});
+}
+
 std::string count(std::uint64_t n, const char* what) {
   return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
 }
@@ -38,6 +61,7 @@ std::vector<Note> explain_tool(const World& world, const ProbeSummary& summary) 
                      summary.name, count(summary.stale_ticks, "tick"), kStaleSteps,
                      kStaleSteps * world.simulation.soft_step),
          "lower --rate, make its `cell` larger, or make soft_step longer", "tool.stale", summary.name});
+  explain_held(world, summary.name, notes);
   return notes;
 }
 

@@ -8,6 +8,7 @@
 // - LinearModel, as in P2: F = force - K d - B (w - w0) - M w'. One step's matrix C = M + T B + T^2 K is split by the
 //   shape in which the step moves all that follows the handle. M, B and K are projections on that shape, so each of
 //   them is passive.
+//   Contacts without compliance have none (reduce/stiff_contacts.h): with them, the other description is used.
 // - CondensedContacts, beyond P2: tissue and objects as a few vibration modes, the rest of their flexibility without
 //   inertia, and the contacts between them. The touch tick solves Signorini and Coulomb again with them.
 #pragma once
@@ -102,6 +103,7 @@ struct HandleModel {
   Matrix6 handle_mass = Matrix6::Zero();  // of the handle alone
   Vector6 handle_load = Vector6::Zero();  // [N], [N m] its weight, and the force that supports the tool
   Vector6 force = Vector6::Zero();        // [N], [N m] of tissue and contacts on the handle, from the soft step
+  Vector6 passed_on = Vector6::Zero();    // [N], [N m] less the handle's inertia; with handle_load: on the device
   LinearModel linear;
   CondensedContacts contacts;
   PullModel pull;      // of a probe
@@ -111,11 +113,12 @@ struct HandleModel {
 // Touch clock -> soft clock, per tool.
 struct ToolInput {
   DeviceStatus status = DeviceStatus::kLost;
-  double time = 0.0;            // [s] time of the motion
-  double tick = 1e-3;           // [s] length of a touch tick
-  RigidMotion device;           // of the device's frame
-  bool placed = false;          // `handle` is valid: the soft clock's handle follows it, so that there is only one path
-  RigidMotion handle;           // the 1 kHz handle's centre
+  double time = 0.0;    // [s] time of the motion
+  double tick = 1e-3;   // [s] length of a touch tick
+  RigidMotion device;   // of the device's frame
+  bool placed = false;  // `handle` is valid: the soft clock's handle follows it, so that there is only one path;
+                        // never with ToolForce::kHeld: the soft step couples its handle to `device` itself
+  RigidMotion handle;   // the 1 kHz handle's centre
   std::uint32_t set_backs = 0;  // number of requests by the touch clock to set the tool back to the device
   std::uint32_t seen = 0;       // HandleModel::set_backs of the model in use
   ProbeHold hold;               // of a probe

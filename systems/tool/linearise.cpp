@@ -166,7 +166,7 @@ RigidMotion on_the_way(const RigidMotion& from, const RigidMotion& to, double sh
 void bring(ToolTouchState& tool, const ToolInput& input, double share, ToolBody& body) {
   const RigidMotion end = on_the_way(body.handle().motion(), input.handle, share);
   if (input.status == DeviceStatus::kReady)
-    body.bring_handle(end, tool.expected);
+    body.bring_handle(end, tool.expected, input.tick);
   else
     body.prescribe_handle(end);  // no device: the handle stays at its pose
 }
@@ -185,8 +185,12 @@ double farthest_way(World& world) {
     tool->input.acquire();
     const ToolInput& input = tool->input.read();
     const ToolBody* const body = tool_body(*world.soft, body_of(*world.soft, tool->entity));
-    if (body && says_where(*tool, input))
-      farthest = std::max(farthest, length(input.handle.pose.position - body->handle().motion().pose.position));
+    if (!body) continue;
+    const dvec3 from = body->handle().motion().pose.position;
+    if (says_where(*tool, input))
+      farthest = std::max(farthest, length(input.handle.pose.position - from));
+    else if (tool->wanted == ToolForce::kHeld && input.status == DeviceStatus::kReady)
+      farthest = std::max(farthest, length(input.device.at(body->handle().centre()).pose.position - from));
   }
   return farthest;
 }
@@ -222,13 +226,17 @@ void take_inputs(World& world, double T) {
 void linearise(World& world, double T) {
   if (!world.tools || !world.soft) return;
   SoftState& soft = *world.soft;
+  const double tick = 1.0 / world.simulation.touch_rate;
   const FinishedStep step{soft.bodies, soft.contacts, soft.delassus, soft.problem, T, soft.undone_in(T)};
   for (const auto& tool : world.tools->tools) {
     const std::uint32_t index = body_of(soft, tool->entity);
     const ToolBody* const body = tool_body(soft, index);
     if (!body || !body->solvable()) continue;
-    reduce_tool(step, index, 1.0 / world.simulation.touch_rate, tool->pending);
-    tool->pending.soft_step = soft.step;  // time until the next one
+    if (tool->wanted == ToolForce::kHeld)
+      describe_tool(step, index, tick, tool->pending);
+    else
+      reduce_tool(step, index, tick, tool->pending);
+    tool->pending.soft_step = std::max(soft.step, tick);  // time until the next one is used
     ++tool->pending.step;
   }
 }

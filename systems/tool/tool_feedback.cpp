@@ -75,7 +75,9 @@ void adopt(ToolTouchState& tool, const HandleModel& model) {
   tool.displacement = displacement(model.handle, tool.handle);
   tool.contacts.start(model.contacts);
   tool.late = 0;
-  use(tool, tool.wanted);
+  // A contact without compliance has no linear model: it would keep the handle wherever it was first met, and pull.
+  const bool yields = tool.wanted != ToolForce::kLinear || !has_stiff(model.contacts);
+  use(tool, yields ? tool.wanted : ToolForce::kContacts);
   // A transfer no longer than a tick would begin anew with every model and keep the force constant.
   if (kJoinShare * model.soft_step <= model.contacts.tick) {
     tool.joins = false;
@@ -83,6 +85,12 @@ void adopt(ToolTouchState& tool, const HandleModel& model) {
     return;
   }
   if (tool.used == ToolForce::kContacts) tool.settling = settle_ticks(model);
+}
+
+// The fade to a new description becomes shorter by one tick.
+void fade_on(ToolTouchState& tool) {
+  tool.fade *= std::max(0.0, 1.0 - 1.0 / tool.fade_left);
+  tool.fade_left = std::max(1.0, tool.fade_left - 1.0);
 }
 
 // 1, fading to zero once the model is too old.
@@ -98,11 +106,7 @@ LinearModel scaled(const LinearModel& model, double factor) {
 // The model's wrench over a tick, without solving its contacts again.
 Vector6 plain_tick(const ToolTouchState& tool, const HandleModel& model, double believed, double dt,
                    TickHandle& handle) {
-  if (tool.used != ToolForce::kHeld)
-    return linear_tick(scaled(model.linear, believed), model.handle.velocity, tool.displacement, dt, handle);
-  LinearModel held;
-  held.force = model.force;
-  return linear_tick(held, Vector6::Zero(), Vector6::Zero(), dt, handle);
+  return linear_tick(scaled(model.linear, believed), model.handle.velocity, tool.displacement, dt, handle);
 }
 
 Vector6 contact_tick(ToolTouchState& tool, const HandleModel& model, TickHandle& handle) {
@@ -157,10 +161,7 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
     const Vector6 contacts = contact_tick(tool, model, led);
     if (--tool.settling == 0) tool.fade = tool.wrench - contacts;
   }
-  if (tool.settling == 0) {
-    tool.fade *= std::max(0.0, 1.0 - 1.0 / tool.fade_left);
-    tool.fade_left = std::max(1.0, tool.fade_left - 1.0);
-  }
+  if (tool.settling == 0) fade_on(tool);
 
   if (tool.wrench.allFinite()) tool.impulse += tick.dt * tool.wrench;  // a sum would keep NaN forever
   tool.gained = handle.velocity - tool.handle.velocity;
@@ -172,13 +173,28 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
   if (tool.late >= kLateTicks && tool.used == ToolForce::kContacts) use(tool, ToolForce::kLinear);
 }
 
-// The coupling's wrench on the device, at the device's origin. Before the step, so that device and handle are of the
-// same time: a handle one tick ahead would push a moving hand on, by k v dt.
-void pull_device(ToolTouchState& tool, const HandleModel& model, const Handle6& settings) {
-  const RigidMotion target = tool.sensed.at(model.centre);
-  const Vector6 wrench = -coupling_force(settings, tool.handle, target).wrench;
-  const dvec3 arm = target.pose.position - tool.sensed.pose.position;
+// `wrench`: on the device at the handle's centre, moved to the device's origin.
+void pull_device(ToolTouchState& tool, const HandleModel& model, const Vector6& wrench) {
+  const dvec3 arm = tool.sensed.at(model.centre).pose.position - tool.sensed.pose.position;
   tool.device_wrench = join(linear(wrench), angular(wrench) + cross(arm, linear(wrench)));
+}
+
+// ToolForce::kHeld: handle and device are coupled by the soft step, implicitly, and the touch clock keeps its force. A
+// handle that moved here under a constant force would meet nothing: contacts would hold it from one step to the next
+// only, with the force that a hand needs for that step.
+void hold(ToolTouchState& tool, const HandleModel& model, Tick tick) {
+  const double believed = trust(model, tick.time);
+  const Vector6 now = believed * model.passed_on;
+  if (tool.joins) {
+    tool.fade = believed * tool.wrench - now;
+    if (!tool.fade.allFinite()) tool.fade.setZero();  // a sum would keep NaN forever
+    tool.fade_left = std::max(1.0, kJoinShare * model.soft_step / tick.dt);
+  }
+  tool.joins = false;
+  tool.handle = model.handle;
+  tool.wrench = now + tool.fade;
+  fade_on(tool);
+  pull_device(tool, model, tool.wrench + believed * model.handle_load);
 }
 
 bool motion_is_finite(const RigidMotion& motion) {
@@ -230,12 +246,13 @@ void feel_pull(const World& world, ToolTouchState& tool, const HandleModel& mode
 }
 
 void send_to_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
+  const bool leads = tool.placed() && tool.wanted != ToolForce::kHeld;  // the soft clock's handle
   ToolInput& input = tool.input.write();
   input.status = tool.sensing ? DeviceStatus::kReady : DeviceStatus::kLost;
-  input.time = tool.placed() ? tick.time + tick.dt : tick.time;
+  input.time = leads ? tick.time + tick.dt : tick.time;
   input.tick = tick.dt;
   input.device = tool.sensed;
-  input.placed = tool.placed();
+  input.placed = leads;
   input.handle = tool.handle;
   input.impulse = tool.impulse;
   input.set_backs = tool.set_backs;
@@ -245,7 +262,7 @@ void send_to_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
     input.max_force = world.registry.get<HapticDevice>(tool.device).max_force;
   }
   tool.input.publish();
-  if (tool.placed()) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
+  if (leads) tool.path.push({tick.time + tick.dt, tool.handle.velocity});
 }
 
 // The device between two poses `elapsed` [s] apart, `since` [s] after the first. Over a short time: constant
@@ -298,9 +315,15 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
   if (stands_aside(world, tool)) {
     if (sensing) feel_pull(world, tool, model, settings, tick);
   } else if (tool.placed() && sensing) {
-    catch_up(tool, model, settings, before, missed, tick);
-    pull_device(tool, model, settings);
-    step(tool, model, settings, tick);
+    if (tool.wanted == ToolForce::kHeld) {
+      hold(tool, model, tick);
+    } else {
+      catch_up(tool, model, settings, before, missed, tick);
+      // Before the step, so that device and handle are of the same time: a handle one tick ahead would push a moving
+      // hand on, by k v dt.
+      pull_device(tool, model, -coupling_force(settings, tool.handle, tool.sensed.at(model.centre)).wrench);
+      step(tool, model, settings, tick);
+    }
     if (!motion_is_finite(tool.handle)) {
       world.dropped |= kDroppedNonFinite;
       unplace(tool, HandleState::kNew);  // a non-finite model must not enter the handle

@@ -106,6 +106,30 @@ TEST(Keeper, TicksWithAnOldModelOrLateContactsAreCountedAndSaidWithTheirCure) {
   EXPECT_TRUE(explain_tool(world, {}).empty());
 }
 
+// Mean age at 1 kHz and 1/60 s: a tick, half a step, and half the cross-fade.
+TEST(Keeper, AHeldForceThatPushesTheHandOnIsSaidWithItsCure) {
+  World world;
+  const Entity tool = tool_in(world);
+  ProbeSummary summary;
+  summary.name = "hand";
+  EXPECT_TRUE(explain_tool(world, summary).empty()) << "it is not held";
+  Handle6& handle = world.registry.get<Handle6>(tool);
+  handle.force = ToolForce::kHeld;
+  handle.translation = {200.0, 2.0};
+  const std::vector<Note> said = explain_tool(world, summary);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].code, "tool.held");
+  EXPECT_NE(
+      said[0].message().find("12.5 ms old on average, and pushes the hand on unless the hand damps more than 0.49"),
+      std::string::npos)
+      << said[0].message();
+  handle.translation[1] = 2.5;
+  EXPECT_TRUE(explain_tool(world, summary).empty());
+  handle.translation[1] = 2.0;
+  world.simulation.soft_step = 5e-3;
+  EXPECT_TRUE(explain_tool(world, summary).empty());
+}
+
 TEST(SoftClock, WhatStepsLeaveImperfectIsSaidWithItsCure) {
   World world;
   world.soft = std::make_shared<SoftState>();

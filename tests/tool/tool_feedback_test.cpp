@@ -207,6 +207,7 @@ struct Pressing {
   Pose at;
   explicit Pressing(TouchStage& stage, double friction) : scene(firm_tissue(), firm_handle(), friction, 4, 5) {
     at = scene.settle(1.0 / 60.0, 2e-3, 30, kTick, stage.model);
+    stage.model.passed_on = stage.model.force;
     stage.hand().position = at.position;
     stage.hand().rotation = at.rotation;
   }

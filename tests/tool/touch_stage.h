@@ -47,7 +47,9 @@ struct TouchStage {
     state().model.publish();
   }
   // The force of the next model, of every kind.
-  void press(double newton) { model.force[1] = model.linear.force[1] = model.contacts.tissue_force[1] = newton; }
+  void press(double newton) {
+    model.force[1] = model.passed_on[1] = model.linear.force[1] = model.contacts.tissue_force[1] = newton;
+  }
   void tick() {
     const Tick now{ticks, kTick, static_cast<double>(ticks) * kTick};
     tool_feedback(world, now);

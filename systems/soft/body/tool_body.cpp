@@ -1,5 +1,6 @@
 #include "systems/soft/body/tool_body.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "systems/soft/body/rotation_vector.h"
@@ -60,9 +61,10 @@ void ToolBody::couple(double T, dvec3 gravity) {
     coupling_step_.right = coupling_step_.matrix.cwiseProduct(there);
     return;
   }
-  coupling_step_.matrix =
-      coupling_step(coupling_force(settings_, prescribed_->end, device_target()), prescribed_->end, device_target(), T)
-          .matrix;
+  const double span = std::max(T, prescribed_->span);
+  coupling_step_.matrix = coupling_step(coupling_force(settings_, prescribed_->end, device_target()), prescribed_->end,
+                                        device_target(), span)
+                              .matrix;
   coupling_step_.right = coupling_step_.matrix.cwiseProduct(there) + handle_mass_ * (there - start_) -
                          T * (handle_load_ + prescribed_->expected);
 }
@@ -73,6 +75,14 @@ Vector6 ToolBody::short_of_prescribed(const RigidMotion& handle) const {
 
 Vector6 ToolBody::coupling_wrench() const {
   return (coupling_step_.right - coupling_step_.matrix.cwiseProduct(velocity_.tail<6>())) / T_;
+}
+
+Vector6 ToolBody::coupling_at(const RigidMotion& end) const {
+  if (!device_) return Vector6::Zero();
+  RigidMotion there = *device_;
+  there.pose.position += T_ * linear(there.velocity);
+  there.pose.rotation = glm::normalize(rotation_of(T_ * angular(there.velocity)) * there.pose.rotation);
+  return coupling_force(settings_, end, there.at(handle_->centre())).wrench;
 }
 
 Vector6 ToolBody::handle_wrench() const {

@@ -4,7 +4,8 @@
 //
 // The hand enters the soft step implicitly. The touch clock moves the handle at 1 kHz against the device. The soft step
 // moves it to the end of that path, with the impedance of handle and coupling,
-//   (M_h + T B_c + T^2 K_c) (w - w_1) = T (F - F_1).
+//   (M_h + S B_c + S^2 K_c) (w - w_1) = T (F - F_1).
+// S: the longer of step and touch tick.
 // w_1: the twist that leads there; F_1: the mean wrench of tissue and contacts on that path, from the touch clock; F:
 // the step's wrench. If both agree the handle arrives; if not, other bodies feel a hand, not a wall.
 #pragma once
@@ -44,10 +45,13 @@ class ToolBody : public Body {
   void set_device(const Pose& pose, const Vector6& velocity);
   void release_device() { device_.reset(), prescribed_.reset(); }
   // From now on the handle's motion is prescribed: its centre moves to `end` over the next step, regardless of forces.
-  void prescribe_handle(const RigidMotion& end) { prescribed_ = {end, Vector6::Zero(), true}; }
+  void prescribe_handle(const RigidMotion& end) { prescribed_ = {end, Vector6::Zero(), 0.0, true}; }
   // The same, but compliant like a hand: it deviates if tissue and contacts pull otherwise than by `expected` [N], [N
-  // m], the mean over the step.
-  void bring_handle(const RigidMotion& end, const Vector6& expected) { prescribed_ = {end, expected, false}; }
+  // m], the mean over the step. The hand's impedance is that over at least `span` [s]: steps shorter than a touch tick
+  // each go all the way that is left, and a lighter hand would never arrive.
+  void bring_handle(const RigidMotion& end, const Vector6& expected, double span = 0.0) {
+    prescribed_ = {end, expected, span, false};
+  }
   // [m], [rad] from `handle` at the end of a step to its prescribed pose; zero without one.
   Vector6 short_of_prescribed(const RigidMotion& handle) const;
   bool held() const { return device_.has_value(); }  // a device holds the handle
@@ -86,6 +90,8 @@ class ToolBody : public Body {
      // prescribed
   // [N], [N m] world, on the handle at its centre: the coupling's wrench over the step, for the current velocity.
   Vector6 coupling_wrench() const;
+  // The coupling's law at the end of the step, for a handle that ends it with `end`.
+  Vector6 coupling_at(const RigidMotion& end) const;
   // The same of tissue and contacts together: the remainder of the handle's momentum and the coupling.
   Vector6 handle_wrench() const;
 
@@ -97,6 +103,7 @@ class ToolBody : public Body {
   struct PrescribedMotion {
     RigidMotion end;         // of its centre
     Vector6 expected;        // [N], [N m] of tissue and contacts, mean over the step
+    double span = 0.0;       // [s]
     bool kinematic = false;  // independent of forces
   };
 

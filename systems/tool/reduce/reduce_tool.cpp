@@ -1,5 +1,7 @@
 #include "systems/tool/reduce/reduce_tool.h"
 
+#include <algorithm>
+
 #include "systems/tool/reduce/catch_up.h"
 #include "systems/tool/reduce/condense_bodies.h"
 #include "systems/tool/reduce/handle_and_tissue.h"
@@ -21,6 +23,16 @@ void reduce_tool(const FinishedStep& step, std::uint32_t tool, double tick, Hand
   const Vector6 dropped = drop_stiff(step.T, step.beta, left, out.contacts);
   out.force -= dropped;
   out.linear.force -= dropped;
+}
+
+void describe_tool(const FinishedStep& step, std::uint32_t tool, double tick, HandleModel& out) {
+  const ToolContacts contacts(step, tool);
+  describe_contacts(contacts, out.contacts);
+  describe_handle_and_tissue(contacts, out);
+  out.contacts.modes = 0;
+  out.contacts.tick = tick;
+  std::fill(out.contacts.stiff.begin(), out.contacts.stiff.end(), std::uint8_t{0});
+  out.passed_on = -contacts.tool().coupling_at(out.handle) - out.handle_load;
 }
 
 }  // namespace pliant

@@ -11,4 +11,7 @@ namespace pliant {
 // `time`.
 void reduce_tool(const FinishedStep& step, std::uint32_t tool, double tick, HandleModel& out);
 
+// The same for a touch clock that keeps the step's force constant: neither linear model nor modes.
+void describe_tool(const FinishedStep& step, std::uint32_t tool, double tick, HandleModel& out);
+
 }  // namespace pliant
