@@ -68,6 +68,7 @@ dvec2 shift_to_touch(const dmat2& K, dvec2 phi, double edge) {
 struct Foot {
   dvec3 a{0}, b{0};     // [m] world
   double closer = 0.0;  // [m]
+  bool curved = false;  // neither is sharp, and one of them is curved
 };
 
 Foot find_foot(const FeaturePair& pair, const SurfacePoint& at_a, const SurfacePoint& at_b, dvec3 normal, bool ahead) {
@@ -85,7 +86,7 @@ Foot find_foot(const FeaturePair& pair, const SurfacePoint& at_a, const SurfaceP
     of_a += dvec3(exact * (dot(up_a, s) + 0.5 * dot(s, a.form * s)), s);
     of_b += dvec3(exact * (dot(up_b, s) - 0.5 * dot(s, b.form * s)), s);
   }
-  return {axes * of_a, axes * of_b, of_b.x - of_a.x};
+  return {axes * of_a, axes * of_b, of_b.x - of_a.x, !a.sharp && !b.sharp && (a.edge > 0.0 || b.edge > 0.0)};
 }
 
 // Moves a point of a turning body to its arm at the end of the step. Returns the part of T u_n by its rotation [m].
@@ -101,13 +102,11 @@ double put_on_arc(const CollisionMesh& mesh, dvec3 foot, dvec3 normal, SurfacePo
 
 void place_on_arcs(const FeaturePair& pair, double begin_gap, ContactPoint& contact) {
   const CollisionMesh &a = pair.a, &b = pair.b;
-  if (!a.turns() && !b.turns()) return;
-  Foot foot;
-  if (rigid(a) && rigid(b)) {
-    foot = find_foot(pair, contact.a, contact.b, contact.normal, true);
-    const double closer = find_foot(pair, contact.a, contact.b, contact.normal, false).closer;
-    contact.depth = std::max(0.0, closer - begin_gap);
-  }
+  if (!(a.turns() || b.turns()) || !rigid(a) || !rigid(b)) return;
+  const Foot foot = find_foot(pair, contact.a, contact.b, contact.normal, true);
+  if (!foot.curved) return;
+  const double closer = find_foot(pair, contact.a, contact.b, contact.normal, false).closer;
+  contact.depth = std::max(0.0, closer - begin_gap);
   const double by_a = put_on_arc(a, foot.a, contact.normal, contact.a);
   const double by_b = put_on_arc(b, foot.b, contact.normal, contact.b);
   const double of_feet = dot(contact.normal, (a.turns() ? foot.a : dvec3(0.0)) - (b.turns() ? foot.b : dvec3(0.0)));
@@ -116,7 +115,8 @@ void place_on_arcs(const FeaturePair& pair, double begin_gap, ContactPoint& cont
 
 double closer_by_shape(const FeaturePair& pair, const SurfacePoint& a, const SurfacePoint& b, dvec3 normal) {
   if (!(pair.a.turns() || pair.b.turns()) || !rigid(pair.a) || !rigid(pair.b)) return 0.0;
-  return find_foot(pair, a, b, normal, true).closer;
+  const Foot foot = find_foot(pair, a, b, normal, true);
+  return foot.curved ? foot.closer : 0.0;
 }
 
 }  // namespace pliant
