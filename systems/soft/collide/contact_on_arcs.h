@@ -13,8 +13,8 @@
 
 namespace pliant {
 
-// After look_ahead: points, gap and depth of a contact of turning bodies; others are unchanged. `begin_gap` [m]: of the
-// features, at the beginning of the step.
+// After look_ahead: points, gap and depth of a contact of curved, turning rigid bodies; others are unchanged.
+// `begin_gap` [m]: of the features, at the beginning of the step.
 void place_on_arcs(const FeaturePair& pair, double begin_gap, ContactPoint& contact);
 
 // [m] By which the smooth surfaces are closer than the features at these points, normals being those of ahead().
