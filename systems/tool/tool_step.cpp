@@ -13,15 +13,23 @@ namespace {
 // must not pass through a finger's width.
 constexpr double kMostWay = 0.01;
 constexpr int kMostParts = 8;
-constexpr int kMoreParts = 4;  // additional parts of a step to avoid crossings
+constexpr double kMostTurn = 1.0;  // [rad] the same for the turn of a rigid body, whose points move on arcs
+constexpr int kMoreParts = 4;      // additional parts of a step to avoid crossings
+
+double fastest_turn(const SoftState& soft) {  // [rad/s] of rigid bodies
+  double most = 0.0;
+  for (const std::uint32_t i : soft.moving)
+    if (const auto path = soft.bodies[i]->path()) most = std::max(most, length(path->angular));
+  return most;
+}
 
 }  // namespace
 
 void run_soft_step(Schedule<World>& schedule, World& world, Tick tick) {
   if (!world.soft) return schedule.run(world, tick);
   SoftState& soft = *world.soft;
-  const double way = farthest_way(world);
-  soft.parts = std::clamp(static_cast<int>(std::ceil(way / kMostWay)), 1, kMostParts);
+  const double parts = std::max(farthest_way(world) / kMostWay, fastest_turn(soft) * tick.dt / kMostTurn);
+  soft.parts = std::clamp(static_cast<int>(std::ceil(parts)), 1, kMostParts);
   soft.more = kMoreParts;
   double done = 0.0;
   for (soft.part = 0; soft.part < soft.parts; ++soft.part) {

@@ -99,8 +99,8 @@ TEST(ContactGeometry, TheSecondLookIsWhereTheStepsOwnVelocitiesLead) {
   contact.axes = axes_along(contact.normal);
   const SurfacePoint a = contact.a, b = contact.b;
 
-  scene.block.collision_mesh.predict(std::vector<dvec3>(scene.block.mesh.vertex_count, went / kGeometryStep),
-                                     kGeometryStep);
+  scene.block.collision_mesh.predict(
+      scene.block.body, std::vector<dvec3>(scene.block.mesh.vertex_count, went / kGeometryStep), kGeometryStep);
   ASSERT_TRUE(look_again(scene.pair(), contact));
   EXPECT_LT(degrees_between(contact.normal, end), 0.5);
   EXPECT_LT(degrees_between(contact.axes * leaning_axes(contact.lean)[0], contact.normal), 1e-6);

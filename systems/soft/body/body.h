@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,8 +24,14 @@ struct SurfacePoint {
   std::uint32_t triangle = 0;  // of the collision mesh
   dvec3 barycentric{1, 0, 0};  // [1]
   dvec3 position{0};           // [m] world, at the beginning of the step
+  bool beside = false;         // of a rigid body: its position is not on the triangle (contact_on_arcs.h)
   // Of a split contact on tissue: where its force acts instead, and where its motion is read.
   std::shared_ptr<const SmearedLoad> smeared;
+};
+
+// Motion of a rigid body over a step: it turns about a centre that moves straight. World frame.
+struct RigidPath {
+  dvec3 centre{0}, linear{0}, angular{0};  // [m] at the beginning, [m/s], [rad/s]
 };
 
 // A tip of a probe.
@@ -144,6 +151,9 @@ class Body {
   virtual void correct(const Vector& dv) = 0;
   // [m/s] Per collision mesh vertex, from the current velocity().
   virtual void move_surface(std::vector<dvec3>& out) const { out.assign(surface_position.size(), dvec3(0)); }
+  // Of a rigid body that is not a tool: its path by velocity(), and by the velocity at the beginning of the step.
+  virtual std::optional<RigidPath> path() const { return {}; }
+  virtual std::optional<RigidPath> last_path() const { return {}; }
   // x += T v; refreshes surface_position.
   virtual void advance(double T) = 0;
   // Its contacts are compliant, although it has no degrees of freedom.

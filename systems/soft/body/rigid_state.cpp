@@ -47,6 +47,7 @@ dmat3 RigidState::inverse_inertia(const dquat& rotation) const {
 void RigidState::set_velocity(dvec3 linear, dvec3 angular) {
   linear_ = linear;
   angular_momentum_ = inertia(rotation_) * angular;
+  velocity_ << linear.x, linear.y, linear.z, angular.x, angular.y, angular.z;
 }
 
 void RigidState::set_mass(const RigidMass& mass) {

@@ -26,6 +26,8 @@ class RigidState : public Body {
   void place(const Pose& pose) override;
   void correct(const Vector& dv) override;
   void move_surface(std::vector<dvec3>& out) const override;
+  std::optional<RigidPath> path() const override { return path_of(velocity_); }
+  std::optional<RigidPath> last_path() const override { return path_of(start_); }
   void advance(double T) override;
   void weigh(const Rows& x, Rows& out) const override;
   Vector starting_velocity() const override { return start_; }
@@ -47,6 +49,7 @@ class RigidState : public Body {
   dmat3 inertia(const dquat& rotation) const;          // [kg m2] world
   dmat3 inverse_inertia(const dquat& rotation) const;  // world
   dvec3 free_turn(double T) const;                     // [rad/s] mean angular velocity of the step without contacts
+  RigidPath path_of(const Vector& v) const { return {centre_, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}}; }
   void refresh_surface();
 
   RigidMass mass_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runtime/assert.h"
+#include "systems/soft/body/rotation_vector.h"
 #include "systems/soft/collide/farthest_axis.h"
 
 namespace pliant {
@@ -13,6 +14,7 @@ constexpr double kNearEdges = 2.5;   // [mean edges] along the surface: closer n
 constexpr double kFlatShare = 0.05;  // [rad] edges whose triangles are coplanar within this cannot touch
 constexpr double kHollow = 0.98;     // [1] cosine across a concave edge: sharper ones are touched on their flanks
 constexpr double kSmooth = 0.8;      // [1] cosine between a vertex's normal and its triangles': below it, it is sharp
+constexpr double kTurnsFar = 0.95;   // [1] cosine of the rotation in a step
 constexpr int kRigid = 6;            // degrees of freedom
 constexpr float kRounding = 4e-7f;   // [1] of coordinates: boxes are single precision
 
@@ -25,6 +27,20 @@ Box grown(const Box& box, float by) {
   return b;
 }
 
+// [m] Displacements over T: on arcs along a path, else straight.
+void displace(const std::optional<RigidPath>& path, const std::vector<dvec3>& position,
+              const std::vector<dvec3>& velocity, double T, std::vector<dvec3>& out) {
+  if (!path || path->angular == dvec3(0.0)) {
+    for (std::size_t v = 0; v < out.size(); ++v) out[v] = T * velocity[v];
+    return;
+  }
+  const dmat3 turn = glm::mat3_cast(rotation_of(T * path->angular));
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    const dvec3 r = position[v] - path->centre;
+    out[v] = T * path->linear + (turn * r - r);
+  }
+}
+
 dvec3 unit_or_zero(dvec3 n) {
   const double l = length(n);
   return l > 0.0 ? n / l : dvec3(0.0);
@@ -33,6 +49,8 @@ dvec3 unit_or_zero(dvec3 n) {
 }  // namespace
 
 CollisionMesh::CollisionMesh(const Body& body) : mesh_(body.collision_mesh), deforms_(body.size() > kRigid) {
+  turns_ = body.last_path().has_value();
+  fixed_ = body.size() == 0 && !body.yields();
   ASSERT(body.collision_mesh && body.surface_position.size() >= body.collision_mesh->vertex_count);
   find_edges();
   find_shortest();
@@ -41,6 +59,7 @@ CollisionMesh::CollisionMesh(const Body& body) : mesh_(body.collision_mesh), def
         MeshNeighbours(*mesh_, kNearEdges * static_cast<double>(mesh_->mean_edge), triangles_first_, triangles_of_);
   position_.resize(mesh_->vertex_count, dvec3(0));
   displacement_.resize(mesh_->vertex_count, dvec3(0));
+  free_ = displacement_;
   ahead_.resize(mesh_->vertex_count, dvec3(0));
   curvature_.resize(mesh_->vertex_count, 0.0);
   vertex_normal_.resize(mesh_->vertex_count);
@@ -48,8 +67,16 @@ CollisionMesh::CollisionMesh(const Body& body) : mesh_(body.collision_mesh), def
   for (std::uint32_t v = 0; v < mesh_->vertex_count; ++v) position_[v] = dvec3(mesh_->position(v));
   find_normals();
   find_curvatures();
-  rest_ = {normal_, vertex_normal_, smooth_, curvature_, {}};
-  find_rest_bend();
+  rest_ = {normal_, vertex_normal_, smooth_, curvature_, shape_operators(*mesh_, edges_, vertex_normal_)};
+  average_over_neighbours(edges_, smooth_, rest_.bend);
+  const auto area = [&](std::uint32_t t) {
+    const uvec3 c = mesh_->triangles[t];
+    const dvec3 n = cross(position_[c.y] - position_[c.x], position_[c.z] - position_[c.x]);
+    return dot(n, n);
+  };
+  for (std::uint32_t t = 1; t < mesh_->triangles.size(); ++t)
+    if (area(t) > area(largest_)) largest_ = t;
+  if (turns_ || fixed_) smooth_shape_ = SmoothShape(*mesh_, edges_, smooth_);
   std::fill(position_.begin(), position_.end(), dvec3(0.0));
   triangle_box_.resize(mesh_->triangles.size());
   vertex_box_.resize(mesh_->vertex_count);
@@ -166,8 +193,10 @@ dmat3 CollisionMesh::turn(std::uint32_t t) const {
   return frame(position_[c.y] - position_[c.x], normal_[t]) * glm::transpose(frame(rest, rest_.normal[t]));
 }
 
-void CollisionMesh::predict(const std::vector<dvec3>& velocity, double T) {
-  for (std::size_t v = 0; v < ahead_.size(); ++v) ahead_[v] = position_[v] + T * velocity[v];
+void CollisionMesh::predict(const Body& body, const std::vector<dvec3>& velocity, double T) {
+  displace(body.path(), position_, velocity, T, ahead_);
+  for (std::size_t v = 0; v < ahead_.size(); ++v) ahead_[v] = position_[v] + ahead_[v];
+  if (const std::optional<RigidPath> now = body.path()) turn_ahead_ = glm::mat3_cast(rotation_of(T * now->angular));
   position_.swap(ahead_);
   find_normals();
   find_curvatures();
@@ -189,10 +218,12 @@ void CollisionMesh::refit(const Body& body, double T, double reach) {
     const dvec3 went = body.surface_position[v] - position_[v];
     position_[v] = body.surface_position[v];
     ahead_[v] = position_[v] + again * went;
-    displacement_[v] = T * body.surface_velocity[v];
   }
+  displace(body.path(), position_, body.surface_velocity, T, displacement_);
+  free_ = displacement_;
   find_drift();
   find_normals();
+  find_turns(body, T);
   find_curvatures();
   find_live_edges();
   fit_boxes(reach);
@@ -200,15 +231,15 @@ void CollisionMesh::refit(const Body& body, double T, double reach) {
 
 void CollisionMesh::sweep(const Body& body, const std::vector<dvec3>& velocity, double T) {
   dvec3 mean(0.0);
-  for (std::size_t v = 0; v < displacement_.size(); ++v) mean += T * (velocity[v] - body.surface_velocity[v]);
+  displace(body.path(), position_, velocity, T, displacement_);
+  for (std::size_t v = 0; v < displacement_.size(); ++v) mean += displacement_[v] - free_[v];
   mean /= static_cast<double>(std::max<std::size_t>(displacement_.size(), 1));
   strayed_ = strayed_apart_ = 0.0;
   for (std::size_t v = 0; v < displacement_.size(); ++v) {
-    const dvec3 strayed = T * (velocity[v] - body.surface_velocity[v]);
+    const dvec3 strayed = displacement_[v] - free_[v];
     vertex_strayed_[v] = static_cast<float>(length(strayed));
     strayed_ = std::max(strayed_, length(strayed));
     strayed_apart_ = std::max(strayed_apart_, length(strayed - mean));
-    displacement_[v] = T * velocity[v];
   }
   swept_ = true;
   find_drift();
@@ -230,6 +261,19 @@ void CollisionMesh::fit_swept() {
     for (std::size_t k = 0; k < below->size(); ++k) runs[k / width] = std::max(runs[k / width], (*below)[k]);
     below = &runs;
   }
+}
+
+void CollisionMesh::find_turns(const Body& body, double T) {
+  turn_ahead_ = dmat3(1.0);
+  if (!turns_ && !fixed_) return;
+  turn_ = turn(largest_);
+  const std::optional<RigidPath> last = body.last_path();
+  if (!last) return;
+  last_path_ = *last;
+  if (last->angular == dvec3(0.0)) return;
+  displace(last, position_, {}, T, ahead_);
+  for (std::size_t v = 0; v < ahead_.size(); ++v) ahead_[v] += position_[v];
+  turn_ahead_ = glm::mat3_cast(rotation_of(T * last->angular));
 }
 
 void CollisionMesh::find_drift() {
@@ -276,54 +320,6 @@ void CollisionMesh::find_curvatures() {
   }
 }
 
-namespace {
-
-// Two tangents for a normal.
-dmat3 frame_of(dvec3 n) {
-  const dvec3 along = farthest_axis(n);
-  const dvec3 t = unit_or_zero(along - dot(along, n) * n);
-  return dmat3(n, t, cross(n, t));
-}
-
-}  // namespace
-
-// Least squares over the edges at a vertex, equally weighted; then averaged with its neighbours.
-void CollisionMesh::find_rest_bend() {
-  struct Sums {
-    dmat2 steps{0}, turns{0};  // of tangential steps times steps, turns times steps
-  };
-  const std::uint32_t count = mesh_->vertex_count;
-  std::vector<Sums> sums(count);
-  std::vector<dmat3> frame(count), own(count, dmat3(0.0));
-  for (std::uint32_t v = 0; v < count; ++v) frame[v] = frame_of(rest_.vertex_normal[v]);
-  for (const CollisionEdge& edge : edges_)
-    for (const auto& [from, to] : {std::pair(edge.from, edge.to), std::pair(edge.to, edge.from)}) {
-      const dvec3 d = (position_[to] - position_[from]) * frame[from];
-      const dvec3 n = (rest_.vertex_normal[to] - rest_.vertex_normal[from]) * frame[from];
-      const dvec2 step(d.y, d.z), turn(n.y, n.z);
-      const double weight = 1.0 / std::max(dot(step, step), 1e-30);
-      sums[from].steps += weight * glm::outerProduct(step, step);
-      sums[from].turns += weight * glm::outerProduct(turn, step);
-    }
-  for (std::uint32_t v = 0; v < count; ++v) {
-    const dmat2& steps = sums[v].steps;
-    const double trace = steps[0][0] + steps[1][1];
-    if (!(glm::determinant(steps) > 1e-6 * trace * trace)) continue;
-    const dmat2 k = sums[v].turns * glm::inverse(steps);
-    const double off = 0.5 * (k[0][1] + k[1][0]);
-    const dmat3 local(0, 0, 0, 0, k[0][0], off, 0, off, k[1][1]);
-    own[v] = frame[v] * local * glm::transpose(frame[v]);
-  }
-  rest_.bend = own;
-  std::vector<double> weight(count, 1.0);
-  for (const CollisionEdge& edge : edges_) {
-    if (!rest_.smooth[edge.from] || !rest_.smooth[edge.to]) continue;
-    rest_.bend[edge.from] += own[edge.to], rest_.bend[edge.to] += own[edge.from];
-    ++weight[edge.from], ++weight[edge.to];
-  }
-  for (std::uint32_t v = 0; v < count; ++v) rest_.bend[v] /= weight[v];
-}
-
 // Depth lost by omitting a flat edge: at most kFlatShare / 4 of its length.
 void CollisionMesh::find_live_edges() {
   live_ = owned_;
@@ -354,6 +350,8 @@ void CollisionMesh::fit_boxes(double reach) {
     vertex_box_[v].max = glm::max(from, to);
   }
   std::vector<Box>& leaf_normals = normal_boxes_[0];
+  // A vertex of a fast rolling ball may come round within the step.
+  const bool far = turns_ && turn_ahead_[0][0] + turn_ahead_[1][1] + turn_ahead_[2][2] < 1.0 + 2.0 * kTurnsFar;
   std::fill(leaf_normals.begin(), leaf_normals.end(), Box());
   for (std::uint32_t t = 0; t < triangle_box_.size(); ++t) {
     Box box;
@@ -363,6 +361,7 @@ void CollisionMesh::fit_boxes(double reach) {
       const std::uint32_t v = mesh_->triangles[t][i];
       box.add(vertex_box_[v]);
       normals.add(vec3(vertex_normal_[v]));
+      if (far) normals.add(vec3(turn_ahead_ * vertex_normal_[v]));
       if (live_[t] & 8u << i) normals.add(vec3(edge_normal(edge_of_[t][i])));
     }
     triangle_box_[t] = grown(box, static_cast<float>(reach));

@@ -10,6 +10,7 @@
 #include "systems/soft/body/body.h"
 #include "systems/soft/collide/meeting.h"
 #include "systems/soft/collide/mesh_neighbours.h"
+#include "systems/soft/collide/smooth_shape.h"
 
 namespace pliant {
 
@@ -66,9 +67,21 @@ class CollisionMesh {
   // [m] Position at the end of the step, extrapolated from the last step: includes contacts, which displacements do
   // not.
   dvec3 ahead(std::uint32_t v) const { return ahead_[v]; }
-  // Extrapolates with `velocity` [m/s, per vertex] over T [s]: updates ahead(), and the normals and curvatures there.
-  // Everything else is unchanged.
-  void predict(const std::vector<dvec3>& velocity, double T);
+  // Extrapolates with the body's current velocity, [m/s] per vertex, over T [s]: updates ahead(), and the normals and
+  // curvatures there. Everything else is unchanged.
+  void predict(const Body& body, const std::vector<dvec3>& velocity, double T);
+  // Of a rigid body that is not a tool: vertices move on arcs. last_path() and `step` [s] gave ahead(); rotation from
+  // the normals to those of ahead().
+  bool turns() const { return turns_; }
+  bool fixed() const { return fixed_; }  // nor does it yield
+  const RigidPath& last_path() const { return last_path_; }
+  double step() const { return last_step_; }
+  const dmat3& turn_ahead() const { return turn_ahead_; }
+  dmat3 normals_to_ahead() const { return predicted_ ? dmat3(1.0) : turn_ahead_; }
+  // Of a turning or fixed body: its rotation from the object frame at the beginning, or at ahead().
+  dmat3 turn_from_rest(bool at_ahead) const { return at_ahead ? turn_ahead_ * turn_ : turn_; }
+  const SmoothShape& smooth_shape() const { return smooth_shape_; }  // of a turning or fixed body, else empty
+  double bulge() const { return turns_ ? smooth_shape_.bulge : 0.0; }
   std::array<Moving, 3> triangle(std::uint32_t t) const;
   std::array<Moving, 2> edge(std::uint32_t e) const { return {vertex(edges_[e].from), vertex(edges_[e].to)}; }
   EdgeShape edge_shape(std::uint32_t e) const;
@@ -114,23 +127,27 @@ class CollisionMesh {
   void find_edges();
   void find_shortest();
   void fit_boxes(double reach);
+  void find_turns(const Body& body, double T);
   void find_drift();
   void find_normals();
   void find_curvatures();
-  void find_rest_bend();
   void find_live_edges();
 
   const Mesh* mesh_;
   std::vector<CollisionEdge> edges_;
   std::vector<std::array<std::uint32_t, 3>> edge_of_;
   std::vector<std::uint8_t> owned_, live_, sharp_, supple_;
-  bool deforms_ = false;
+  bool deforms_ = false, turns_ = false, fixed_ = false;
+  RigidPath last_path_;
+  dmat3 turn_{1}, turn_ahead_{1};
+  std::uint32_t largest_ = 0;  // triangle
+  SmoothShape smooth_shape_;
   std::vector<bool> at_border_;
   std::vector<double> shortest_, shortest_at_vertex_;
   std::vector<std::uint32_t> owner_;                           // of each vertex: one of its triangles
   std::vector<std::uint32_t> triangles_first_, triangles_of_;  // around each vertex
   MeshNeighbours neighbours_;
-  std::vector<dvec3> position_, displacement_, ahead_;
+  std::vector<dvec3> position_, displacement_, free_, ahead_;  // free_: displacements of the free motion
   Shape rest_;
   std::vector<dvec3> normal_, vertex_normal_;
   std::vector<std::uint8_t> smooth_;

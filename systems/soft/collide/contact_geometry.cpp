@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/soft/collide/contact_on_arcs.h"
+
 namespace pliant {
 namespace {
 
@@ -31,9 +33,10 @@ double edge_of(const FeaturePair& pair) {
 // A surface at the end of the step; or in its rest shape, rotated with one of its triangles.
 class Surface {
  public:
-  explicit Surface(const CollisionMesh& collision_mesh) : collision_mesh_(collision_mesh) {}
+  explicit Surface(const CollisionMesh& collision_mesh)
+      : collision_mesh_(collision_mesh), turned_(collision_mesh.turns()), turn_(collision_mesh.normals_to_ahead()) {}
   Surface(const CollisionMesh& collision_mesh, std::uint32_t triangle)
-      : collision_mesh_(collision_mesh), resting_(true), turn_(collision_mesh.turn(triangle)) {}
+      : collision_mesh_(collision_mesh), resting_(true), turned_(true), turn_(collision_mesh.turn(triangle)) {}
   const CollisionMesh& collision_mesh() const { return collision_mesh_; }
   bool smooth(std::uint32_t v) const {
     return resting_ ? collision_mesh_.rest().smooth[v] != 0 : collision_mesh_.smooth(v);
@@ -47,7 +50,7 @@ class Surface {
     dvec3 n(0.0);
     for (int i = 0; i < 3; ++i)
       n += point.barycentric[i] * (smooth(corners[i]) ? vertex_normal(corners[i]) : facet(point.triangle));
-    return resting_ ? turn_ * n : n;
+    return turned_ ? turn_ * n : n;
   }
 
  private:
@@ -57,7 +60,7 @@ class Surface {
   dvec3 facet(std::uint32_t t) const { return resting_ ? collision_mesh_.rest().normal[t] : collision_mesh_.normal(t); }
 
   const CollisionMesh& collision_mesh_;
-  bool resting_ = false;
+  bool resting_ = false, turned_ = false;
   dmat3 turn_{1};
 };
 
@@ -68,13 +71,15 @@ struct Lean {
   bool sharp = true;
 };
 
-Lean lean_at(const Surface& surface, const SurfacePoint& point, bool face) {
+// `flat`: a facet beside a crease is flat, whatever the other facets of its sharp corners do.
+Lean lean_at(const Surface& surface, const SurfacePoint& point, bool face, bool flat = false) {
   const uvec3 corners = surface.collision_mesh().mesh().triangles[point.triangle];
   Lean lean;
   lean.sharp = false;
   for (int i = 0; i < 3; ++i) {
     if (point.barycentric[i] == 0.0) continue;
     lean.sharp |= !face && !surface.smooth(corners[i]);
+    if (flat && !surface.smooth(corners[i])) continue;
     lean.curvature += point.barycentric[i] * std::max(0.0, surface.curvature(corners[i]));
   }
   if (!lean.sharp) lean.normal = surface.normal(point);
@@ -117,7 +122,8 @@ std::optional<Touch> vertex_touch(const FeaturePair& pair, const Surface& of_a, 
     w = glm::max(w, dvec3(0.0));
     Touch touch{pair.a.point_at_vertex(pair.feature_a), b.point_on_triangle(t, w / (w.x + w.y + w.z))};
     touch.apart = p - (touch.b.barycentric.x * x0 + touch.b.barycentric.y * x1 + touch.b.barycentric.z * x2);
-    touch.normal = common_normal(lean_at(of_a, touch.a, false), lean_at(of_b, touch.b, true));
+    touch.normal =
+        common_normal(lean_at(of_a, touch.a, false), lean_at(of_b, touch.b, true, pair.a.turns() || pair.b.turns()));
     return touch;
   }
   return {};
@@ -241,7 +247,7 @@ bool look_again(const FeaturePair& pair, ContactPoint& contact) {
   if (!(own.x > kSameSide) || std::max(std::abs(own.y), std::abs(own.z)) < kLeast) return false;
   contact.normal = touch->normal;
   contact.lean = dvec2(own.y, own.z) / own.x;
-  contact.end_gap = dot(touch->normal, touch->apart);
+  contact.end_gap = dot(touch->normal, touch->apart) - closer_by_shape(pair, touch->a, touch->b, touch->normal);
   return true;
 }
 

@@ -64,6 +64,7 @@ void carry_over(const ContactPoint* last, ContactPoint& contact) {
     if (dot(kept, kept) > 0.25) along = kept;
     contact.impulse = last->impulse * leaning_axes(last->lean);
     contact.sliding = last->sliding;
+    contact.slipped = last->slipped;
     contact.dented = last->dented, contact.relaxed = last->relaxed;
     contact.strained = last->strained - dot(last->strained, n) * n;
   }

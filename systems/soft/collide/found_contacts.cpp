@@ -5,6 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "systems/soft/collide/contact_on_arcs.h"
+
 namespace pliant {
 namespace {
 
@@ -80,6 +82,7 @@ ContactPoint FoundContacts::contact_of(const std::vector<std::unique_ptr<Body>>&
   c.depth = std::max(0.0, -f.meeting.gap);
   const FeaturePair pair = pair_of(f);
   c.predicted = look_ahead(pair, c);
+  if (c.predicted) place_on_arcs(pair, f.meeting.gap, c);
   c.source = candidate.source;
   c.key = candidate.key;
   // A probe has no friction coefficient: as on a yielding surface, the touched body's applies.

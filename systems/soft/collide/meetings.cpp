@@ -20,7 +20,10 @@ struct MeetingSearch {
 
   void try_vertex(const MeetingSide& a, std::uint32_t vertex, const MeetingSide& b, std::uint32_t triangle,
                   const RelativeSweep& sweep, std::vector<VertexMeeting>& of_vertices) const {
-    if (dot(a.collision_mesh.vertex_normal(vertex), b.collision_mesh.normal(triangle)) > facing(a, vertex)) return;
+    const dvec3 towards = b.collision_mesh.normal(triangle), outward = a.collision_mesh.vertex_normal(vertex);
+    if (dot(outward, towards) > facing(a, vertex) &&
+        (!a.collision_mesh.turns() || dot(a.collision_mesh.turn_ahead() * outward, towards) > facing(a, vertex)))
+      return;
     if (!sweep.meet(a.collision_mesh.vertex_box(vertex), b.collision_mesh.box(triangle))) return;
     if (a.index == b.index) {
       const uvec3 c = b.collision_mesh.mesh().triangles[triangle];

@@ -143,7 +143,8 @@ struct Proximity::Parts {
   }
 
   double margin_between(std::uint32_t i, std::uint32_t k) const {
-    return margin_given ? *margin_given : std::min(own_margin[i], own_margin[k]);
+    return (margin_given ? *margin_given : std::min(own_margin[i], own_margin[k])) +
+           contacts.collision_meshes[i].bulge() + contacts.collision_meshes[k].bulge();
   }
 
   void remember_sides() {
@@ -250,7 +251,7 @@ bool Proximity::look_again(const std::vector<std::unique_ptr<Body>>& bodies, dou
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i]->size() == 0) continue;
     bodies[i]->move_surface(velocity);
-    p.contacts.collision_meshes[i].predict(velocity, T);
+    p.contacts.collision_meshes[i].predict(*bodies[i], velocity, T);
   }
   bool any = false;
   for (ContactPoint& contact : contacts) {

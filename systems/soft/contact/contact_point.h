@@ -31,6 +31,7 @@ struct ContactPoint {
   double dented = 0.0;                       // [m] of a split contact: depth of its local dent, of the last solve
   double relaxed = 0.0;                      // [N] of a DentLaw that relaxes: the part of its force that has
   bool sliding = false;
+  double slipped = 0.0;      // [m] at the static limit, since it last stuck
   bool joined = false;       // added although thinning dropped it: without it the bodies sink in
   std::uint32_t source = 0;  // an index of Proximity, in this step
 };

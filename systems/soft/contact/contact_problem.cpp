@@ -18,12 +18,23 @@ constexpr int kLarge = 140, kLargeSweeps = 10;
 constexpr AdmmLimits kMuch{.iterations = 100, .work = 1e7};    // about 10 ms,
 constexpr AdmmLimits kLittle{.iterations = 100, .work = 2e6};  // and 2 ms: a tool's contacts are all coupled
 
+// [1] multiplications, about 5 ms: few contacts may sweep more often than the limit. A column with a heavy body on top
+// of a light one takes sweeps in proportion to the ratio of the masses.
+constexpr double kSweepWork = 2e7, kMostOften = 20.0;
+
+int most_sweeps(const ContactProblem& problem, const SweepLimits& limits) {
+  if (limits.newtons == 0) return limits.sweeps;
+  const double of_one = 9.0 * problem.count * problem.count;
+  return std::max(limits.sweeps, static_cast<int>(std::min(kSweepWork / of_one, kMostOften * limits.sweeps)));
+}
+
 SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
   SweepReport report;
   if (problem.count == 0) return report;
   const std::uint64_t begin = limits.budget_ns ? now_ns() : 0;
   ContactSweeps sweeps(problem);
-  ContactNewton newton(sweeps, limits.newtons);
+  const int most = most_sweeps(problem, limits);
+  ContactNewton newton(sweeps, limits.newtons * std::max(1, most / std::max(limits.sweeps, 1)));
   const double enough = limits.tolerance * sweeps.fastest();
   sweeps.start();
   report.residual = sweeps.residual();
@@ -35,7 +46,7 @@ SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
     const int begun = report.settled || report.sweeps == half ? sweeps.begin_slips(10.0 * report.residual + enough) : 0;
     if (report.settled && begun == 0) break;
     if (begun > 0) report.residual = sweeps.residual(), since = 0;
-    if (report.sweeps >= limits.sweeps) break;
+    if (report.sweeps >= most) break;
     if (limits.budget_ns && now_ns() - begin >= limits.budget_ns) {
       report.in_time = false;
       break;
@@ -65,6 +76,8 @@ SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
 // Exchange between the whole problem and one of its parts.
 void hand_out(const ContactProblem& whole, ContactProblem& part) {
   part.own.resize(whole.own.empty() ? 0 : part.members.size());
+  part.patch.resize(whole.patch.empty() ? 0 : part.members.size());
+  part.loose.resize(part.patch.size()), part.slipped.resize(part.patch.size());
   for (std::size_t k = 0; k < part.members.size(); ++k) {
     const auto i = static_cast<std::size_t>(part.members[k]);
     const auto to = static_cast<Eigen::Index>(3 * k), from = static_cast<Eigen::Index>(3 * i);
@@ -74,6 +87,9 @@ void hand_out(const ContactProblem& whole, ContactProblem& part) {
     part.mu_sliding[k] = whole.mu_sliding[i];
     part.sliding[k] = whole.sliding[i];
     if (!whole.own.empty()) part.own[k] = whole.own[i];
+    if (whole.patch.empty()) continue;
+    part.patch[k] = whole.place[static_cast<std::size_t>(whole.patch[i])].second;
+    part.loose[k] = whole.loose[i], part.slipped[k] = whole.slipped[i];
   }
 }
 void take_back(const ContactProblem& part, ContactProblem& whole) {
@@ -120,7 +136,7 @@ void ContactProblem::resize_vectors(int contacts) {
   if (mu_static.size() < size) mu_static.resize(size);
   if (mu_sliding.size() < size) mu_sliding.resize(size);
   if (sliding.size() < size) sliding.resize(size);
-  if (blocks.size() < size) blocks.resize(size), inverses.resize(size);
+  if (blocks.size() < size) blocks.resize(size), inverses.resize(size), patch_load.resize(size);
 }
 
 void ContactProblem::resize(int contacts) {

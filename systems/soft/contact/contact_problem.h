@@ -3,8 +3,8 @@
 // Rows of a contact: normal, first tangent, second tangent. Used by the soft step and the touch tick: solve() allocates
 // nothing, except for the memory of the first Newton steps.
 //
-// Static and sliding friction: a contact sticks up to mu_static; once it slips, friction is mu_sliding lambda_n. A
-// contact that slipped in the last solve starts as slipping and sticks again only inside the smaller cone.
+// Static and sliding friction: a contact sticks up to mu_static; once its patch slips, friction is mu_sliding lambda_n.
+// A contact that slipped in the last solve starts as slipping and sticks again only inside the smaller cone.
 //
 // Block Gauss-Seidel sweeps, and, if allowed, Newton steps on the pushing contacts (contact_newton.h).
 #pragma once
@@ -54,6 +54,12 @@ struct ContactProblem {
   std::vector<dmat3> own;
   std::vector<std::uint8_t> sliding;  // in: in the last solve; out: on the cone's border
   Vector velocity;                    // [m/s] out: u
+  // Contacts of one pair of bodies: the index of its first one. They break loose together, when nearly all of the load
+  // is on contacts that slip at the static limit: before, those only pass the rest of the pull on. Those of tissue have
+  // to slip by more than their own compliance lets them. Empty: every contact breaks loose by itself.
+  std::vector<int> patch;
+  std::vector<double> slipped;      // [m/s] slip at the static limit so far, by T; rigid: infinite
+  std::vector<std::uint8_t> loose;  // slipped so far that it breaks loose by itself
 
   // Alternatives to W:
   ContactColumns sparse;
@@ -70,6 +76,7 @@ struct ContactProblem {
 
   // Internal to solve(): the diagonal blocks of W in the contacts' axes; their inverses, from when one is first needed.
   std::vector<dmat3> blocks, inverses;
+  std::vector<dvec2> patch_load;  // [N s] of each patch: its normal impulses, those of slipping contacts
   NewtonMemory newton;
 
   // Resizes for `contacts` in one problem; values are undefined afterwards where something grew.

@@ -11,6 +11,8 @@ namespace {
 
 // A contact with a diagonal smaller than this share of the largest one cannot be pushed; it is skipped.
 constexpr double kImmovable = 1e-14;
+constexpr double kBreaks = 0.99;      // [1] of a patch's load on slipping contacts: it breaks loose
+constexpr double kElasticSlip = 2.0;  // [1] of the displacement of one contact by the static limit of its friction
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN(), kSingular = HUGE_VAL;  // first of an inverse
 
 double length2(double x, double y) {
@@ -174,11 +176,29 @@ double ContactSweeps::fastest() const {
 }
 
 int ContactSweeps::begin_slips(double slowest) {
+  const auto slips = [&](int i) {
+    const dvec3 u = velocity(i), l = impulse(i);
+    return l.x > 0.0 && length2(u.y, u.z) > slowest && length2(l.y, l.z) >= (1.0 - 1e-9) * p_.mu_static[i] * l.x;
+  };
+  const bool patches = !p_.patch.empty();
+  const auto passes_on = [&](int i) {
+    const dmat3& w = block(i);
+    return p_.slipped[i] >= kElasticSlip * 0.5 * (w[1][1] + w[2][2]) * p_.mu_static[i] * impulse(i).x;
+  };
+  if (patches) {
+    std::fill_n(p_.patch_load.begin(), p_.count, dvec2(0.0));
+    for (int i = 0; i < p_.count; ++i) {
+      const double load = impulse(i).x;
+      p_.patch_load[p_.patch[i]] += dvec2(load, p_.sliding[i] || (slips(i) && passes_on(i)) ? load : 0.0);
+    }
+  }
   int begun = 0;
   for (int i = 0; i < p_.count; ++i) {
-    const dvec3 u = velocity(i), l = impulse(i);
-    if (p_.sliding[i] || l.x <= 0.0 || length2(u.y, u.z) <= slowest) continue;
-    if (length2(l.y, l.z) < (1.0 - 1e-9) * p_.mu_static[i] * l.x) continue;
+    if (p_.sliding[i] || !slips(i)) continue;
+    if (patches && !p_.loose[i]) {
+      const dvec2 load = p_.patch_load[p_.patch[i]];
+      if (load.y < kBreaks * load.x) continue;
+    }
     p_.sliding[i] = 1;
     begun += p_.mu_sliding[i] < p_.mu_static[i];
   }

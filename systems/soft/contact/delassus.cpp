@@ -1,6 +1,7 @@
 #include "systems/soft/contact/delassus.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "systems/soft/body/soft_body_state.h"
 #include "systems/soft/contact/contact_budget.h"
@@ -13,6 +14,7 @@
 namespace pliant {
 namespace {
 
+constexpr double kSlipLength = 0.3;   // [mean edges] of slip at the static limit: then a contact breaks loose by itself
 constexpr int kRoundsUnsettled = 2;   // rounds after which a solution that did not converge is not extended
 constexpr int kTipRoundsOfSolve = 8;  // of a probe's tips, whose laws are not linear: three are usual
 constexpr double kTipSettled = 1e-5;  // [1] of their forces
@@ -65,6 +67,12 @@ void find_compliances(const std::vector<std::unique_ptr<Body>>& bodies, const st
 dvec3 free_velocity(const Body& body, const SurfacePoint& point) {
   if (point.smeared) return body.as_tissue()->free_velocity(*point.smeared);
   const uvec3 t = body.collision_mesh->triangles[point.triangle];
+  const std::vector<dvec3>&x = body.surface_position, &v = body.surface_velocity;
+  if (point.beside) {  // exact for a rigid motion: the triangle's normal turns with it
+    const dvec3 e = x[t.y] - x[t.x], f = x[t.z] - x[t.x], n = cross(e, f), q = point.position - x[t.x];
+    const dvec3 de = v[t.y] - v[t.x], df = v[t.z] - v[t.x], dn = cross(de, f) + cross(e, df);
+    return v[t.x] + (dot(cross(q, f), n) * de + dot(cross(e, q), n) * df + dot(q, n) * dn) / dot(n, n);
+  }
   return point.barycentric.x * body.surface_velocity[t.x] + point.barycentric.y * body.surface_velocity[t.y] +
          point.barycentric.z * body.surface_velocity[t.z];
 }
@@ -145,6 +153,41 @@ void find_bias(const std::vector<std::unique_ptr<Body>>& bodies, const std::vect
     for (int k = 0; k < 3; ++k) problem.bias[row + k] = dot(c.axes[k], u);
     problem.bias[row] += (c.gap + still_inside(c, i, beta, delassus) + offset_of(bodies, c)) / T;
     for (int k = 1; k < 3; ++k) problem.bias[row + k] -= dot(c.axes[k], c.strained) / T;
+  }
+}
+
+// Contacts of one pair of bodies, and which have slipped far enough to break loose by themselves.
+void find_patches(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts, double T,
+                  ContactProblem& problem) {
+  std::vector<std::pair<std::uint64_t, int>> of_pair;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto [low, high] = std::minmax(contacts[i].body_a, contacts[i].body_b);
+    of_pair.emplace_back(std::uint64_t{low} << 32 | high, static_cast<int>(i));
+  }
+  std::sort(of_pair.begin(), of_pair.end());
+  problem.patch.resize(contacts.size()), problem.loose.resize(contacts.size());
+  problem.slipped.resize(contacts.size());
+  for (std::size_t k = 0; k < of_pair.size(); ++k) {
+    const auto i = static_cast<std::size_t>(of_pair[k].second);
+    const bool first = k == 0 || of_pair[k].first != of_pair[k - 1].first;
+    problem.patch[i] = first ? of_pair[k].second : problem.patch[static_cast<std::size_t>(of_pair[k - 1].second)];
+    const ContactPoint& c = contacts[i];
+    const float edge =
+        std::min(bodies[c.body_a]->collision_mesh->mean_edge, bodies[c.body_b]->collision_mesh->mean_edge);
+    const bool tissue = bodies[c.body_a]->as_tissue() || bodies[c.body_b]->as_tissue();
+    problem.slipped[i] = tissue ? c.slipped / T : HUGE_VAL;
+    problem.loose[i] = c.slipped > kSlipLength * static_cast<double>(edge);
+  }
+}
+
+// After a step's solution.
+void keep_slip(const ContactProblem& problem, double T, std::vector<ContactPoint>& contacts) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    ContactPoint& c = contacts[i];
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
+    const double mu = c.sliding ? c.mu_sliding : c.mu_static, limit = (1.0 - 1e-6) * mu * c.impulse.x;
+    const bool at_limit = c.impulse.x > 0.0 && length(dvec2(c.impulse.y, c.impulse.z)) >= limit;
+    c.slipped = at_limit ? c.slipped + T * problem.velocity.segment<2>(row + 1).norm() : 0.0;
   }
 }
 
@@ -232,6 +275,7 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
     problem.mu_sliding[i] = c.mu_sliding;
     problem.sliding[i] = c.sliding;
   }
+  find_patches(bodies, contacts, T, problem);
 }
 
 void apply_impulses(const std::vector<std::unique_ptr<Body>>& bodies, const Delassus& delassus,
@@ -291,6 +335,7 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
     keep_impulses(problem, contacts);
   }
   keep_strain(bodies, T, delassus, problem, contacts);
+  keep_slip(problem, T, contacts);
   return report;
 }
 
