@@ -39,7 +39,7 @@ Status apply_sources(World& world, const std::vector<ProbeSource>& sources);
 // The path `orbit` of one hand; empty if it finds nothing to touch. Call after prepare_touch.
 Path orbit_of(const World& world, Entity hand, unsigned index);
 
-// What moves a probe or tool of this name: `orbit`, or a script where a probe has no surface for an orbit.
+// "give it --probe NAME=orbit", or a script where a probe has no surface for an orbit.
 std::string moving_cure(const World& world, const std::string& name);
 
 // Makes the paths of every probe and tool with the driver `orbit`. Call after prepare_touch. Returns a sentence for
