@@ -68,8 +68,9 @@ Chord chord(const std::vector<std::array<dvec3, 3>>& triangles, dvec3 p, dvec3 u
 }
 
 // The point to touch: on top of the object, as near to the middle of its box as it is half as thick as at its thickest.
-// Thickness is measured along kColumns x kColumns lines.
-dvec3 touch_point(const Level& level, std::int32_t object) {
+// Thickness is measured along kColumns x kColumns lines, if possible of those that pass `taken` at least `apart` [m]
+// away.
+dvec3 touch_point(const Level& level, std::int32_t object, const Box& taken = {}, double apart = 0.0) {
   constexpr int kColumns = 15, kHalf = kColumns / 2;
   const Box box = world_box(level, object);
   const dvec3 up = up_of(level), middle(box.center());
@@ -92,10 +93,17 @@ dvec3 touch_point(const Level& level, std::int32_t object) {
       columns.push_back({middle + aside + through.top * up, through.top - through.bottom, length(aside)});
       thickest = std::max(thickest, columns.back().thick);
     }
-  const Column* best = nullptr;
-  for (const Column& column : columns)
-    if (column.thick >= 0.5 * thickest && (!best || column.away < best->away)) best = &column;
-  if (best) return best->top;
+  const auto is_free = [&](const Column& column) {
+    const vec3 p(column.top), way = p - glm::clamp(p, taken.min, taken.max);
+    return taken.empty() || length(dvec3(way) - dot(dvec3(way), up) * up) >= apart;
+  };
+  for (const bool anywhere : {false, true}) {
+    const Column* best = nullptr;
+    for (const Column& column : columns)
+      if (column.thick >= 0.5 * thickest && (!best || column.away < best->away) && (anywhere || is_free(column)))
+        best = &column;
+    if (best) return best->top;
+  }
   dvec3 highest = middle;
   for (const auto& triangle : triangles)
     for (const dvec3& at : triangle)
@@ -259,7 +267,18 @@ Result<std::int32_t> add_probe(Level& level, std::int32_t object, double radius)
   node.probe_device = node.name;
   node.device = device_of(3.3);
   const dvec3 up = up_of(level);
-  node.local.translation = vec3(touch_point(level, object) + (kClearance * diagonal + node.probe->radius) * up);
+  const double size = node.probe->radius, apart = size + kClearance * diagonal;
+  dvec3 place = touch_point(level, object) + apart * up;
+  Box tools;  // that stand there already
+  for (std::size_t n = 0; n < level.nodes.size(); ++n) {
+    if (!level.nodes[n].in_scene || !level.nodes[n].handle || level.nodes[n].mesh < 0) continue;
+    const Box box = world_box(level, static_cast<std::int32_t>(n));
+    if (length(place - dvec3(glm::clamp(vec3(place), box.min, box.max))) >= size) continue;
+    tools.add(box.min);
+    tools.add(box.max);
+  }
+  if (!tools.empty()) place = touch_point(level, object, tools, apart) + apart * up;
+  node.local.translation = vec3(place);
   return add_node(level, std::move(node));
 }
 

@@ -1,5 +1,6 @@
 #include "content/level/device_use.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 namespace pliant {
@@ -45,6 +46,8 @@ std::vector<DeviceFault> find_shared_devices(const Level& level) {
 std::vector<DeviceFault> find_unmoved_probes(const Level& level) {
   const std::unordered_map<std::string, std::size_t> by_name = nodes_by_name(level);
   std::vector<DeviceFault> found;
+  const bool orbits = std::any_of(level.nodes.begin(), level.nodes.end(),
+                                  [](const LevelNode& node) { return node.in_scene && node.deformable; });
   for (std::size_t n = 0; n < level.nodes.size(); ++n) {
     const LevelNode& node = level.nodes[n];
     if (!node.in_scene || !node.probe) continue;
@@ -55,7 +58,8 @@ std::vector<DeviceFault> find_unmoved_probes(const Level& level) {
       mover = named->second;
     }
     const std::optional<HapticDevice>& device = level.nodes[mover].device;
-    const std::string cure = "give it one that moves it, or run it with --probe " + node.name + "=orbit";
+    const std::string cure =
+        "give it one that moves it, or run it with --probe " + node.name + (orbits ? "=orbit" : "=script:FILE.csv");
     const char* const what = !device ? "is a probe without a PLIANT_haptic_device, so nothing moves it"
                              : device->driver == DriverKind::kNull
                                  ? "is a probe whose device has the `driver` `null`, so nothing moves it"

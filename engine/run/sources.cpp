@@ -153,6 +153,12 @@ Path orbit_of(const World& world, Entity hand, unsigned index) {
   return probe ? make_orbit(world, index, probe->radius) : make_tool_orbit(world, hand);
 }
 
+std::string moving_cure(const World& world, const std::string& name) {
+  const auto surfaces = world.registry.view<const Deformable>();
+  const bool orbits = !world.registry.has<Probe>(find_hand(world, name)) || surfaces.begin() != surfaces.end();
+  return "give it --probe " + name + (orbits ? "=orbit" : "=script:FILE.csv");
+}
+
 std::vector<std::string> make_orbits(World& world) {
   std::vector<std::string> held;
   unsigned index = 0;

@@ -39,6 +39,9 @@ Status apply_sources(World& world, const std::vector<ProbeSource>& sources);
 // The path `orbit` of one hand; empty if it finds nothing to touch. Call after prepare_touch.
 Path orbit_of(const World& world, Entity hand, unsigned index);
 
+// "give it --probe NAME=orbit", or a script where a probe has no surface for an orbit.
+std::string moving_cure(const World& world, const std::string& name);
+
 // Makes the paths of every probe and tool with the driver `orbit`. Call after prepare_touch. Returns a sentence for
 // each that finds nothing to touch and stays in place.
 std::vector<std::string> make_orbits(World& world);

@@ -162,7 +162,7 @@ void say_unmoved(bool windowed, Prepared& run) {
     const std::string its = name ? name->value : std::string();
     say(run, Note{fmt::format("nothing moves `{}`: its driver `{}` {}", its, word_of(device->driver),
                               mouse ? "needs a window" : "is for programs that embed the engine"),
-                  fmt::format("give it --probe {}=orbit", its), "run.unmoved", its});
+                  moving_cure(run.world, its), "run.unmoved", its});
   }
 }
 
@@ -184,7 +184,7 @@ void keep_one_mouse(const std::vector<ProbeSource>& sources, Prepared& run) {
     moved[i].second->driver = DriverKind::kExternal;
     say(run,
         Note{fmt::format("there is one mouse, and it moves `{}`; nothing moves `{}`", moved[0].first, moved[i].first),
-             fmt::format("give it --probe {}=orbit", moved[i].first), "run.unmoved", moved[i].first});
+             moving_cure(run.world, moved[i].first), "run.unmoved", moved[i].first});
   }
 }
 

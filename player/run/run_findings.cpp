@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/run/sources.h"
 #include "player/run/tool_words.h"
 #include "systems/device/hands.h"
 #include "systems/effects/felt_effects.h"
@@ -37,7 +38,7 @@ std::vector<Note> explain_run(RunFigures& figures, DeviceLinks& devices) {
     } else if (summary.contact_ticks == 0 && !is_moved(figures, i)) {
       notes.push_back({fmt::format("{} `{}` never touched anything: nothing moves it", summary.tool ? "tool" : "probe",
                                    summary.name),
-                       fmt::format("give it --probe {}=orbit", summary.name), kUntouched, summary.name});
+                       moving_cure(figures.world, summary.name), kUntouched, summary.name});
     } else if (const Probe* probe = figures.world.registry.find<Probe>(hand); summary.contact_ticks == 0 && probe) {
       figures.misses.back() = find_miss(figures.world, summary.approach, probe->radius);
       notes.push_back(explain_miss(summary.name, figures.misses.back()));

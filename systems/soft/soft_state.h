@@ -66,6 +66,7 @@ struct SoftState {
   std::vector<std::uint32_t> yielding;        // YieldingBody, one per Deformable
   std::unique_ptr<Proximity> proximity;
   std::vector<ContactPoint> contacts;  // of the last step, with their impulses
+  double impulse_time = 0.0;           // [s] over which these act
   SplitContacts split;
   Delassus delassus;
   ContactProblem problem;

@@ -44,6 +44,13 @@ void leave_out_failed(SoftState& soft) {
   soft.contacts.erase(std::remove_if(soft.contacts.begin(), soft.contacts.end(), failed), soft.contacts.end());
 }
 
+// Solves begin with the last step's forces: a late or parted step has another length.
+void scale_impulses(SoftState& soft, double T) {
+  if (soft.impulse_time > 0.0 && soft.impulse_time != T)
+    for (ContactPoint& contact : soft.contacts) contact.impulse *= T / soft.impulse_time;
+  soft.impulse_time = T;
+}
+
 // Records bodies that the level places into each other.
 void tally_beginning(SoftState& soft) {
   const auto size = [&](std::uint32_t body) {
@@ -112,6 +119,7 @@ void find_contacts(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   const std::uint64_t begin = now_ns();
+  scale_impulses(soft, tick.dt);
   soft.split.remember(soft.contacts);
   soft.proximity->find(soft.bodies, tick.dt, soft.contacts);
   leave_out_failed(soft);

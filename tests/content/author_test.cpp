@@ -204,6 +204,24 @@ TEST(Author, AProbeStandsOverTheObjectAndItsPathPressesIt) {
   EXPECT_TRUE(prepared(level).ok());
 }
 
+TEST(Author, AProbeStandsBesideATool) {
+  for (const dvec3 gravity : {dvec3(0, -9.81, 0), dvec3(0, 0, -9.81)}) {
+    Level level = ball();
+    level.simulation.gravity = gravity;
+    ASSERT_TRUE(make_soft(level, 0).ok());
+    const Result<std::int32_t> tool = add_instrument(level, InstrumentKind::kRod, 0, {});
+    const Result<std::int32_t> probe = add_probe(level, 0, 0.005);
+    ASSERT_TRUE(tool.ok() && probe.ok());
+    const Box rod = world_box(level, *tool);
+    const vec3 place = at(level, *probe).local.translation;
+    EXPECT_GT(length(place - glm::clamp(place, rod.min, rod.max)), 0.005f);
+    double nearest = 1e9;
+    for (const PathRow& row : press_path(level, *probe, named(level, "ball"), 0.01).rows)
+      nearest = std::min(nearest, length(row.position - dvec3(0.5, 1, -2)));
+    EXPECT_LT(nearest, kRadius) << "its path presses the ball";
+  }
+}
+
 // A tall block at the end of a sheet that lies below the middle of the box.
 TEST(Author, WhereTheMiddleIsThinWhatIsThickIsPressed) {
   Level level;

@@ -13,6 +13,7 @@ namespace pliant {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 Level level_with(const std::function<void(LevelNode&)>& write) {
@@ -222,6 +223,14 @@ TEST(UnmovedProbes, AreThoseWithoutADeviceOrWithTheDriverNull) {
   std::vector<std::size_t> nodes;
   for (const DeviceFault& fault : find_unmoved_probes(level)) nodes.push_back(fault.node);
   EXPECT_THAT(nodes, ElementsAre(0, 1));
+}
+
+TEST(UnmovedProbes, AreOfferedAnOrbitOnlyOverASurface) {
+  Level level;
+  level.nodes.push_back({.name = "alone", .probe = Probe{}});
+  EXPECT_THAT(find_unmoved_probes(level).at(0).what.cure, HasSubstr("alone=script:"));
+  level.nodes.push_back({.name = "skin", .deformable = Deformable{}});
+  EXPECT_THAT(find_unmoved_probes(level).at(0).what.cure, HasSubstr("alone=orbit"));
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "scenes/count_allocations.h"
 #include "scenes/tet_shapes.h"
 #include "scenes/tool_stage.h"
+#include "systems/schedule.h"
 #include "systems/soft/body/yielding_body.h"
+#include "systems/tool/tool_step.h"
 #include "systems/touch/model/contact_law.h"
 #include "systems/touch/prepare/touch_state.h"
 
@@ -136,6 +139,72 @@ TEST(Yielding, AContactBesideAnOpenRimIsDropped) {
   law.body->place(law.contacts, 0, kYieldingStep);
   ASSERT_EQ(law.contacts.size(), 1u);
   EXPECT_EQ(law.contacts[0].key, 1u);
+}
+
+// --- A weight at rest on the plate.
+
+struct Resting {
+  double least = 1e9, most = -1e9;  // [m] depth, over the second half of four seconds
+  double fastest = 0.0;             // [m/s] of its middle, then
+};
+
+// Steps of 1 to `longest` times T, as those of a late clock.
+Resting rest(double edge, double damping, double T, double longest) {
+  ToolStage stage(T);
+  Deformable deformable;
+  deformable.stiffness = 200.0;
+  deformable.reach = 0.01;
+  deformable.contact_damping = damping;
+  stage.add(scenes::sheet(kCells, kSize), deformable);
+  RigidBody weight;
+  weight.density = 0.02 / (edge * edge * edge);
+  const Entity rigid = stage.add_rigid(scenes::box(dvec3(edge)), weight, {dvec3(4e-4, 0.5 * edge + 1e-4, 7e-4)});
+  stage.prepare();
+  Schedule<World> soft(soft_schedule());
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> factor(1.0, longest);
+  Resting out;
+  dvec3 last(0);
+  std::uint64_t steps = 0;
+  for (double time = 0.0, dt = 0.0; time < 4.0; time += dt) {
+    dt = factor(random) * T;
+    run_soft_step(soft, stage.world, {steps++, dt, time});
+    dvec3 middle(0);
+    for (const dvec3& x : stage.body(rigid).surface_position) middle += x / 8.0;
+    if (time > 2.0) {
+      out.least = std::min(out.least, 0.5 * edge - middle.y);
+      out.most = std::max(out.most, 0.5 * edge - middle.y);
+      out.fastest = std::max(out.fastest, length(middle - last) / dt);
+    }
+    last = middle;
+  }
+  return out;
+}
+
+// Below contacts that do not press, the surface is deeper than the weight: by the weight's depth, damping would carry
+// part of it for ever, and the more the shorter the step.
+TEST(Yielding, AWeightRestsAsDeepForEveryDampingAndStep) {
+  for (const double edge : {0.005, 0.01}) {
+    const double expected = rest(edge, 0.0, 0.005, 1.0).least;
+    ASSERT_GT(expected, 2e-5);
+    for (const double T : {0.002, 1.0 / 60.0})
+      for (const double damping : {1.0, 20.0}) {
+        const Resting is = rest(edge, damping, T, 1.0);
+        EXPECT_NEAR(is.least, expected, 0.01 * expected) << edge << ' ' << T << ' ' << damping;
+        EXPECT_NEAR(is.most, expected, 0.01 * expected) << edge << ' ' << T << ' ' << damping;
+      }
+  }
+}
+
+TEST(Yielding, AWeightRestsUnderALateClock) {
+  for (const double edge : {0.005, 0.01})
+    for (const double damping : {0.0, 20.0}) {
+      const double expected = rest(edge, 0.0, 0.005, 1.0).least;
+      const Resting is = rest(edge, damping, 0.005, 3.0);
+      EXPECT_NEAR(is.least, expected, 0.01 * expected) << edge << ' ' << damping;
+      EXPECT_NEAR(is.most, expected, 0.01 * expected) << edge << ' ' << damping;
+      EXPECT_LT(is.fastest, 1e-5) << edge << ' ' << damping;
+    }
 }
 
 // --- A soft block, moved by its handle from above, against the plate.

@@ -70,6 +70,7 @@ bool YieldingBody::place(ContactPoint& contact, bool is_a, Dent& dent) const {
 
   dent.triangle = foot.triangle;
   dent.barycentric = foot.barycentric;
+  dent.key = contact.key;
   Contact as_probe;
   as_probe.foot = foot.foot;
   as_probe.normal = foot.normal;
@@ -83,10 +84,22 @@ bool YieldingBody::place(ContactPoint& contact, bool is_a, Dent& dent) const {
   const double grip = painted(collision_mesh->friction_factor, *collision_mesh, foot.triangle, foot.barycentric);
   contact.mu_static *= grip;
   contact.mu_sliding *= grip;
+  if (damping_ > 0) dent.before = std::max(dent.depth, depth_before(dent));
   return true;
 }
 
+// [m] Of the surface at a contact after the last step, whether it pressed or not.
+double YieldingBody::depth_before(const Dent& dent) const {
+  const auto same = [&](const Dent& last) { return last.key == dent.key; };
+  if (const auto last = std::find_if(last_.begin(), last_.end(), same); last != last_.end()) return last->depth;
+  double depth = 0.0;
+  for (const Dent& last : last_)
+    depth += double(last.source.amplitude) * double(share_at(last.source, dent.source.center, dent.source.normal));
+  return depth;
+}
+
 void YieldingBody::place(std::vector<ContactPoint>& contacts, std::uint32_t self, double T) {
+  std::swap(dents_, last_);
   dents_.clear();
   std::size_t kept = 0;
   for (ContactPoint& contact : contacts) {
@@ -107,7 +120,7 @@ void YieldingBody::place(std::vector<ContactPoint>& contacts, std::uint32_t self
   for (Eigen::Index i = 0; i < n; ++i) {
     const Dent& dent = dents_[static_cast<std::size_t>(i)];
     softness[i] = 1 / std::sqrt(dent.stiffness);
-    strain[i] = damping_ * dent.depth;
+    strain[i] = damping_ * dent.before;
   }
   const Eigen::MatrixXd C = softness.asDiagonal() * shares() * softness.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(C);
@@ -150,7 +163,7 @@ void YieldingBody::yield(const std::vector<ContactPoint>& contacts, double T) {
   for (Eigen::Index i = 0; i < n; ++i) {
     const Dent& dent = dents_[static_cast<std::size_t>(i)];
     impulse[i] = contacts[dent.contact].impulse.x;
-    strain[i] = damping_ * dent.depth;
+    strain[i] = damping_ * dent.before;
   }
   if (n > 0) {
     const Vector depth = mobility_ * (impulse + strain);

@@ -9,6 +9,8 @@
 //   d1 = M (lambda + c d0),   M = (T + c C)^-1 C,
 //   so  u_n >= 0 becomes  J v + (g0 + M c d0) / T + (M / T) lambda >= 0.
 // C is projected to its positive part: a shape with a rim is not positive definite for every arrangement of contacts.
+// d0 is the surface's depth at a contact after the last step: below a contact that does not press it is deeper than
+// the tissue. So the depth at rest, C F, depends neither on c nor on T.
 // The slow arm of the standard linear solid is left out: tissue feels the long-term stiffness.
 // Writer: the soft clock.
 #pragma once
@@ -58,10 +60,13 @@ class YieldingBody final : public ImmovableBody {
     std::uint32_t triangle = 0;  // under it
     dvec3 barycentric{1, 0, 0};  // [1]
     FieldSource source;          // amplitude 1 until the step is solved
+    std::uint64_t key = 0;       // ContactPoint::key
     double stiffness = 0.0;      // [N/m] k
-    double depth = 0.0;          // [m] d0 >= 0
+    double depth = 0.0;          // [m] >= 0, of the tissue; of the surface once the step is solved
+    double before = 0.0;         // [m] d0 >= 0
   };
   bool place(ContactPoint& contact, bool is_a, Dent& dent) const;
+  double depth_before(const Dent& dent) const;
   Eigen::MatrixXd shares() const;  // A
   void dent_surface();
   PressPoint press_point(const Dent& dent, const std::vector<ContactPoint>& contacts,
@@ -70,8 +75,8 @@ class YieldingBody final : public ImmovableBody {
   Deformable deformable_;
   Pose pose_;
   std::size_t slot_;
-  double damping_ = 0.0;  // [N s/m] c
-  std::vector<Dent> dents_;
+  double damping_ = 0.0;               // [N s/m] c
+  std::vector<Dent> dents_, last_;     // of this step, and of the one before
   Eigen::MatrixXd mobility_;           // M [m/(N s)]
   std::vector<std::uint32_t> dented_;  // zones of the collision mesh that are not at rest
 };

@@ -80,7 +80,7 @@ void begin_contact(const ContactSearch& s, const ProbeTip& tip, const TipContact
   source->in = source->place.p;
   HeightState surface = recovering(s, at.place.main());
   // Beside others of its tip the surface does not recover: the tip is on it, and has left that dent itself.
-  if (tip.tip.radius > 0 && contact.height < 0)
+  if (tip.tip.radius > 0)
     any_source_of(s.object, tip.probe, tip.index, [&](const SourceState& beside) {
       const Contact& other = s.world.registry.get<Contact>(beside.contact);
       if (&beside == source || other.height >= 0) return false;

@@ -243,6 +243,54 @@ void find_near(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, d
   }
 }
 
+// Begins contacts in dents that part as a shaft strokes over them, also where its axis is behind the surface and no
+// wall is in front of it. The surface is followed along the axis from the deepest contact on, over `count`
+// intervals, at every tick: a dent that is found late has depth that nothing has paid for.
+void find_dents(const ContactSearch& s, const ProbeTip& tip, const TipWay& way, int count) {
+  constexpr double kBegins = 0.1;  // [1] of kSameDent: between spheres the ridge is higher
+  const double radius = tip.tip.radius, apart = 1.0 / count;
+  const SourceState* deepest = nullptr;
+  const auto any_contact = [&](auto is) { return any_source_of(s.object, tip.probe, tip.index, is); };
+  any_contact([&](const SourceState& source) {
+    if (!deepest || source.place.height < deepest->place.height) deepest = &source;
+    return false;
+  });
+  if (!deepest || !(deepest->place.height < radius)) return;
+  const Foot first = deepest->place.main();
+  const double start = deepest->axis.along;
+  const auto is_new = [&](double along) {
+    return !any_contact([&](const SourceState& other) { return std::abs(other.axis.along - along) < 1.5 * apart; });
+  };
+  const auto begin = [&](const Foot& foot, double along) {
+    if (!(foot.height < radius) || !is_new(along)) return;
+    const TipContact at = deepest_on_tip(s, way.to, radius, foot, along);
+    if (is_new(at.axis.along)) begin_contact(s, tip, at, way.from.at(at.axis.along));
+  };
+  for (const double end : {0.0, 1.0}) {
+    Foot foot = first, lowest = first;
+    double along = start, lowest_at = start, ridge = first.height;
+    while (along != end) {
+      const double to = end > along ? std::min(end, along + apart) : std::max(end, along - apart);
+      const dvec3 x = way.to.at(to);
+      foot = foot_over_seam(s, follow_foot(s, foot, way.to.at(along), x), x);
+      along = to;
+      const bool behind = foot.height < 0;
+      if (foot.height > radius || (behind && (beyond_border(s.mesh, foot, x) || past_seam(s, foot, x)))) break;
+      if (lowest.height < ridge - kBegins * kSameDent * radius) {  // on the way down from a ridge, or up again
+        if (foot.height > lowest.height) {
+          begin(lowest, lowest_at);
+          ridge = foot.height;
+        }
+      } else {
+        ridge = std::max(ridge, foot.height);
+      }
+      lowest = foot;
+      lowest_at = along;
+    }
+    if (lowest.height < ridge - kBegins * kSameDent * radius) begin(lowest, lowest_at);
+  }
+}
+
 // Walls that a tip was pressed through before it slipped round a rim stay open for it until it is clear: in front of
 // the place where it slipped, on the side that it came from, and of the place where it came in; or away from there.
 void keep_open(const ContactSearch& s, const ProbeTip& tip, const TipPlace& to) {
@@ -298,6 +346,7 @@ void find_new_contacts(const ContactSearch& s, const ProbeTip& tip, TipPlace& se
       fresh ? find_inside(s, tip, way, along(i)) : find_entry(s, tip, way, along(i), clear);
   if (fresh || radius == 0 || inside_neighbour(s, tip)) return;
 
+  if (count > 0 && far > 0) find_dents(s, tip, way, count);
   if (std::max(length(to.end - searched.end), length(to.at(1) - searched.at(1))) < 0.5 * kAhead * radius) return;
   searched = to;
   for (int i = 0; i <= count; ++i) find_near(s, tip, way, along(i), count == 0 ? 0.0 : 1.0 / count);
