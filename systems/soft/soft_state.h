@@ -19,6 +19,7 @@
 #include "systems/soft/contact/contact_problem.h"
 #include "systems/soft/contact/delassus.h"
 #include "systems/soft/fem/tissue.h"
+#include "systems/soft/joint/joints.h"
 #include "systems/soft/local/split_contacts.h"
 
 namespace pliant {
@@ -67,6 +68,7 @@ struct SoftState {
   std::unique_ptr<Proximity> proximity;
   std::vector<ContactPoint> contacts;  // of the last step, with their impulses
   SplitContacts split;
+  Joints joints;
   Delassus delassus;
   ContactProblem problem;
   SweepReport report;

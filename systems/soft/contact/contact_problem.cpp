@@ -65,6 +65,7 @@ SweepReport solve_one(ContactProblem& problem, const SweepLimits& limits) {
 // Exchange between the whole problem and one of its parts.
 void hand_out(const ContactProblem& whole, ContactProblem& part) {
   part.own.resize(whole.own.empty() ? 0 : part.members.size());
+  part.held.resize(whole.held.empty() ? 0 : part.members.size());
   for (std::size_t k = 0; k < part.members.size(); ++k) {
     const auto i = static_cast<std::size_t>(part.members[k]);
     const auto to = static_cast<Eigen::Index>(3 * k), from = static_cast<Eigen::Index>(3 * i);
@@ -74,6 +75,7 @@ void hand_out(const ContactProblem& whole, ContactProblem& part) {
     part.mu_sliding[k] = whole.mu_sliding[i];
     part.sliding[k] = whole.sliding[i];
     if (!whole.own.empty()) part.own[k] = whole.own[i];
+    if (!whole.held.empty()) part.held[k] = whole.held[i];
   }
 }
 void take_back(const ContactProblem& part, ContactProblem& whole) {
