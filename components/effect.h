@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "components/has_word.h"
 #include "components/math.h"
 #include "components/range.h"
 #include "pliant/parameters.h"
@@ -59,13 +60,7 @@ constexpr const EffectRow& row_of(EffectKind kind) {
 
 // Whether the kind reads this key of PLIANT_effect.
 constexpr bool reads_key(EffectKind kind, std::string_view key) {
-  std::string_view reads = row_of(kind).reads;
-  while (!reads.empty()) {
-    const std::size_t end = reads.find(' ');
-    if (reads.substr(0, end) == key) return true;
-    reads = end == std::string_view::npos ? "" : reads.substr(end + 1);
-  }
-  return false;
+  return has_word(row_of(kind).reads, key);
 }
 
 // Rate: between ticks. Writer: content at spawn, Session::set. Its node has a Pose, and moves as other kinematic

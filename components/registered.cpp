@@ -4,7 +4,8 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
-#include <string_view>
+
+#include "components/has_word.h"
 
 namespace pliant {
 namespace {
@@ -155,12 +156,7 @@ const char* registered_word(SolverKind kind) {
 }
 
 bool reads_key(SpringLaw law, const char* key) {
-  const std::string_view all = row_of(law).reads, word = key;  // words, apart by a blank
-  for (std::size_t at = all.find(word); at != std::string_view::npos; at = all.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    if ((at == 0 || all[at - 1] == ' ') && (end == all.size() || all[end] == ' ')) return true;
-  }
-  return false;
+  return has_word(row_of(law).reads, key);
 }
 
 // The difference of the potential; where it would cancel, the mean of the force (Gauss-Legendre, four points).

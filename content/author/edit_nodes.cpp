@@ -122,13 +122,14 @@ std::int32_t copy_node(Level& level, std::int32_t node, NodesMoved* moved) {
   const std::size_t before = level.nodes.size();
   const std::vector<std::int32_t> all = subtree(level, node);
   std::map<std::int32_t, std::int32_t> copy;  // original -> its copy
-  std::map<std::string, std::string> device, probe;
+  std::map<std::string, std::string> device, probe, body;
   for (const std::int32_t each : all) {
     LevelNode made = at(level, each);
     made.source = -1;
     made.name = free_name(level, made.name);
     if (made.device) device[at(level, each).name] = made.name;
     if (made.probe) probe[at(level, each).name] = made.name;
+    if (made.soft_body || made.rigid_body) body[at(level, each).name] = made.name;
     copy[each] = static_cast<std::int32_t>(level.nodes.size());
     level.nodes.push_back(std::move(made));
   }
@@ -142,6 +143,9 @@ std::int32_t copy_node(Level& level, std::int32_t node, NodesMoved* moved) {
     if (made.effect)
       for (std::string& name : made.effect->probes)
         if (const auto it = probe.find(name); it != probe.end()) name = it->second;
+    if (made.joint)
+      for (std::string* const name : {&made.joint->a, &made.joint->b})
+        if (const auto it = body.find(*name); it != body.end()) *name = it->second;
   }
   if (const std::int32_t parent = at(level, node).parent; parent >= 0) {
     std::vector<std::int32_t>& beside = at(level, parent).children;
@@ -155,11 +159,12 @@ std::int32_t copy_node(Level& level, std::int32_t node, NodesMoved* moved) {
 NodesMoved remove_node(Level& level, std::int32_t node) {
   const std::vector<std::int32_t> all = subtree(level, node);
   std::set<std::int32_t> meshes;
-  std::set<std::string> devices, probes;
+  std::set<std::string> devices, probes, bodies;
   for (const std::int32_t each : all) {
     meshes.insert(at(level, each).mesh);
     if (at(level, each).device) devices.insert(at(level, each).name);
     if (at(level, each).probe) probes.insert(at(level, each).name);
+    if (at(level, each).soft_body || at(level, each).rigid_body) bodies.insert(at(level, each).name);
   }
   NodesMoved moved = put_in_order(level, {all.begin(), all.end()});
   drop_meshes(level, meshes);
@@ -167,14 +172,23 @@ NodesMoved remove_node(Level& level, std::int32_t node) {
   for (const LevelNode& left : level.nodes) {
     if (left.device) devices.erase(left.name);
     if (left.probe) probes.erase(left.name);
+    if (left.soft_body || left.rigid_body) bodies.erase(left.name);
   }
   for (LevelNode& left : level.nodes) {
     if (devices.count(left.probe_device)) left.probe_device.clear();
     if (left.handle && devices.count(left.handle->device)) left.handle->device.clear();
     if (left.effect)
       for (const std::string& name : probes) forget_probe(*left.effect, name);
+    for (const std::string& name : bodies) rename_body(left, name, {});
   }
   return moved;
+}
+
+void rename_body(LevelNode& node, const std::string& from, const std::string& to) {
+  if (!node.joint || (node.joint->a != from && node.joint->b != from)) return;
+  if (to.empty()) return node.joint.reset();
+  for (std::string* const name : {&node.joint->a, &node.joint->b})
+    if (*name == from) *name = to;
 }
 
 void forget_probe(Effect& effect, const std::string& probe) {
@@ -235,13 +249,16 @@ Status rename_node(Level& level, std::int32_t node, const std::string& name) {
   const std::string old = at(level, node).name;
   at(level, node).name = name;
   bool device = at(level, node).device.has_value(), probe = at(level, node).probe.has_value();
+  bool body = at(level, node).soft_body || at(level, node).rigid_body;
   for (const LevelNode& each : level.nodes) {
+    body = body && !((each.soft_body || each.rigid_body) && each.name == old);
     device = device && !(each.device && each.name == old);
     probe = probe && !(each.probe && each.name == old);
   }
   for (LevelNode& each : level.nodes) {
     if (device && each.probe_device == old) each.probe_device = name;
     if (device && each.handle && each.handle->device == old) each.handle->device = name;
+    if (body) rename_body(each, old, name);
     if (probe && each.effect) std::replace(each.effect->probes.begin(), each.effect->probes.end(), old, name);
   }
   return Done{};

@@ -34,6 +34,8 @@ Result<NodesMoved> move_node(Level& level, std::int32_t node, std::int32_t paren
 Status rename_node(Level& level, std::int32_t node, const std::string& name);
 // Takes a probe that is gone off the list of those that feel an effect. The last name stays, and is an error of the
 // level: without it every probe would feel the effect.
+// The joint of `node`, where it names this body, names another one; `to` empty: it is removed.
+void rename_body(LevelNode& node, const std::string& from, const std::string& to);
 void forget_probe(Effect& effect, const std::string& probe);
 
 }  // namespace pliant

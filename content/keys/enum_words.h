@@ -9,6 +9,7 @@
 #include "components/deformable.h"
 #include "components/effect.h"
 #include "components/haptic_device.h"
+#include "components/joint.h"
 #include "components/probe.h"
 #include "components/registered.h"
 #include "components/soft_body.h"
@@ -176,6 +177,11 @@ constexpr const char* word_of(ToolForce force) {
 
 constexpr const char* word_of(EffectKind kind) {
   return static_cast<std::size_t>(kind) < std::size(kEffectRows) ? row_of(kind).word : nullptr;
+}
+
+constexpr const char* word_of(JointKind kind) {
+  return static_cast<std::size_t>(kind) < std::size(kJointRows) ? kJointRows[static_cast<std::size_t>(kind)].word
+                                                                : nullptr;
 }
 
 constexpr const char* word_of(EffectRegion region) {

@@ -725,6 +725,46 @@ std::vector<Key> effect_keys() {
   return keys;
 }
 
+std::vector<Key> joint_keys() {
+  using J = Joint;
+  using R = JointRange;
+  const auto j = [](auto member) { return at(&LevelNode::joint, member); };
+  std::vector<Key> keys;
+  keys.push_back(choice("kind", j(&J::kind),
+                        "what it leaves free: nothing, turning, turning about the node's +Y, "
+                        "sliding along it, or all but stretching"));
+  keys.push_back(text("a", KeyType::kText, j(&J::a), "name of the soft or rigid body that it holds"));
+  keys.push_back(text("b", KeyType::kText, j(&J::b), "name of the body that holds it; left out: the world"));
+  Key limits =
+      pair("limits", "rad, m", j(&J::limits),
+           "least and largest angle of a hinge or way of a slider, of a against b, from where it begins; equal: "
+           "none");
+  limits.range = R::kLimits;
+  keys.push_back(limits);
+  keys.push_back(number("stiffness", "N m/rad, N/m", {R::kStiffness, {0.0, 1e5}}, j(&J::stiffness),
+                        "of a spring to `rest`; of a rope, 0: it does not stretch"));
+  keys.push_back(number("damping", "N m s/rad, N s/m", {R::kDamping, {0.0, 1e3}}, j(&J::damping), "of that spring"));
+  keys.push_back(number("rest", "rad, m", R::kLimits, j(&J::rest), "where that spring is at rest"));
+  keys.push_back(vector("end", "m", {R::kPlace, {-1.0, 1.0}}, j(&J::end),
+                        "where a rope is tied to b, in the node's frame; to a it is tied at the node"));
+  keys.push_back(number("length", "m", {R::kLength, {1e-3, 1.0}}, j(&J::length),
+                        "of a rope; 0: the distance of its ends at the beginning"));
+  keys.push_back(number("strength", "N", {R::kStrength, {0.01, 1e4}}, j(&J::strength),
+                        "a larger force breaks the joint for good; 0: it never breaks"));
+  return keys;
+}
+
+std::optional<Note> settle_joint(void* owner) {
+  const Joint& it = *static_cast<LevelNode*>(owner)->joint;
+  if (it.a.empty()) return Note{"holds no body", "name one", "key.missing", "a"};
+  if (it.a == it.b) return Note{"names the same body twice", "name two, or leave out `b`", "key.value", "b"};
+  if (it.limits[0] > it.limits[1])
+    return Note{"has a least limit above its largest", "exchange them", "key.value", "limits"};
+  if (it.limits[0] < it.limits[1] && (it.limits[0] > 0.0 || it.limits[1] < 0.0))
+    return Note{"begins outside of its limits", "let them enclose 0, where it begins", "key.value", "limits"};
+  return std::nullopt;
+}
+
 std::vector<Key> environment_keys() {
   using E = LevelEnvironment;
   const auto e = [](auto member) { return at(&Level::environment, member); };
@@ -818,6 +858,8 @@ std::vector<Extension> make_table() {
   table.back().settle = settle_motion;
   table.push_back(
       extension("effect", "Acts on probes in space, without a surface.", &LevelNode::effect, effect_keys()));
+  table.push_back(extension("joint", "Connects two bodies, or a body and the world.", &LevelNode::joint, joint_keys()));
+  table.back().settle = settle_joint;
   table.push_back(extension("environment", "Surroundings of the scene.", &Level::environment, environment_keys()));
   Extension simulation;
   simulation.name = "simulation";

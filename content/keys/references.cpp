@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "content/keys/extension_table.h"
@@ -6,8 +8,9 @@
 namespace pliant {
 
 Status check_references(const Level& level) {
-  std::vector<std::string> devices, probes;
+  std::vector<std::string> devices, probes, bodies;
   for (const LevelNode& node : level.nodes) {
+    if (node.soft_body || node.rigid_body) bodies.push_back(node.name);
     if (node.device) devices.push_back(node.name);
     if (node.probe) probes.push_back(node.name);
   }
@@ -24,6 +27,12 @@ Status check_references(const Level& level) {
           return Error{node.name + ".effect.probes",
                        "names '" + name.substr(0, 100) + "', which is no node with a PLIANT_probe",
                        suggestion(name, probes), "name.unknown"};
+    if (node.joint)
+      for (const auto& [key, name] : {std::pair("a", &node.joint->a), std::pair("b", &node.joint->b)})
+        if (!name->empty() && std::find(bodies.begin(), bodies.end(), *name) == bodies.end())
+          return Error{fmt::format("{}.joint.{}", node.name, key),
+                       "names '" + name->substr(0, 100) + "', which is no soft or rigid body",
+                       suggestion(*name, bodies), "name.unknown"};
     if (node.probe)
       if (const Status status = check(node, "probe", node.probe_device); !status) return status;
     if (node.handle)

@@ -201,6 +201,13 @@ std::optional<UnusedWords> unused_of_effect(const Effect& effect, const std::str
   return std::nullopt;
 }
 
+std::optional<UnusedWords> unused_of_joint(const Joint& joint, const std::string& key) {
+  const auto reads = [&](std::size_t i) { return has_word(kJointRows[i].reads, key); };
+  if (key == "kind" || key == "a" || key == "b" || key == "strength" || reads(static_cast<std::size_t>(joint.kind)))
+    return std::nullopt;
+  return only_with("kind", kJointRows, reads);
+}
+
 // Whether the owner's value differs from the default.
 template <class Owner>
 bool is_set(const Extension& extension, const Key& key, const Owner& owner) {
@@ -249,6 +256,12 @@ void find_in_node(const Level& level, std::size_t n, std::vector<UnusedKey>& fou
     for (const Key& key : extension.keys)
       if (const auto words = unused_of_effect(*node.effect, key.name); words && is_set(extension, key, node))
         found.push_back({static_cast<std::int32_t>(n), "PLIANT_effect/" + key.name, words->what, words->cure});
+  }
+  if (node.joint) {
+    const Extension& extension = *find_extension("joint");
+    for (const Key& key : extension.keys)
+      if (const auto words = unused_of_joint(*node.joint, key.name); words && is_set(extension, key, node))
+        found.push_back({static_cast<std::int32_t>(n), "PLIANT_joint/" + key.name, words->what, words->cure});
   }
   for (const char* each : {"friction_static", "friction_sliding"})
     if (node.deformable && node.stated.contains("deformable.friction") &&

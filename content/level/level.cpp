@@ -5,7 +5,7 @@
 namespace pliant {
 
 bool LevelNode::has_pliant() const {
-  return deformable || probe || device || soft_body || handle || rigid_body || motion || effect;
+  return deformable || probe || device || soft_body || handle || rigid_body || motion || effect || joint;
 }
 
 bool Level::has_pliant() const {

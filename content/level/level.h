@@ -13,6 +13,7 @@
 #include "components/deformable.h"
 #include "components/effect.h"
 #include "components/haptic_device.h"
+#include "components/joint.h"
 #include "components/kinematic.h"
 #include "components/probe.h"
 #include "components/soft_body.h"
@@ -73,6 +74,7 @@ struct LevelNode {
   std::optional<NodeMotion> motion;      // PLIANT_motion
   std::optional<Effect> effect;          // PLIANT_effect
   Path effect_path;                      // of a program's effect that guides; no rows: the file effect->path
+  std::optional<Joint> joint;            // PLIANT_joint
   std::int32_t source = -1;              // /nodes/i of Level::source; -1: new, for instance a copy
   std::set<std::string> stated;          // keys set by the file or --set, even to their default: deformable.shape
   double scaled_with_young = 1.0;        // [1] factor of the deformable's unstated constants in N/m and N/m3

@@ -109,4 +109,10 @@ void Scene::add_effect(const std::string& name, const EffectParameters& paramete
   level_->nodes.push_back(std::move(node));
 }
 
+void Scene::add_joint(const std::string& name, const JointParameters& parameters, const Placement& placement) {
+  LevelNode node = placed(name, placement);
+  node.joint = made_of<Joint>(parameters);
+  level_->nodes.push_back(std::move(node));
+}
+
 }  // namespace pliant

@@ -12,6 +12,7 @@
 #include "content/level/spawn_carried.h"
 #include "content/level/spawn_device.h"
 #include "content/level/spawn_effect.h"
+#include "content/level/spawn_joint.h"
 #include "content/level/spawn_mesh.h"
 #include "content/level/spawn_relief.h"
 #include "content/level/spawn_soft.h"
@@ -46,6 +47,7 @@ class Spawner {
     if (Status s = meshes_.count(); !s) return s;
     for (std::size_t n = 0; n < level_.nodes.size(); ++n)
       if (Status s = node(n); !s) return s;
+    if (Status s = add_joints(state_); !s) return s;
     if (Status s = carry_parts(state_); !s) return s;
     meshes_.say_refinement();
     say_placeholders();

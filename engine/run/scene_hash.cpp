@@ -72,7 +72,8 @@ void add_keys(Hash& hash, const Extension& extension, const void* owner, const f
     const Json value = key.get(owner);
     if (is_newer_default(extension, key, value)) continue;
     add_text(hash, value.dump(-1, ' ', false, Json::error_handler_t::replace));
-    if (key.type == KeyType::kText && value.is_string() && extension.name != "haptic_device")
+    if (key.type == KeyType::kText && value.is_string() && extension.name != "haptic_device" &&
+        extension.name != "joint")
       add_named_file(hash, folder, value.get<std::string>());
   }
 }

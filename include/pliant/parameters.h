@@ -364,6 +364,27 @@ struct EffectParameters {
   std::vector<std::string> probes;  // names of those that feel it; empty: all
 };
 
+enum class JointKind : std::uint8_t {
+  kFixed,   // holds position and direction
+  kBall,    // holds a point
+  kHinge,   // turns about the node's +Y alone
+  kSlider,  // slides along the node's +Y alone
+  kRope,    // pulls alone: the ends are at most `length` apart
+};
+
+// Connects two soft or rigid bodies, or a body and the world, at the node's frame. Keys of PLIANT_joint.
+struct JointParameters {
+  JointKind kind = JointKind::kBall;
+  std::string a, b;                    // names of the bodies; b empty: the world
+  std::array<double, 2> limits{0, 0};  // [rad] of a hinge, [m] of a slider, from where it begins; equal: none
+  double stiffness = 0.0;  // hinge [N m/rad], slider [N/m]: of a spring to `rest`; rope [N/m]: 0, it does not stretch
+  double damping = 0.0;    // [N m s/rad], [N s/m] of that spring
+  double rest = 0.0;       // [rad], [m] from where it begins
+  dvec3 end{0, -0.1, 0};   // [m] node's frame: where a rope is tied to b; to a at the node
+  double length = 0.0;     // [m] of a rope; 0: the distance at the beginning
+  double strength = 0.0;   // [N] a larger force breaks the joint; 0: none does
+};
+
 // A path in time: script files and orbits. Linear between rows, slerp for rotation; stays at the last row.
 struct PathRow {
   double time = 0.0;  // [s] ascending

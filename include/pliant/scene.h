@@ -65,6 +65,8 @@ class Scene {
   // times do not count, and no file is read.
   void add_effect(const std::string& name, const EffectParameters& parameters = {}, const Placement& placement = {},
                   Path path = {});
+  // Connects bodies of the scene.
+  void add_joint(const std::string& name, const JointParameters& parameters, const Placement& placement = {});
 
   // The level format's own description (content/level/level.h); not part of the public interface.
   const Level& level() const { return *level_; }

@@ -9,6 +9,7 @@
 namespace pliant {
 namespace {
 
+constexpr double kSaidApart = 0.02;     // [1] of the size of a joint
 constexpr double kSaidResidual = 1e-4;  // [m/s] slower creep is invisible
 constexpr double kSaidLoss = 0.02;      // [1] of the run: a smaller loss occurs while the first step compares solvers
 
@@ -95,6 +96,19 @@ std::vector<Note> explain_soft_steps(const World& world, const SoftFigures& figu
         fmt::format("{} of {} ended unconverged (residual at most {:.2g} m/s), so what is gripped or stacked may creep",
                     tally.unconverged, count(figures.steps, "soft step"), tally.residual),
         "make soft_step shorter, or give bodies in contact more similar masses and stiffnesses");
+  const Joints& joints = world.soft->joints;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const JointReport& joint = joints.report(i);
+    if (joint.broke_at >= 0.0)
+      add("joint.broke",
+          fmt::format("joint `{}` broke at {:.3f} s, under {:.3g} N", joints.name(i), joint.broke_at, joint.largest),
+          "raise its `strength`, or pull less");
+    if (joint.apart > kSaidApart * joints.arm(i))
+      add("joint.apart",
+          fmt::format("joint `{}` came {:.3g} mm apart: its bodies turned too far within a soft step", joints.name(i),
+                      joint.apart * 1e3),
+          "make soft_step shorter, or the masses of joined bodies more similar");
+  }
   for (Note& note : explain_sag(world)) notes.push_back(std::move(note));
   const double kept = static_cast<double>(figures.steps) * world.simulation.soft_step;  // [s] lower bound
   if (figures.time_lost > kSaidLoss * (kept + figures.time_lost))

@@ -150,16 +150,9 @@ OrderedJson describe_tools(const Level& level) {
 
 std::set<std::string> extensions_of(const Level& level) {
   std::set<std::string> extensions;
-  for (const LevelNode& node : level.nodes) {
-    if (node.deformable) extensions.insert("PLIANT_deformable");
-    if (node.probe) extensions.insert("PLIANT_probe");
-    if (node.device) extensions.insert("PLIANT_haptic_device");
-    if (node.soft_body) extensions.insert("PLIANT_soft_body");
-    if (node.handle) extensions.insert("PLIANT_handle");
-    if (node.rigid_body) extensions.insert("PLIANT_rigid_body");
-    if (node.motion) extensions.insert("PLIANT_motion");
-    if (node.effect) extensions.insert("PLIANT_effect");
-  }
+  for (const LevelNode& node : level.nodes)
+    for (const Extension& extension : extension_table())
+      if (!extension.on_scene && extension.present(&node)) extensions.insert("PLIANT_" + extension.name);
   if (level.environment) extensions.insert("PLIANT_environment");
   return extensions;
 }

@@ -189,6 +189,7 @@ Status prepare_soft(World& world) {
     return Error{"PLIANT_simulation/soft_step", fmt::format("is {} s", T), "give more than 0 and at most 1 s"};
   if (world.touch->presses) add_yielding(world, *soft);  // with probes alone, P1 handles these surfaces
   settle_tools(world, *soft);
+  if (Status status = soft->joints.prepare(world, soft->bodies); !status) return status;
   soft->proximity = std::make_unique<Proximity>(soft->bodies);
   soft->split.prepare(soft->bodies);
   world.soft_snapshots = std::make_unique<TripleBuffer<SoftSnapshot>>(first_snapshot(*soft));

@@ -50,7 +50,7 @@ void show_contacts(const SoftState& soft, double T, SoftSnapshot& out) {
   out.contacts.clear();
   for (const bool pushing : {true, false})
     for (const ContactPoint& contact : soft.contacts)
-      if ((contact.impulse.x > 0.0) == pushing && out.contacts.size() < kMaxShownContacts)
+      if (contact.hold.joint < 0 && (contact.impulse.x > 0.0) == pushing && out.contacts.size() < kMaxShownContacts)
         out.contacts.push_back(mark(soft, contact, T));
 }
 

@@ -19,6 +19,7 @@
 #include "systems/soft/contact/contact_problem.h"
 #include "systems/soft/contact/delassus.h"
 #include "systems/soft/fem/tissue.h"
+#include "systems/soft/joint/joints.h"
 #include "systems/soft/local/split_contacts.h"
 
 namespace pliant {
@@ -68,6 +69,7 @@ struct SoftState {
   std::vector<ContactPoint> contacts;  // of the last step, with their impulses
   double impulse_time = 0.0;           // [s] over which these act
   SplitContacts split;
+  Joints joints;
   Delassus delassus;
   ContactProblem problem;
   SweepReport report;

@@ -120,12 +120,14 @@ void find_contacts(World& world, Tick tick) {
   SoftState& soft = *world.soft;
   const std::uint64_t begin = now_ns();
   scale_impulses(soft, tick.dt);
+  soft.joints.take_out(soft.contacts);
   soft.split.remember(soft.contacts);
   soft.proximity->find(soft.bodies, tick.dt, soft.contacts);
   leave_out_failed(soft);
   soft.split.place(soft.bodies, tick.dt, soft.contacts);
   soft.tally.contacts_cut += cut_contacts(soft.bodies, kMostOfBody, soft.contacts);
   for (const std::uint32_t i : soft.yielding) soft.surface(i).place(soft.contacts, i, tick.dt);
+  soft.joints.place(soft.bodies, tick.dt, soft.contacts);
   for (const ContactPoint& contact : soft.contacts) soft.tally.deepest = std::max(soft.tally.deepest, contact.depth);
   if (soft.steps == 0) tally_beginning(soft);
   soft.times.proximity = ms_since(begin);
@@ -141,7 +143,8 @@ void solve_contacts(World& world, Tick tick) {
   const std::uint64_t built = now_ns();
   Crossings left;
   soft.report = solve_and_apply(soft.bodies, *soft.proximity, tick.dt, undone, kSweeps, soft.delassus, soft.contacts,
-                                soft.problem, &left);
+                                soft.problem, &left, &soft.joints);
+  soft.joints.measure(soft.contacts, tick);
   stop_before(soft, left, tick.dt);
   soft.times.sweeps = ms_since(built);
   soft.tally.unconverged += soft.settled && !soft.report.settled;

@@ -26,6 +26,7 @@ void CondensedContacts::resize(int most_contacts, int most_modes) {
   reach.assign(static_cast<std::size_t>(most_contacts), 0.0);
   slip.assign(static_cast<std::size_t>(most_contacts), dvec2(0.0));
   sliding.assign(static_cast<std::size_t>(most_contacts), 0);
+  held.assign(static_cast<std::size_t>(most_contacts), 0);
   stiff.assign(static_cast<std::size_t>(most_contacts), 0);
 }
 

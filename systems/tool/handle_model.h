@@ -64,6 +64,7 @@ struct CondensedContacts {
   Vector push;                               // [m/s] count: <= 0: rate of that correction
   std::vector<double> mu_static, mu_sliding;
   std::vector<std::uint8_t> sliding;
+  std::vector<std::uint8_t> held;   // bits of the axes along which it is a joint (ContactProblem::held)
   std::vector<dvec2> lean;          // [1] tilt of the normal against the model's axes
   std::vector<dmat2> turning;       // [1/m] change of that tilt with slip (contact_point.h)
   std::vector<std::uint64_t> key;   // the same contact has the same key in the next model (contact_point.h)

@@ -10,6 +10,7 @@ namespace {
 dvec3 pushed_by(const CondensedContacts& contacts, const CondensedState& state) {
   dvec3 sum(0);
   for (int i = 0; i < contacts.count; ++i) {
+    if (contacts.held[static_cast<std::size_t>(i)] != 0) continue;
     const dvec3 normal(contacts.from_handle(3 * i, 0), contacts.from_handle(3 * i, 1), contacts.from_handle(3 * i, 2));
     const bool stiff = contacts.stiff[static_cast<std::size_t>(i)] != 0;
     sum += (stiff ? state.problem.impulse[3 * i] / contacts.tick : contacts.force[3 * i]) * normal;

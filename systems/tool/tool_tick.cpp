@@ -51,7 +51,7 @@ void slide(const CondensedContacts& model, CondensedState& state, const Vector6&
     const auto c = static_cast<std::size_t>(i);
     const auto impulse = state.problem.impulse.segment<3>(3 * i);
     state.shift[c] = dvec3(0.0);
-    if (!(impulse[0] > 0.0)) continue;
+    if (!(impulse[0] > 0.0) || model.held[c] != 0) continue;
     const double size = length(state.slip[c]);
     const dvec2 slip = size > model.farthest[c] ? model.farthest[c] / size * state.slip[c] : state.slip[c];
     const Rows &by_0 = model.from_modes_by_slip[0], &by_1 = model.from_modes_by_slip[1];
@@ -118,6 +118,7 @@ void advance(const CondensedContacts& model, CondensedState& state, const TickHa
     const dvec3 u = (dvec3(moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]) + state.shift[k]) * state.problem.own[k];
     state.slip[k] += tick * dvec2(u.y, u.z);
     const double before = state.gap[i], after = before + tick * u.x;
+    if (model.held[k] != 0) continue;
     state.gap[i] = before >= 0.0 ? std::max(after, 0.0) : after;  // a gap closed up to rounding is closed
     if (lambda[3 * i] > 0.0) state.reach[k] = kAnywhere;
     if (state.gap[i] > 0.0 && length(state.slip[k]) > state.reach[k]) state.gap[i] = kGone;
@@ -151,6 +152,7 @@ void CondensedState::resize(int most_contacts, int most_modes) {
   lever.setZero(rows, 6);
   problem.resize_vectors(most_contacts);
   problem.own.assign(static_cast<std::size_t>(most_contacts), dmat3(1.0));
+  problem.held.assign(static_cast<std::size_t>(most_contacts), 0);
   problem.count = 0;
   key.assign(static_cast<std::size_t>(most_contacts), 0);
   last.setZero(rows);
@@ -188,6 +190,7 @@ void CondensedState::start(const CondensedContacts& model) {
   std::copy_n(model.mu_static.begin(), model.count, problem.mu_static.begin());
   std::copy_n(model.mu_sliding.begin(), model.count, problem.mu_sliding.begin());
   std::copy_n(model.sliding.begin(), model.count, problem.sliding.begin());
+  std::copy_n(model.held.begin(), model.count, problem.held.begin());
 }
 
 Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, const SweepLimits& limits,

@@ -3,6 +3,7 @@
 // (soft_body_state.h), fixed (no degrees of freedom), yielding (a P1 surface: no degrees of freedom, but compliance).
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -95,6 +96,7 @@ class Body {
 
   bool meets(const Body& other) const {
     if (absent || other.absent || taken_out || other.taken_out || (size() == 0 && other.size() == 0)) return false;
+    if (std::find(joined.begin(), joined.end(), &other) != joined.end()) return false;
     if (kind == BodyKind::kProbe) return other.kind == BodyKind::kBody;
     return other.kind != BodyKind::kProbe || kind == BodyKind::kBody;
   }
@@ -108,8 +110,9 @@ class Body {
   bool absent = false;     // no contacts: its pose is not known yet
   bool taken_out = false;  // removed by the owner of the run: no contacts, and not stepped
   BodyLoads loads;
-  std::vector<SphereTip> tips;  // of a probe made of spheres; else empty
-  bool self_collides = false;   // its collision mesh can touch itself
+  std::vector<SphereTip> tips;      // of a probe made of spheres; else empty
+  std::vector<const Body*> joined;  // connected to it by a joint: they do not collide
+  bool self_collides = false;       // its collision mesh can touch itself
 
   // Degrees of freedom; 0: contacts cannot move it.
   virtual int size() const = 0;
@@ -184,6 +187,15 @@ class Body {
   virtual void weigh(const Rows& x, Rows& out) const { out.setZero(x.rows(), x.cols()); }  // out = M x
   virtual RayleighDamping damping() const { return {}; }
   virtual Vector starting_velocity() const { return Vector::Zero(size()); }
+  // --- For joints.
+  // Pose of a rigid body's object frame after `T` [s] with its current velocity(); 0: now. None: it deforms.
+  virtual std::optional<Pose> pose_after(double T) const { return (void)T, std::nullopt; }
+  // The stiffness [N m/rad] against turning that the joints' forces give a rigid body in a step of T [s], by
+  // their levers: beyond 2 I/T^2 it counts as inertia, without which that step would be unstable.
+  // Returns whether that grew much.
+  virtual bool stiffen_turning(const dmat3& stiffness, double T) { return (void)stiffness, (void)T, false; }
+  // [m/s] J v of a point, by the current velocity().
+  virtual dvec3 velocity_of(const SurfacePoint& point) const;
   // Fills the object's part of a snapshot. Sizes are set by the first call, before the clocks start.
   virtual void show(SoftObjectSnapshot& out) const = 0;
 };

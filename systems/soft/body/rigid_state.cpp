@@ -1,5 +1,6 @@
 #include "systems/soft/body/rigid_state.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -79,9 +80,37 @@ void RigidState::free_step(double T, dvec3 gravity) {
   inverse_inertia_ = inverse_inertia(rotation_);
   const dvec3 spin = inverse_inertia_ * angular_momentum_;
   start_ << linear_.x, linear_.y, linear_.z, spin.x, spin.y, spin.z;
-  const dvec3 v = linear_ + T * gravity, w = free_turn(T);
-  velocity_ << v.x, v.y, v.z, w.x, w.y, w.z;
+  const dvec3 v = linear_ + T * gravity;
+  spin_ = free_turn(T), begun_ = angular_momentum_;
+  velocity_ << v.x, v.y, v.z, spin_.x, spin_.y, spin_.z;
+  if (stiffened_ != dmat3(0.0)) turn_stiffly();
   move_surface(surface_velocity);
+}
+
+// (I + a) w = I w_free: implicit in the turn, so that the spin of what is stiff fades.
+void RigidState::turn_stiffly() {
+  const dmat3 plain = inertia(rotation_);
+  inverse_inertia_ = glm::inverse(plain + stiffened_);
+  const dvec3 w = inverse_inertia_ * (plain * spin_);
+  for (int k = 0; k < 3; ++k) velocity_[3 + k] = w[k];
+  angular_momentum_ = begun_ + plain * (w - spin_);
+}
+
+bool RigidState::stiffen_turning(const dmat3& stiffness, double T) {
+  using Square = Eigen::Matrix3d;
+  const dmat3 plain = inertia(rotation_), excess = 0.5 * T * T * stiffness - plain;
+  const Square symmetric = Eigen::Map<const Square>(&excess[0][0]);
+  const Eigen::SelfAdjointEigenSolver<Square> axes(symmetric);
+  const Eigen::Vector3d values = axes.eigenvalues().cwiseMax(0.0);
+  const Square positive = axes.eigenvectors() * values.asDiagonal() * axes.eigenvectors().transpose();
+  const auto trace = [](const dmat3& m) { return m[0][0] + m[1][1] + m[2][2]; };
+  const bool grew = positive.trace() > 1.2 * trace(stiffened_) + 0.2 * trace(plain);
+  std::copy_n(positive.data(), 9, &stiffened_[0][0]);
+  if (grew) {
+    turn_stiffly();
+    move_surface(surface_velocity);
+  }
+  return grew;
 }
 
 void RigidState::move_surface(std::vector<dvec3>& out) const {
@@ -138,6 +167,12 @@ void RigidState::correct(const Vector& dv) {
   angular_momentum_ += inertia(rotation_) * dvec3(dv[3], dv[4], dv[5]);
 }
 
+std::optional<Pose> RigidState::pose_after(double T) const {
+  const double* const v = velocity_.data();
+  const dquat rotation = normalize(rotation_of(T * dvec3(v[3], v[4], v[5])) * rotation_);
+  return Pose{centre_ + T * dvec3(v[0], v[1], v[2]) - rotation * mass_.centre, rotation};
+}
+
 void RigidState::advance(double T) {
   linear_ = {velocity_[0], velocity_[1], velocity_[2]};
   centre_ += T * linear_;
@@ -176,10 +211,17 @@ void FixedBody::free_step(double, dvec3) {
   move_points(surface_position, pose_.position, linear_, angular_, surface_velocity);
 }
 
+std::optional<Pose> FixedBody::pose_after(double T) const {
+  if (linear_ == dvec3(0) && angular_ == dvec3(0)) return pose_;
+  return Pose{pose_.position + T * linear_, normalize(rotation_of(T * angular_) * pose_.rotation)};
+}
+dvec3 FixedBody::velocity_of(const SurfacePoint& point) const {
+  return linear_ + cross(angular_, point.position - pose_.position);
+}
+
 void FixedBody::advance(double T) {
   if (linear_ == dvec3(0) && angular_ == dvec3(0)) return;
-  pose_.position += T * linear_;
-  pose_.rotation = normalize(rotation_of(T * angular_) * pose_.rotation);
+  pose_ = *pose_after(T);
   refresh_surface();
 }
 

@@ -34,6 +34,8 @@ class RigidState : public Body {
   void halt() override;
   void set_mass(const RigidMass& mass) override;
   void start_with(dvec3 velocity) override { set_velocity(velocity, dvec3(0)); }
+  std::optional<Pose> pose_after(double T) const override;
+  bool stiffen_turning(const dmat3& stiffness, double T) override;
   void show(SoftObjectSnapshot& out) const override;
 
   const RigidMass& mass() const { return mass_; }
@@ -50,6 +52,7 @@ class RigidState : public Body {
   dmat3 inverse_inertia(const dquat& rotation) const;  // world
   dvec3 free_turn(double T) const;                     // [rad/s] mean angular velocity of the step without contacts
   RigidPath path_of(const Vector& v) const { return {centre_, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}}; }
+  void turn_stiffly();                                 // sets the step's spin without contacts, by stiffened_
   void refresh_surface();
 
   RigidMass mass_;
@@ -58,6 +61,8 @@ class RigidState : public Body {
   dvec3 linear_{0};            // [m/s]
   dvec3 angular_momentum_{0};  // [kg m2/s]
   dmat3 inverse_inertia_{1};   // at the beginning of the step
+  dmat3 stiffened_{0};         // [kg m2] stiffen_turning's part of the inertia
+  dvec3 spin_{0}, begun_{0};   // [rad/s] of the step without it; angular momentum at its beginning
   Vector velocity_ = Vector::Zero(6), start_ = Vector::Zero(6);
 };
 
@@ -76,6 +81,8 @@ class FixedBody : public ImmovableBody {
   bool yields() const override { return compliance > 0.0; }
   void add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const override;
   void place(const Pose& pose) override;
+  std::optional<Pose> pose_after(double T) const override;
+  dvec3 velocity_of(const SurfacePoint& point) const override;
   void show(SoftObjectSnapshot& out) const override;
   const Pose& pose() const { return pose_; }
 

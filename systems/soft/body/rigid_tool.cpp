@@ -69,6 +69,13 @@ void RigidTool::move_surface(std::vector<dvec3>& out) const {
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = v + cross(w, surface_position[i] - centre);
 }
 
+std::optional<Pose> RigidTool::pose_after(double T) const {
+  RigidHandle after = *handle_;
+  after.set_velocity(velocity_);
+  after.advance(T);
+  return after.object_pose();
+}
+
 void RigidTool::advance(double T) {
   handle_->set_velocity(velocity_);
   handle_->advance(T);

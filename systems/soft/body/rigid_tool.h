@@ -29,6 +29,7 @@ class RigidTool final : public ToolBody {
   Vector starting_velocity() const override { return start_; }
   void halt() override;
   void set_mass(const RigidMass& mass) override;
+  std::optional<Pose> pose_after(double T) const override;
   void show(SoftObjectSnapshot& out) const override;
   void unsettle() override { refresh_surface(); }
   const Rows& follow() const override { return follow_; }

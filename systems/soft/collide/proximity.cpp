@@ -255,8 +255,8 @@ bool Proximity::look_again(const std::vector<std::unique_ptr<Body>>& bodies, dou
   }
   bool any = false;
   for (ContactPoint& contact : contacts) {
-    contact.again =
-        contact.predicted && pliant::look_again(p.contacts.pair_of(p.contacts.found[contact.source]), contact);
+    contact.again = contact.predicted && contact.hold.joint < 0 &&
+                    pliant::look_again(p.contacts.pair_of(p.contacts.found[contact.source]), contact);
     any |= contact.again;
   }
   return any;

@@ -80,6 +80,12 @@ struct Admm {
       s[3 * i] -= shift(i) / (rho * scale[3 * i]);
     }
   }
+  // The allowed impulse nearest to `v`.
+  Eigen::Vector3d allowed(int i, Eigen::Vector3d v) const {
+    if (!sweeps.held(i)) return onto_cone(v, sweeps.mu(i));
+    for (int k = 0; k < 3; ++k) v[k] *= sweeps.holds(i, k);
+    return v;
+  }
   // Returns the residuals [m/s]: x against z, and z against the previous z.
   dvec2 iterate() {
     Vector right = rho * scale.cwiseProduct(z - s) - bias;
@@ -88,7 +94,7 @@ struct Admm {
     u = right - rho * scale.cwiseProduct(x) + bias;
     const Vector before = z, relaxed = kRelax * x + (1.0 - kRelax) * z;
     for (int i = 0; i < count(); ++i)
-      z.segment<3>(3 * i) = sweeps.movable(i) ? onto_cone(relaxed.segment<3>(3 * i) + s.segment<3>(3 * i), sweeps.mu(i))
+      z.segment<3>(3 * i) = sweeps.movable(i) ? allowed(i, relaxed.segment<3>(3 * i) + s.segment<3>(3 * i))
                                               : Eigen::Vector3d(Eigen::Vector3d::Zero());
     s += relaxed - z;
     return {scale.cwiseProduct(x - z).cwiseAbs().maxCoeff(),

@@ -84,7 +84,7 @@ double ContactNewton::first_pull() const {
   double share = 1.0;
   for (int i = 0; i < s_.problem().count; ++i) {
     const double from = s_.to_own(i, &m_.impulse[3 * i]).x, to = s_.to_own(i, &m_.base[i].x).x;
-    if (from > 0.0 && to < 0.0) share = std::min(share, from / (from - to));
+    if (!s_.held(i) && from > 0.0 && to < 0.0) share = std::min(share, from / (from - to));
   }
   return share;
 }
@@ -115,19 +115,22 @@ bool ContactNewton::choose_unknowns() {
   for (int i = 0; i < p.count; ++i) {
     const dvec3 l = s_.to_own(i, &m_.impulse[3 * i]), u = s_.to_own(i, &m_.velocity[3 * i]);
     dvec3 base = l;
-    if (!s_.movable(i) || l.x <= 0.0 || m_.dropped[i]) {
+    const auto add = [&](dvec3 way, dvec3 test, double extra, double right) {
+      m_.contact[unknowns_] = i;
+      m_.way[unknowns_] = s_.from_own(i, way);
+      m_.test[unknowns_] = s_.from_own(i, test);
+      m_.extra[unknowns_] = extra;
+      m_.right[unknowns_++] = right;
+    };
+    if (s_.held(i) && s_.movable(i)) {
+      for (int k = 0; k < 3; ++k)
+        if (s_.holds(i, k)) add(dmat3(1.0)[k], dmat3(1.0)[k], 0.0, 0.0);
+    } else if (!s_.movable(i) || l.x <= 0.0 || m_.dropped[i]) {
       base = dvec3(0.0);
     } else {
       const double mu = s_.mu(i), wt = mean_tangential(s_.block(i));
       const dvec2 z = wt * dvec2(l.y, l.z) - dvec2(u.y, u.z);
       const double size = length(z);
-      const auto add = [&](dvec3 way, dvec3 test, double extra, double right) {
-        m_.contact[unknowns_] = i;
-        m_.way[unknowns_] = s_.from_own(i, way);
-        m_.test[unknowns_] = s_.from_own(i, test);
-        m_.extra[unknowns_] = extra;
-        m_.right[unknowns_++] = right;
-      };
       if (size > 0.0 && length(dvec2(l.y, l.z)) >= kOnBorder * mu * l.x) {
         const dvec2 t = z / size, aside(-t.y, t.x);
         const double straightens = std::min(1.0, mu * wt * l.x / size);  // share of the transverse u that rotates z
@@ -187,7 +190,7 @@ bool ContactNewton::drop_pulling() {
   const auto met = [&](int c) {  // [1] of the step: where the contact stops pushing
     const dvec3 way = s_.to_own(m_.contact[c], &m_.way[c].x);
     const double from = s_.to_own(m_.contact[c], &m_.base[m_.contact[c]].x).x, by = m_.right[c] * way.x;
-    return way.x > 0.5 && from + by < 0.0 ? from / -by : 2.0;
+    return !s_.held(m_.contact[c]) && way.x > 0.5 && from + by < 0.0 ? from / -by : 2.0;
   };
   double first = 2.0;
   for (int c = 0; c < unknowns_; ++c) first = std::min(first, met(c));

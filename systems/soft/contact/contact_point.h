@@ -10,6 +10,15 @@
 
 namespace pliant {
 
+// Of a joint's point (systems/soft/joint/joints.h), along its axes: u + softness lambda + rate off = 0.
+struct JointHold {
+  std::int32_t joint = -1;  // -1: the point is a contact
+  std::uint8_t axes = 0;    // bits of those that it holds; 0: it pushes along the normal alone (a limit, a rope)
+  dvec3 off{0};             // [m] at the step's beginning
+  dvec3 rate{0};            // [1/s]
+  dvec3 softness{0};        // [1/kg]
+};
+
 struct ContactPoint {
   std::uint32_t body_a = 0, body_b = 0;  // into SoftState::bodies; equal: self-collision
   SurfacePoint a, b;
@@ -33,6 +42,7 @@ struct ContactPoint {
   bool sliding = false;
   double slipped = 0.0;      // [m] at the static limit, since it last stuck
   bool joined = false;       // added although thinning dropped it: without it the bodies sink in
+  JointHold hold;
   std::uint32_t source = 0;  // an index of Proximity, in this step
 };
 

@@ -78,6 +78,7 @@ void hand_out(const ContactProblem& whole, ContactProblem& part) {
   part.own.resize(whole.own.empty() ? 0 : part.members.size());
   part.patch.resize(whole.patch.empty() ? 0 : part.members.size());
   part.loose.resize(part.patch.size()), part.slipped.resize(part.patch.size());
+  part.held.resize(whole.held.empty() ? 0 : part.members.size());
   for (std::size_t k = 0; k < part.members.size(); ++k) {
     const auto i = static_cast<std::size_t>(part.members[k]);
     const auto to = static_cast<Eigen::Index>(3 * k), from = static_cast<Eigen::Index>(3 * i);
@@ -87,6 +88,7 @@ void hand_out(const ContactProblem& whole, ContactProblem& part) {
     part.mu_sliding[k] = whole.mu_sliding[i];
     part.sliding[k] = whole.sliding[i];
     if (!whole.own.empty()) part.own[k] = whole.own[i];
+    if (!whole.held.empty()) part.held[k] = whole.held[i];
     if (whole.patch.empty()) continue;
     part.patch[k] = whole.place[static_cast<std::size_t>(whole.patch[i])].second;
     part.loose[k] = whole.loose[i], part.slipped[k] = whole.slipped[i];

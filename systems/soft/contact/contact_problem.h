@@ -52,6 +52,9 @@ struct ContactProblem {
   Vector impulse;                             // [N s] lambda; on entry the initial guess
   // Of each contact: its normal and tangents, in the axes of W, bias, impulse and velocity. Empty: the same axes.
   std::vector<dmat3> own;
+  // Of each contact: bits of the axes along which it is a joint, u = 0 with any impulse, and none along the others; 0:
+  // a contact. Empty: no joints.
+  std::vector<std::uint8_t> held;
   std::vector<std::uint8_t> sliding;  // in: in the last solve; out: on the cone's border
   Vector velocity;                    // [m/s] out: u
   // Contacts of one pair of bodies: the index of its first one. They break loose together, when nearly all of the load

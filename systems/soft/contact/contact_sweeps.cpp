@@ -149,7 +149,7 @@ void ContactSweeps::refresh_velocity() {
 void ContactSweeps::start() {
   for (int i = 0; i < p_.count; ++i) {
     double* const l = &p_.impulse[3 * i];
-    const bool good = impulse(i).x > 0.0 && std::isfinite(l[0] + l[1] + l[2]) && movable(i);
+    const bool good = (held(i) || impulse(i).x > 0.0) && std::isfinite(l[0] + l[1] + l[2]) && movable(i);
     if (!good) l[0] = l[1] = l[2] = 0.0;
   }
   refresh_velocity();
@@ -158,7 +158,9 @@ void ContactSweeps::start() {
 void ContactSweeps::project() {
   for (int i = 0; i < p_.count; ++i) {
     dvec3 l = impulse(i);
-    if (l.x > 0.0)
+    if (held(i))
+      for (int k = 0; k < 3; ++k) l[k] *= holds(i, k);
+    else if (l.x > 0.0)
       clamp_to_disc(l.y, l.z, mu(i) * l.x);
     else
       l = dvec3(0.0);
@@ -170,7 +172,9 @@ double ContactSweeps::fastest() const {
   double speed = 1e-9;
   for (int i = 0; i < p_.count; ++i) {
     const dvec3 u = to_own(i, &p_.bias[3 * i]);
-    if (u.x < 0.0) speed = std::max({speed, -u.x, std::abs(u.y), std::abs(u.z)});
+    for (int k = 0; k < 3; ++k)
+      if (holds(i, k)) speed = std::max(speed, std::abs(u[k]));
+    if (!held(i) && u.x < 0.0) speed = std::max({speed, -u.x, std::abs(u.y), std::abs(u.z)});
   }
   return speed;
 }
@@ -178,7 +182,8 @@ double ContactSweeps::fastest() const {
 int ContactSweeps::begin_slips(double slowest) {
   const auto slips = [&](int i) {
     const dvec3 u = velocity(i), l = impulse(i);
-    return l.x > 0.0 && length2(u.y, u.z) > slowest && length2(l.y, l.z) >= (1.0 - 1e-9) * p_.mu_static[i] * l.x;
+    return !held(i) && l.x > 0.0 && length2(u.y, u.z) > slowest &&
+           length2(l.y, l.z) >= (1.0 - 1e-9) * p_.mu_static[i] * l.x;
   };
   const bool patches = !p_.patch.empty();
   const auto passes_on = [&](int i) {
@@ -219,17 +224,32 @@ void ContactSweeps::sweep() {
     for (int i = 0; i < p_.count; ++i) relax<false>(i);
 }
 
+dvec3 ContactSweeps::hold(int i, dvec3 c) {
+  dmat3 w = block(i);
+  for (int k = 0; k < 3; ++k) {
+    if (holds(i, k)) continue;
+    w[0][k] = w[1][k] = w[2][k] = 0.0, w[k] = dvec3(0.0);
+    w[k][k] = 1.0, c[k] = 0.0;
+  }
+  dmat3& inverse = p_.inverses[i];
+  if (std::isnan(inverse[0][0])) inverse = glm::inverse(w);
+  return -(inverse * c);
+}
+
 // Twice: without a lever it stays short.
 template <bool kLever>
 void ContactSweeps::relax(int i) {
   double* const l = &p_.impulse[3 * i];
   const dvec3 before = three(l), old = to_own(i, l);
   const dvec3 plain = kLever ? levered(i) : three(&p_.velocity[3 * i]), u = to_own(i, &plain.x);
-  if (old.x == 0.0 && u.x >= 0.0) return;
+  const bool joint = held(i) != 0;
+  if (!joint && old.x == 0.0 && u.x >= 0.0) return;
   if (!movable(i)) return;
   const dmat3& w = p_.blocks[i];
   LocalSolve local{w, p_.inverses[i], u - w * old, mu(i), old};
-  if (local.c.x >= 0.0)
+  if (joint)
+    local.lambda = hold(i, local.c);
+  else if (local.c.x >= 0.0)
     local.lambda = dvec3(0.0);
   else if (!local.stick())
     local.slide();
@@ -242,6 +262,12 @@ void ContactSweeps::relax(int i) {
 
 double ContactSweeps::residual_of(int i) const {
   const dvec3 u = velocity(i), l = impulse(i);
+  if (held(i)) {
+    double worst = 0.0;
+    for (int k = 0; k < 3; ++k)
+      if (holds(i, k)) worst = std::max(worst, std::abs(u[k]));
+    return worst;
+  }
   const dmat3& w = block(i);
   const double wn = w[0][0], wt = 0.5 * (w[1][1] + w[2][2]);
   double y = wt * l.y - u.y, z = wt * l.z - u.z;

@@ -33,6 +33,9 @@ class ContactSweeps {
 
   ContactProblem& problem() { return p_; }
   double mu(int i) const { return p_.sliding[i] ? p_.mu_sliding[i] : p_.mu_static[i]; }
+  // Bits of the axes along which it is a joint; 0: a contact.
+  std::uint8_t held(int i) const { return p_.held.empty() ? 0 : p_.held[i]; }
+  bool holds(int i, int axis) const { return (held(i) >> axis & 1) != 0; }
   bool movable(int i) const { return p_.blocks[i][0][0] > 0.0; }
   const dmat3& block(int i) const { return p_.blocks[i]; }
   dvec3 impulse(int i) const { return to_own(i, &p_.impulse[3 * i]); }
@@ -64,6 +67,7 @@ class ContactSweeps {
   void add_to_lever(int i, dvec3 impulse);
   template <bool kLever>
   void relax(int i);
+  dvec3 hold(int i, dvec3 c);  // impulse of a joint's point with all others fixed: u = w lambda + c
   double residual_of(int i) const;
   dmat3 read_block(int i) const;  // of W, in the contact's axes
 

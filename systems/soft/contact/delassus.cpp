@@ -7,6 +7,7 @@
 #include "systems/soft/contact/contact_budget.h"
 #include "systems/soft/contact/contact_islands.h"
 #include "systems/soft/contact/fill_operator.h"
+#include "systems/soft/joint/joints.h"
 #include "systems/soft/local/smeared_response.h"
 #include "systems/soft/local/smearing_surface.h"
 #include "systems/soft/local/tip_law.h"
@@ -18,6 +19,10 @@ constexpr double kSlipLength = 0.3;   // [mean edges] of slip at the static limi
 constexpr int kRoundsUnsettled = 2;   // rounds after which a solution that did not converge is not extended
 constexpr int kTipRoundsOfSolve = 8;  // of a probe's tips, whose laws are not linear: three are usual
 constexpr double kTipSettled = 1e-5;  // [1] of their forces
+constexpr double kJointApart = 1e-9;  // [m]
+constexpr double kJointGains = 1.05;  // [1] of the energy without impulses: joints take, and may give that much
+constexpr double kJointFalls = 0.5;   // [1] of the last round's
+constexpr int kJointRounds = 4;       // in which joints are corrected to where rotations bring them
 constexpr int kMostRounds = 8;        // in which contacts found by a solution join; a round reaches one body further
 
 // The contacts of each body.
@@ -46,7 +51,8 @@ void list_sides(std::uint32_t index, const std::vector<ContactPoint>& contacts, 
 void find_compliances(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
                       double T, Delassus& delassus) {
   const auto yields = [](const std::unique_ptr<Body>& body) { return body->yields(); };
-  if (std::none_of(bodies.begin(), bodies.end(), yields)) {
+  const auto is_soft = [](const ContactPoint& c) { return c.hold.softness != dvec3(0.0); };
+  if (std::none_of(bodies.begin(), bodies.end(), yields) && std::none_of(contacts.begin(), contacts.end(), is_soft)) {
     delassus.compliance.resize(0, 0);
     return;
   }
@@ -59,8 +65,11 @@ void find_compliances(const std::vector<std::unique_ptr<Body>>& bodies, const st
       const ContactPoint& c = contacts[static_cast<std::size_t>(i)];
       sides.push_back({i, c.body_a == b ? &c.a : &c.b, &c.axes, c.body_a == b ? 1.0 : -1.0});
     }
-    if (!sides.empty()) bodies[b]->add_compliance(sides, T, delassus.compliance);
+    if (!sides.empty() && bodies[b]->yields()) bodies[b]->add_compliance(sides, T, delassus.compliance);
   }
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      delassus.compliance.diagonal()[3 * static_cast<Eigen::Index>(i) + k] += contacts[i].hold.softness[k];
 }
 
 // [m/s] J v* of one side: every body interpolates its collision mesh linearly.
@@ -149,6 +158,11 @@ void find_bias(const std::vector<std::unique_ptr<Body>>& bodies, const std::vect
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactPoint& c = contacts[i];
     const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
+    if (c.hold.joint >= 0) {
+      const dvec3 u = bodies[c.body_a]->velocity_of(c.a) - bodies[c.body_b]->velocity_of(c.b);
+      for (int k = 0; k < 3; ++k) problem.bias[row + k] = dot(c.axes[k], u) + c.hold.rate[k] * c.hold.off[k];
+      continue;
+    }
     const dvec3 u = free_velocity(*bodies[c.body_a], c.a) - free_velocity(*bodies[c.body_b], c.b);
     for (int k = 0; k < 3; ++k) problem.bias[row + k] = dot(c.axes[k], u);
     problem.bias[row] += (c.gap + still_inside(c, i, beta, delassus) + offset_of(bodies, c)) / T;
@@ -268,8 +282,11 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
   fill_operator(bodies, contacts, delassus, problem);
 
   find_bias(bodies, contacts, T, beta, delassus, problem);
+  const auto is_held = [](const ContactPoint& c) { return c.hold.axes != 0; };
+  problem.held.assign(std::any_of(contacts.begin(), contacts.end(), is_held) ? contacts.size() : 0, 0);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactPoint& c = contacts[i];
+    if (c.hold.axes != 0) problem.held[i] = c.hold.axes;
     for (int k = 0; k < 3; ++k) problem.impulse[3 * static_cast<Eigen::Index>(i) + k] = c.impulse[k];
     problem.mu_static[i] = c.mu_static;
     problem.mu_sliding[i] = c.mu_sliding;
@@ -292,10 +309,18 @@ void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& con
 
 SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
                             double beta, const SweepLimits& limits, Delassus& delassus,
-                            std::vector<ContactPoint>& contacts, ContactProblem& problem, Crossings* left) {
+                            std::vector<ContactPoint>& contacts, ContactProblem& problem, Crossings* left,
+                            const Joints* joints) {
   problem.own.clear();
+  const double free_energy = joints ? joints->kinetic_energy(bodies) : 0.0;
   pass_first_stage(bodies, T, beta, limits, delassus, contacts, problem);
   SweepReport report = solve(problem, limits);
+  for (int round = 0; joints && round < kJointRounds && joints->stiffen(bodies, contacts, problem.impulse, T);
+       ++round) {
+    build_problem(bodies, contacts, T, beta, delassus, problem);
+    pass_first_stage(bodies, T, beta, limits, delassus, contacts, problem);
+    report = solve(problem, limits);
+  }
   apply_impulses(bodies, delassus, contacts, problem.impulse);
   for (int round = 0;; ++round) {
     keep_impulses(problem, contacts);
@@ -332,6 +357,24 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
   }
   if (bent) {
     apply_impulses(bodies, delassus, contacts, problem.impulse - first);
+    keep_impulses(problem, contacts);
+  }
+  double apart =
+      HUGE_VAL;  // [m] of joints after finite rotations; where links turn too far in a step, it does not fall
+  for (int round = 0; joints && round < kJointRounds; ++round) {
+    const double now = joints->look_again(bodies, T, contacts, problem);
+    if (now < kJointApart || now > kJointFalls * apart) break;
+    apart = now;
+    const Vector before = problem.impulse;
+    report = solve(problem, limits);
+    apply_impulses(bodies, delassus, contacts, problem.impulse - before);
+    keep_impulses(problem, contacts);
+  }
+  if (joints && joints->kinetic_energy(bodies) > kJointGains * free_energy) {
+    joints->leave_gaps(bodies, contacts, problem);
+    const Vector before = problem.impulse;
+    report = solve(problem, limits);
+    apply_impulses(bodies, delassus, contacts, problem.impulse - before);
     keep_impulses(problem, contacts);
   }
   keep_strain(bodies, T, delassus, problem, contacts);

@@ -30,6 +30,7 @@ void solve_again(const CondensedContacts& model, const Eigen::MatrixXd& W, const
     problem.mu_sliding[a] = model.mu_sliding[at];
     problem.sliding[a] = sliding[at];
     problem.own.push_back(leaning_axes(model.lean[at]));
+    problem.held.push_back(model.held[at]);
   }
   const Eigen::Index rows = 3 * static_cast<Eigen::Index>(soft.size());
   const Vector before = problem.impulse.head(rows);

@@ -22,8 +22,16 @@ ActiveSet active_set(const CondensedContacts& c) {
   out.D.setZero(3 * c.count, 3 * c.count);
   for (int i = 0; i < c.count; ++i) {
     const Eigen::Vector3d f = c.force.segment<3>(3 * i);
-    if (!(f[0] > 0.0)) continue;
     const auto at = static_cast<std::size_t>(i);
+    if (c.held[at] != 0) {
+      for (int k = 0; k < 3; ++k) {
+        if ((c.held[at] >> k & 1) == 0) continue;
+        out.D(3 * i + k, out.size()) = 1.0;
+        out.rows.push_back(3 * i + k);
+      }
+      continue;
+    }
+    if (!(f[0] > 0.0)) continue;
     const bool slides = c.sliding[at] || c.mu_static[at] == 0.0;
     out.slips = out.slips || slides;
     for (int k = 0; k < (slides ? 1 : 3); ++k) {

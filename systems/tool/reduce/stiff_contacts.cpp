@@ -20,7 +20,13 @@ void mark_stiff(const Eigen::MatrixXd& W, CondensedContacts& out) {
   Eigen::MatrixXd sum = W;
   sum.diagonal().array() += kRigidCompliance;
   const Rows share = kRigidCompliance * sum.llt().solve(out.from_handle.topLeftCorner(rows, 3));
-  for (int i = 0; i < out.count; ++i) out.stiff[static_cast<std::size_t>(i)] = share.row(3 * i).norm() > kStiffShare;
+  for (int i = 0; i < out.count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    double most = 0.0;
+    for (int k = 0; k < 3; ++k)
+      if (out.held[at] == 0 ? k == 0 : (out.held[at] >> k & 1) != 0) most = std::max(most, share.row(3 * i + k).norm());
+    out.stiff[at] = most > kStiffShare;
+  }
 }
 
 Vector6 drop_stiff(double T, double beta, const Vector6& left, CondensedContacts& contacts) {
@@ -31,7 +37,7 @@ Vector6 drop_stiff(double T, double beta, const Vector6& left, CondensedContacts
   contacts.force.head(rows) -= dropped;
   const Vector held_back = contacts.flexibility.topLeftCorner(rows, rows) * dropped;
   for (int i = 0; i < contacts.count; ++i) {
-    if (!contacts.stiff[static_cast<std::size_t>(i)]) continue;
+    if (!contacts.stiff[static_cast<std::size_t>(i)] || contacts.held[static_cast<std::size_t>(i)] != 0) continue;
     contacts.gap[i] += contacts.from_handle.row(3 * i).dot(left) - held_back[3 * i];
     contacts.push[i] = std::min(0.0, beta * contacts.gap[i] / T);
   }

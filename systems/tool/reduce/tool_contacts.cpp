@@ -43,7 +43,8 @@ bool yields(const FinishedStep& step, Eigen::Index row) {
 // An open contact whose features separate before the step ends: its plane is no longer valid.
 bool passed_by(const FinishedStep& step, std::size_t i) {
   const ContactPoint& p = step.contacts[i];
-  return !p.predicted && !(p.impulse.x > 0.0) && p.depth == 0.0 && !yields(step, 3 * static_cast<Eigen::Index>(i));
+  return p.hold.joint < 0 && !p.predicted && !(p.impulse.x > 0.0) && p.depth == 0.0 &&
+         !yields(step, 3 * static_cast<Eigen::Index>(i));
 }
 
 }  // namespace
@@ -116,7 +117,7 @@ void set_solution(const ToolContacts& contacts, int i, dvec3 impulse, dvec3 velo
   const bool inside = p.depth > 0.0 && !yields(step, 3 * contacts.in_step(i));
   double left = step.T * dot(leaning_axes(p.lean)[0], velocity);
   if (inside) left -= (1.0 - step.beta) * p.depth;
-  if (impulse.x > 0.0 && !inside) left = 0.0;
+  if ((impulse.x > 0.0 && !inside) || p.hold.axes != 0) left = 0.0;
   out.gap[i] = left;
   out.push[i] = std::min(0.0, step.beta * left / step.T);
 }
@@ -146,6 +147,7 @@ void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
     out.mu_static[static_cast<std::size_t>(i)] = p.mu_static;
     out.mu_sliding[static_cast<std::size_t>(i)] = p.mu_sliding;
     out.sliding[static_cast<std::size_t>(i)] = p.sliding;
+    out.held[static_cast<std::size_t>(i)] = p.hold.axes;
     out.lean[static_cast<std::size_t>(i)] = p.lean;
     out.turning[static_cast<std::size_t>(i)] = p.turning;
     out.slip[static_cast<std::size_t>(i)] = dvec2(0.0);

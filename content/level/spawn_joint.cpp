@@ -1,0 +1,39 @@
+#include "content/level/spawn_joint.h"
+
+#include "components/soft_body.h"
+
+namespace pliant {
+namespace {
+
+bool is_body(const LevelNode& node) {
+  return node.in_scene && (node.soft_body || node.rigid_body);
+}
+
+Result<Entity> body_of(const SpawnState& state, std::size_t n, const std::string& name) {
+  if (name.empty()) return kNoEntity;
+  for (std::size_t i = 0; i < state.level.nodes.size(); ++i)
+    if (state.level.nodes[i].name == name && is_body(state.level.nodes[i])) return state.entities[i];
+  return state.at(n, "joins `" + name.substr(0, 100) + "`, which is no soft or rigid body of the scene",
+                  "name one, or remove the joint");
+}
+
+}  // namespace
+
+Status add_joints(SpawnState& state) {
+  Registry& registry = state.world.registry;
+  for (std::size_t n = 0; n < state.level.nodes.size(); ++n) {
+    const LevelNode& node = state.level.nodes[n];
+    if (!node.joint || !node.in_scene) continue;
+    Joint joint = *node.joint;
+    const Result<Entity> a = body_of(state, n, joint.a), b = body_of(state, n, joint.b);
+    if (!a) return a.error();
+    if (!b) return b.error();
+    joint.body_a = *a, joint.body_b = *b;
+    const Entity entity = state.entities[n];
+    registry.add<Joint>(entity, joint);
+    if (!registry.has<Pose>(entity)) registry.add<Pose>(entity, rigid_part(state.motions.world[n]));
+  }
+  return Done{};
+}
+
+}  // namespace pliant

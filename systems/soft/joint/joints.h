@@ -1,0 +1,109 @@
+// Joints between two bodies (PLIANT_joint; methods.md 2.16) as rows of the contact problem. A joint holds points of its
+// bodies together along some of their axes; a limit and a rope push along one axis as a contact without friction does.
+// Bodies stay black boxes: a row needs their response alone, as a contact does. Rows have the direction of the step's
+// beginning, and are solved for the gap at its end after the bodies' finite rotations (as in SHAKE: Ryckaert, Ciccotti
+// & Berendsen, Journal of Computational Physics 23, 1977), so that a pendulum keeps its energy.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "components/joint.h"
+#include "components/world.h"
+#include "systems/soft/contact/contact_point.h"
+#include "systems/soft/contact/contact_problem.h"
+
+namespace pliant {
+
+// What a joint carried. Writer: soft clock.
+struct JointReport {
+  double force = 0.0;      // [N] at its point, of the last step
+  double largest = 0.0;    // [N] of all steps
+  double apart = 0.0;      // [m] largest gap at a step's beginning
+  double broke_at = -1.0;  // [s] world; < 0: whole
+};
+
+class Joints {
+ public:
+  // Finds the joints of a world whose bodies are these, at their poses now. Adds an immovable body if one is joined to
+  // the world. Errors: joins that the step cannot hold.
+  Status prepare(const World& world, std::vector<std::unique_ptr<Body>>& bodies);
+
+  // Removes the joints' points from the contacts of the last step and keeps their impulses.
+  void take_out(std::vector<ContactPoint>& contacts);
+  // Adds them, as they are at the beginning of a step of T [s].
+  void place(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::vector<ContactPoint>& contacts);
+  // Corrects their laws by the gap to which the current velocities lead over the step. Returns the largest correction
+  // [m].
+  double look_again(const std::vector<std::unique_ptr<Body>>& bodies, double T,
+                    const std::vector<ContactPoint>& contacts, ContactProblem& problem) const;
+  // [J] of joined bodies, by their current velocities.
+  double kinetic_energy(const std::vector<std::unique_ptr<Body>>& bodies) const;
+  // Leaves the rows of rigid joints with u = 0 alone, which adds no energy: gaps stay.
+  void leave_gaps(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
+                  ContactProblem& problem) const;
+  // Gives bodies the stiffness against turning that the joints' impulses [N s] lend them (methods.md 2.16), three per
+  // contact. True: it grew much, so that the problem is to be built again.
+  bool stiffen(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
+               const Vector& impulses, double T) const;
+  // After the step's solution: their forces; those beyond their strength break.
+  void measure(const std::vector<ContactPoint>& contacts, Tick tick);
+
+  std::size_t size() const { return joints_.size(); }
+  const std::string& name(std::size_t joint) const { return joints_[joint].name; }
+  double arm(std::size_t joint) const { return joints_[joint].arm; }  // [m] of its size
+  const JointReport& report(std::size_t joint) const { return joints_[joint].report; }
+
+ private:
+  static constexpr std::size_t kMostRows = 6;
+  static constexpr std::size_t kMostPoints = 3;  // of tissue, which a joint holds
+
+  // One of a joint's bodies.
+  struct Side {
+    std::uint32_t body = 0;
+    Pose frame;                                // of a rigid body: the joint's frame in the object's
+    std::array<dvec3, kMostPoints> point{};    // [m] of a rigid body joined to tissue, object frame
+    std::array<SurfacePoint, kMostPoints> on;  // of tissue
+    bool rigid = true;
+  };
+  struct JointState {
+    Joint joint;
+    std::string name;
+    Side a, b;
+    double arm = 0.1;                        // [m] from the joint's point to those that hold its directions
+    double turned = 0.0;                     // [rad] of a hinge, at the last step's beginning
+    std::array<dvec3, kMostPoints> apart{};  // [m] between the points of two tissues at the beginning
+    std::array<dvec3, kMostRows> impulse{};  // [N s] of the last step
+    JointReport report;
+  };
+  // A point that the joint holds, or pushes.
+  struct Row {
+    SurfacePoint a, b;
+    dmat3 axes{1};
+    std::uint8_t held = 0;
+    dvec3 off{0};            // [m]
+    double stiffness = 0.0;  // [N/m], [N s/m] along the first axis; both 0: rigid
+    double damping = 0.0;
+  };
+  using Rows = std::vector<Row>;
+
+  Status add(const World& world, Entity entity, const Joint& joint, std::vector<std::unique_ptr<Body>>& bodies);
+  // After a step of T [s] with the bodies' current velocities; 0: now.
+  void find_rows(const std::vector<std::unique_ptr<Body>>& bodies, const JointState& state, double T, Rows& out) const;
+  static SurfacePoint point_of(const std::vector<std::unique_ptr<Body>>& bodies, const Side& side, std::size_t i,
+                               double T);
+  static Pose frame_of(const std::vector<std::unique_ptr<Body>>& bodies, const Side& side, double T);
+  static void add_frames(const JointState& state, const Pose& a, const Pose& b, Rows& out);
+  static void add_free_axis(const JointState& state, const Pose& a, const Pose& b, Rows& out);
+
+  static dmat3 turning_stiffness(const RigidState& body, dvec3 at, dvec3 force);
+
+  std::vector<JointState> joints_;
+  mutable std::vector<dmat3> stiffness_;  // [N m/rad] per body
+  mutable Rows rows_;
+  std::unique_ptr<Mesh> nothing_ = std::make_unique<Mesh>();  // of the world's body
+};
+
+}  // namespace pliant
