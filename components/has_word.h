@@ -1,3 +1,4 @@
+// A list of words in one string.
 #pragma once
 
 #include <cstddef>

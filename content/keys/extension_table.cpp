@@ -756,8 +756,7 @@ std::vector<Key> joint_keys() {
 
 std::optional<Note> settle_joint(void* owner) {
   const Joint& it = *static_cast<LevelNode*>(owner)->joint;
-  if (it.a.empty()) return Note{"holds no body", "name one", "key.missing", "a"};
-  if (it.a == it.b) return Note{"names the same body twice", "name two, or leave out `b`", "key.value", "b"};
+  if (!it.a.empty() && it.a == it.b) return Note{"names the same body twice", "name two, or leave out `b`", "key.value", "b"};
   if (it.limits[0] > it.limits[1])
     return Note{"has a least limit above its largest", "exchange them", "key.value", "limits"};
   if (it.limits[0] < it.limits[1] && (it.limits[0] > 0.0 || it.limits[1] < 0.0))

@@ -25,6 +25,8 @@ Status add_joints(SpawnState& state) {
     const LevelNode& node = state.level.nodes[n];
     if (!node.joint || !node.in_scene) continue;
     Joint joint = *node.joint;
+    if (joint.a.empty())
+      return state.at(n, Note{"is a joint without `a`, so it holds no body", "name one", "key.missing", "a"});
     const Result<Entity> a = body_of(state, n, joint.a), b = body_of(state, n, joint.b);
     if (!a) return a.error();
     if (!b) return b.error();

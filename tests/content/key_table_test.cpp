@@ -95,6 +95,7 @@ struct Bare {
     node.rigid_body = RigidBody{};
     node.motion = NodeMotion{};
     node.effect = Effect{};
+    node.joint = Joint{};
     level.environment = LevelEnvironment{};
   }
   void* owner(const Extension& extension) { return extension.on_scene ? static_cast<void*>(&level) : &node; }

@@ -196,7 +196,7 @@ void compare(const std::string& level, Led led, std::uint64_t ticks, double most
 }
 
 TEST(LateTick, ToolsFeelNoBlowWhateverWasMissed) {
-  compare("instrument.glb", Led::kOrbit, 1500);
+  compare("instrument.glb", Led::kOrbit, 2500);
   compare("instrument.glb", Led::kScript, 1500);
 }
 

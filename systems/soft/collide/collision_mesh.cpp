@@ -14,6 +14,7 @@ constexpr double kNearEdges = 2.5;   // [mean edges] along the surface: closer n
 constexpr double kFlatShare = 0.05;  // [rad] edges whose triangles are coplanar within this cannot touch
 constexpr double kHollow = 0.98;     // [1] cosine across a concave edge: sharper ones are touched on their flanks
 constexpr double kSmooth = 0.8;      // [1] cosine between a vertex's normal and its triangles': below it, it is sharp
+constexpr double kBends = 0.02;      // [rad] over a mean edge: flatter meshes do not roll
 constexpr double kTurnsFar = 0.95;   // [1] cosine of the rotation in a step
 constexpr int kRigid = 6;            // degrees of freedom
 constexpr float kRounding = 4e-7f;   // [1] of coordinates: boxes are single precision
@@ -50,7 +51,7 @@ dvec3 unit_or_zero(dvec3 n) {
 
 CollisionMesh::CollisionMesh(const Body& body) : mesh_(body.collision_mesh), deforms_(body.size() > kRigid) {
   turns_ = body.last_path().has_value();
-  fixed_ = body.size() == 0 && !body.yields();
+  fixed_ = body.size() == 0 && !body.yields() && !mesh_->triangles.empty();
   ASSERT(body.collision_mesh && body.surface_position.size() >= body.collision_mesh->vertex_count);
   find_edges();
   find_shortest();
@@ -76,6 +77,8 @@ CollisionMesh::CollisionMesh(const Body& body) : mesh_(body.collision_mesh), def
   };
   for (std::uint32_t t = 1; t < mesh_->triangles.size(); ++t)
     if (area(t) > area(largest_)) largest_ = t;
+  turns_ = turns_ && is_curved();
+  closed_ = std::find(at_border_.begin(), at_border_.end(), true) == at_border_.end();
   if (turns_ || fixed_) smooth_shape_ = SmoothShape(*mesh_, edges_, smooth_);
   std::fill(position_.begin(), position_.end(), dvec3(0.0));
   triangle_box_.resize(mesh_->triangles.size());
@@ -194,9 +197,9 @@ dmat3 CollisionMesh::turn(std::uint32_t t) const {
 }
 
 void CollisionMesh::predict(const Body& body, const std::vector<dvec3>& velocity, double T) {
-  displace(body.path(), position_, velocity, T, ahead_);
+  displace(path_of(body), position_, velocity, T, ahead_);
   for (std::size_t v = 0; v < ahead_.size(); ++v) ahead_[v] = position_[v] + ahead_[v];
-  if (const std::optional<RigidPath> now = body.path()) turn_ahead_ = glm::mat3_cast(rotation_of(T * now->angular));
+  if (const std::optional<RigidPath> now = path_of(body)) turn_ahead_ = glm::mat3_cast(rotation_of(T * now->angular));
   position_.swap(ahead_);
   find_normals();
   find_curvatures();
@@ -219,7 +222,7 @@ void CollisionMesh::refit(const Body& body, double T, double reach) {
     position_[v] = body.surface_position[v];
     ahead_[v] = position_[v] + again * went;
   }
-  displace(body.path(), position_, body.surface_velocity, T, displacement_);
+  displace(path_of(body), position_, body.surface_velocity, T, displacement_);
   free_ = displacement_;
   find_drift();
   find_normals();
@@ -231,7 +234,7 @@ void CollisionMesh::refit(const Body& body, double T, double reach) {
 
 void CollisionMesh::sweep(const Body& body, const std::vector<dvec3>& velocity, double T) {
   dvec3 mean(0.0);
-  displace(body.path(), position_, velocity, T, displacement_);
+  displace(path_of(body), position_, velocity, T, displacement_);
   for (std::size_t v = 0; v < displacement_.size(); ++v) mean += displacement_[v] - free_[v];
   mean /= static_cast<double>(std::max<std::size_t>(displacement_.size(), 1));
   strayed_ = strayed_apart_ = 0.0;
@@ -261,6 +264,17 @@ void CollisionMesh::fit_swept() {
     for (std::size_t k = 0; k < below->size(); ++k) runs[k / width] = std::max(runs[k / width], (*below)[k]);
     below = &runs;
   }
+}
+
+// A polyhedron rolls over its edges, as its mesh does.
+bool CollisionMesh::is_curved() const {
+  for (std::uint32_t v = 0; v < mesh_->vertex_count; ++v)
+    if (smooth_[v] && curvature_[v] * static_cast<double>(mesh_->mean_edge) > kBends) return true;
+  return false;
+}
+
+std::optional<RigidPath> CollisionMesh::path_of(const Body& body) const {
+  return turns_ ? body.path() : std::nullopt;
 }
 
 void CollisionMesh::find_turns(const Body& body, double T) {

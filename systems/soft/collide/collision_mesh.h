@@ -74,6 +74,7 @@ class CollisionMesh {
   // the normals to those of ahead().
   bool turns() const { return turns_; }
   bool fixed() const { return fixed_; }  // nor does it yield
+  bool closed() const { return closed_; }
   const RigidPath& last_path() const { return last_path_; }
   double step() const { return last_step_; }
   const dmat3& turn_ahead() const { return turn_ahead_; }
@@ -81,7 +82,7 @@ class CollisionMesh {
   // Of a turning or fixed body: its rotation from the object frame at the beginning, or at ahead().
   dmat3 turn_from_rest(bool at_ahead) const { return at_ahead ? turn_ahead_ * turn_ : turn_; }
   const SmoothShape& smooth_shape() const { return smooth_shape_; }  // of a turning or fixed body, else empty
-  double bulge() const { return turns_ ? smooth_shape_.bulge : 0.0; }
+  double bulge() const { return turns_ && closed_ ? smooth_shape_.bulge : 0.0; }
   std::array<Moving, 3> triangle(std::uint32_t t) const;
   std::array<Moving, 2> edge(std::uint32_t e) const { return {vertex(edges_[e].from), vertex(edges_[e].to)}; }
   EdgeShape edge_shape(std::uint32_t e) const;
@@ -127,6 +128,8 @@ class CollisionMesh {
   void find_edges();
   void find_shortest();
   void fit_boxes(double reach);
+  bool is_curved() const;
+  std::optional<RigidPath> path_of(const Body& body) const;  // none: vertices move straight
   void find_turns(const Body& body, double T);
   void find_drift();
   void find_normals();
@@ -137,7 +140,7 @@ class CollisionMesh {
   std::vector<CollisionEdge> edges_;
   std::vector<std::array<std::uint32_t, 3>> edge_of_;
   std::vector<std::uint8_t> owned_, live_, sharp_, supple_;
-  bool deforms_ = false, turns_ = false, fixed_ = false;
+  bool deforms_ = false, turns_ = false, fixed_ = false, closed_ = false;
   RigidPath last_path_;
   dmat3 turn_{1}, turn_ahead_{1};
   std::uint32_t largest_ = 0;  // triangle

@@ -9,10 +9,12 @@ namespace pliant {
 namespace {
 
 constexpr double kCurved = 0.02;   // [rad] over a mean edge: a surface that turns less along a direction is flat there
+constexpr double kFacing = 0.0;    // [1] cosine: surfaces that face away from each other do not touch there
 constexpr double kFarthest = 2.0;  // [mean edges] of the shift from a feature to where its surface touches
 
+// A sheet keeps its mesh: what comes from behind passes it.
 bool rigid(const CollisionMesh& mesh) {
-  return mesh.turns() || mesh.fixed();
+  return (mesh.turns() || mesh.fixed()) && mesh.closed();
 }
 
 // One side's smooth surface at a point, in the frame of a contact: normal and two tangents.
@@ -78,7 +80,8 @@ Foot find_foot(const FeaturePair& pair, const SurfacePoint& at_a, const SurfaceP
   const Side a = side_of(pair.a, at_a, false, pair.a.turn_from_rest(ahead), axes);
   const Side b = side_of(pair.b, at_b, !pair.edges, pair.b.turn_from_rest(ahead), axes);
   dvec3 of_a(-a.rise, 0, 0), of_b(b.rise, 0, 0);
-  if (!a.sharp && !b.sharp) {
+  const bool touch = !a.sharp && !b.sharp && -dot(a.normal, b.normal) > kFacing;
+  if (touch) {
     const dvec2 up_a(a.normal.y, a.normal.z), up_b(-b.normal.y, -b.normal.z);
     const double edge = a.edge > 0.0 && b.edge > 0.0 ? std::min(a.edge, b.edge) : std::max(a.edge, b.edge);
     const dvec2 s = shift_to_touch(a.form + b.form, up_a - up_b, edge);
@@ -86,7 +89,7 @@ Foot find_foot(const FeaturePair& pair, const SurfacePoint& at_a, const SurfaceP
     of_a += dvec3(exact * (dot(up_a, s) + 0.5 * dot(s, a.form * s)), s);
     of_b += dvec3(exact * (dot(up_b, s) - 0.5 * dot(s, b.form * s)), s);
   }
-  return {axes * of_a, axes * of_b, of_b.x - of_a.x, !a.sharp && !b.sharp && (a.edge > 0.0 || b.edge > 0.0)};
+  return {axes * of_a, axes * of_b, of_b.x - of_a.x, touch && (a.edge > 0.0 || b.edge > 0.0)};
 }
 
 // Moves a point of a turning body to its arm at the end of the step. Returns the part of T u_n by its rotation [m].

@@ -22,7 +22,8 @@ struct MeetingSearch {
                   const RelativeSweep& sweep, std::vector<VertexMeeting>& of_vertices) const {
     const dvec3 towards = b.collision_mesh.normal(triangle), outward = a.collision_mesh.vertex_normal(vertex);
     if (dot(outward, towards) > facing(a, vertex) &&
-        (!a.collision_mesh.turns() || dot(a.collision_mesh.turn_ahead() * outward, towards) > facing(a, vertex)))
+        (!a.collision_mesh.turns() || !b.collision_mesh.closed() ||
+         dot(a.collision_mesh.turn_ahead() * outward, towards) > facing(a, vertex)))
       return;
     if (!sweep.meet(a.collision_mesh.vertex_box(vertex), b.collision_mesh.box(triangle))) return;
     if (a.index == b.index) {

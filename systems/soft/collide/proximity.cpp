@@ -144,7 +144,9 @@ struct Proximity::Parts {
 
   double margin_between(std::uint32_t i, std::uint32_t k) const {
     return (margin_given ? *margin_given : std::min(own_margin[i], own_margin[k])) +
-           contacts.collision_meshes[i].bulge() + contacts.collision_meshes[k].bulge();
+           (contacts.collision_meshes[i].closed() && contacts.collision_meshes[k].closed()
+                ? contacts.collision_meshes[i].bulge() + contacts.collision_meshes[k].bulge()
+                : 0.0);
   }
 
   void remember_sides() {

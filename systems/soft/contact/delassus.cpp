@@ -7,6 +7,7 @@
 #include "systems/soft/contact/contact_budget.h"
 #include "systems/soft/contact/contact_islands.h"
 #include "systems/soft/contact/fill_operator.h"
+#include "systems/soft/contact/rolling.h"
 #include "systems/soft/joint/joints.h"
 #include "systems/soft/local/smeared_response.h"
 #include "systems/soft/local/smearing_surface.h"
@@ -190,7 +191,10 @@ void find_patches(const std::vector<std::unique_ptr<Body>>& bodies, const std::v
         std::min(bodies[c.body_a]->collision_mesh->mean_edge, bodies[c.body_b]->collision_mesh->mean_edge);
     const bool tissue = bodies[c.body_a]->as_tissue() || bodies[c.body_b]->as_tissue();
     problem.slipped[i] = tissue ? c.slipped / T : HUGE_VAL;
-    problem.loose[i] = c.slipped > kSlipLength * static_cast<double>(edge);
+    // The tick solves a tool's contacts one by one.
+    const auto held = [&](std::uint32_t b) { return bodies[b]->as_tool() && bodies[b]->as_tool()->has_handle(); };
+    const bool tool = held(c.body_a) || held(c.body_b);
+    problem.loose[i] = tool || c.slipped > kSlipLength * static_cast<double>(edge);
   }
 }
 
@@ -359,24 +363,24 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
     apply_impulses(bodies, delassus, contacts, problem.impulse - first);
     keep_impulses(problem, contacts);
   }
-  double apart =
-      HUGE_VAL;  // [m] of joints after finite rotations; where links turn too far in a step, it does not fall
+  const auto again = [&] {
+    const Vector before = problem.impulse;
+    report = solve(problem, limits);
+    apply_impulses(bodies, delassus, contacts, problem.impulse - before);
+    keep_impulses(problem, contacts);
+  };
+  double apart = HUGE_VAL;  // [m] it does not fall where links turn too far in a step
   for (int round = 0; joints && round < kJointRounds; ++round) {
     const double now = joints->look_again(bodies, T, contacts, problem);
     if (now < kJointApart || now > kJointFalls * apart) break;
     apart = now;
-    const Vector before = problem.impulse;
-    report = solve(problem, limits);
-    apply_impulses(bodies, delassus, contacts, problem.impulse - before);
-    keep_impulses(problem, contacts);
+    again();
   }
   if (joints && joints->kinetic_energy(bodies) > kJointGains * free_energy) {
     joints->leave_gaps(bodies, contacts, problem);
-    const Vector before = problem.impulse;
-    report = solve(problem, limits);
-    apply_impulses(bodies, delassus, contacts, problem.impulse - before);
-    keep_impulses(problem, contacts);
+    again();
   }
+  resist_rolling(bodies, contacts, delassus);
   keep_strain(bodies, T, delassus, problem, contacts);
   keep_slip(problem, T, contacts);
   return report;

@@ -319,6 +319,7 @@ dmat3 Joints::turning_stiffness(const RigidState& body, dvec3 at, dvec3 force) {
 
 bool Joints::stiffen(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
                      const Vector& impulses, double T) const {
+  if (joints_.empty()) return false;
   stiffness_.assign(bodies.size(), dmat3(0.0));
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactPoint& c = contacts[i];

@@ -17,7 +17,7 @@
 
 namespace pliant {
 
-// What a joint carried. Writer: soft clock.
+// Force and state of a joint. Writer: soft clock.
 struct JointReport {
   double force = 0.0;      // [N] at its point, of the last step
   double largest = 0.0;    // [N] of all steps

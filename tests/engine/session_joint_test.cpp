@@ -1,0 +1,66 @@
+// Joints of a scene and of a file: they hold, and what is wrong with one is a sentence.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "content/author/edit_nodes.h"
+#include "content/keys/unused_keys.h"
+#include "content/level_file.h"
+#include "tests/engine/session_rig.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+// A bob that hangs from the world by its top.
+Scene hung(JointParameters joint = {.kind = JointKind::kBall, .a = "bob"}) {
+  Scene scene("hall");
+  scene.add_rigid_body("bob", box(0.02f), {.density = 1000.0}, {.position = {0, -0.02, 0}});
+  scene.add_joint("hook", joint);
+  return scene;
+}
+
+std::string said(JointParameters joint) {
+  const auto session = Session::open(hung(joint));
+  return session ? "" : session.error().message();
+}
+
+TEST(SessionJoint, HoldsWhatWouldFall) {
+  Session session = opened(hung());
+  ASSERT_TRUE(session.step(1000));
+  std::vector<vec3> now;
+  ASSERT_TRUE(session.vertices("bob", now));
+  float low = 0.0f, high = -1.0f;
+  for (const vec3& x : now) low = std::min(low, x.y), high = std::max(high, x.y);
+  EXPECT_NEAR(low, -0.04f, 1e-6f);
+  EXPECT_NEAR(high, 0.0f, 1e-6f);
+}
+
+TEST(SessionJoint, WhatIsWrongIsOneSentence) {
+  EXPECT_THAT(said({.kind = JointKind::kBall}), HasSubstr("holds no body"));
+  EXPECT_THAT(said({.kind = JointKind::kBall, .a = "bobb"}), HasSubstr("did you mean 'bob'"));
+  EXPECT_THAT(said({.kind = JointKind::kBall, .a = "bob", .b = "bob"}), HasSubstr("the same body twice"));
+  EXPECT_THAT(said({.kind = JointKind::kHinge, .a = "bob", .limits = {0.5, 0.1}}), HasSubstr("exchange them"));
+  EXPECT_THAT(said({.kind = JointKind::kHinge, .a = "bob", .limits = {0.5, 1.0}}), HasSubstr("outside of its limits"));
+  EXPECT_THAT(said({.kind = JointKind::kHinge, .a = "bob", .stiffness = -1.0}), HasSubstr("must be in the range"));
+  EXPECT_EQ(said({.kind = JointKind::kHinge, .a = "bob", .limits = {-0.5, 1.0}, .stiffness = 1.0}), "");
+}
+
+TEST(SessionJoint, KeysThatAKindDoesNotReadAreNamed) {
+  const Scene scene = hung({.kind = JointKind::kBall, .a = "bob", .limits = {-1.0, 1.0}, .length = 0.3});
+  std::vector<std::string> keys;
+  for (const UnusedKey& key : find_unused_keys(scene.level())) keys.push_back(key.pointer);
+  EXPECT_THAT(keys, testing::UnorderedElementsAre("PLIANT_joint/limits", "PLIANT_joint/length"));
+}
+
+TEST(SessionJoint, FollowsNamesOfBodies) {
+  Scene scene = hung();
+  Level& level = scene.level();
+  ASSERT_TRUE(rename_node(level, 0, "weight"));
+  EXPECT_EQ(level.nodes[1].joint->a, "weight");
+  remove_node(level, 0);
+  EXPECT_FALSE(level.nodes[0].joint);
+}
+
+}  // namespace
+}  // namespace pliant
