@@ -263,6 +263,7 @@ void Joints::place(const std::vector<std::unique_ptr<Body>>& bodies, double T, s
 double Joints::look_again(const std::vector<std::unique_ptr<Body>>& bodies, double T,
                           const std::vector<ContactPoint>& contacts, ContactProblem& problem) const {
   double worst = 0.0;  // [m]
+  if (joints_.empty()) return worst;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactPoint& c = contacts[i];
     if (c.hold.joint < 0) continue;
