@@ -1,5 +1,6 @@
 // The key table as JSON Schemas and as Markdown.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -89,19 +90,29 @@ Json schema_of(const Key& key, const Json& standard) {
   return out;
 }
 
-// The words of a choice; else the range with its unit, and what is usual.
+// 1e7, not 10000000 or 1e+07; every digit of a number that six do not hold.
+std::string short_text(double value) {
+  std::string text = fmt::format("{:g}", value);
+  if (std::stod(text) != value) return fmt::format("{}", value);
+  const std::size_t e = text.find('e');
+  if (e == std::string::npos) return text;
+  return text.substr(0, e + 1) + std::to_string(std::stoi(text.substr(e + 1)));
+}
+
+std::string short_text(const Range& range) {
+  return (range.above_min ? ">" : "") + short_text(range.min) + ".." + short_text(range.max);
+}
+
+// The words of a choice; else the range with its unit, and the usual one.
 std::string values_of(const Key& key) {
+  if (key.choices) return fmt::format("`{}`", fmt::join(key.choices(), "`, `"));
   std::string out;
-  if (key.choices) {
-    for (const std::string& each : key.choices()) out += (out.empty() ? "`" : " · `") + each + "`";
-    return out;
-  }
+  const bool bounded = std::isfinite(key.range.min) && std::isfinite(key.range.max);
   const bool plain = key.type == KeyType::kText || key.type == KeyType::kNode || key.type == KeyType::kFlag ||
                      key.type == KeyType::kItems;
-  if (!plain) out = range_text(key);
+  if (!plain) out = bounded ? short_text(key.range) : "any";
   if (!key.unit.empty() && key.unit != "1") out += (out.empty() ? "" : " ") + key.unit;
-  const std::string usual = usual_text(key);
-  return usual.empty() ? out : out + " (" + usual + ")";
+  return std::isfinite(key.usual.min) ? fmt::format("{} ({})", out, short_text({key.usual.min, key.usual.max})) : out;
 }
 
 std::string table_row(const std::string& name, const Key& key, const Json& standard) {
@@ -153,9 +164,8 @@ std::string extension_tables() {
   std::string out;
   for (const Extension& extension : extension_table()) {
     Defaults defaults(extension);
-    out += fmt::format(
-        "### {} extension `PLIANT_{}`\n\n{}\n\n| key | values (usual) | default | meaning |\n|---|---|---|---|\n",
-        extension.on_scene ? "Scene" : "Node", extension.name, extension.doc);
+    out += fmt::format("### `PLIANT_{}`{}\n\n{}\n\n| key | values (usual) | default | meaning |\n|---|---|---|---|\n",
+                       extension.name, extension.on_scene ? " of the scene" : "", extension.doc);
     for (const Key& key : extension.keys) out += table_row(key.name, key, key.get(defaults.owner));
     for (const Key& key : extension.keys)
       for (const Key& of : key.items) out += table_row(key.name + "[]." + of.name, of, of.get(key.usual_item));

@@ -154,19 +154,19 @@ std::vector<Key> layer_keys() {
   using R = DeformableRange;
   const auto l = [](auto member) { return of_item<Layer>(member); };
   std::vector<Key> keys;
-  keys.push_back(text("name", KeyType::kText, l(&Layer::name), "what its breaking is reported as"));
+  keys.push_back(text("name", KeyType::kText, l(&Layer::name), "name in events"));
   keys.push_back(number("thickness", "m", {R::kLayerThickness, {1e-4, 0.1}}, l(&Layer::thickness),
-                        "of the layer: where it ends, the next one begins"));
+                        "its thickness; the next one begins below"));
   keys.push_back(number("stiffness", "N/m", {R::kStiffness, {1.0, 1e5}}, l(&Layer::stiffness),
-                        "small-depth slope of its force against the depth below its top, by the law `spring`"));
-  keys.push_back(number("force", "N", {R::kBreakingForce, {0.05, 20.0}}, l(&Layer::force),
-                        "its force at which it breaks; 0: not by force"));
+                        "small-depth slope of its force below its top, by the law `spring`"));
+  keys.push_back(
+      number("force", "N", {R::kBreakingForce, {0.05, 20.0}}, l(&Layer::force), "force that breaks it; 0: none"));
   keys.push_back(number("energy", "J", {R::kBreakingEnergy, {1e-5, 1.0}}, l(&Layer::energy),
-                        "energy stored in it at which it breaks; 0: not by energy"));
+                        "stored energy that breaks it; 0: none"));
   keys.push_back(number("remains", "1", R::kRemains, l(&Layer::remains),
-                        "share of its force, and of the outer layer's dent, that stays where it is broken"));
-  keys.push_back(number("grip", "N/m", {R::kGrip, {1.0, 1e3}}, l(&Layer::grip),
-                        "friction along a probe in its hole, per length inside"));
+                        "share of its force, and of the outer layer's dent, left where it is broken"));
+  keys.push_back(
+      number("grip", "N/m", {R::kGrip, {1.0, 1e3}}, l(&Layer::grip), "friction along a probe in its hole, per length"));
   return keys;
 }
 
@@ -217,7 +217,7 @@ std::vector<Key> tissue_part_keys() {
   const Range young{0.0, SoftBodyRange::kYoung.max}, density{0.0, SoftBodyRange::kDensity.max};
   std::vector<Key> keys;
   keys.push_back(text("name", KeyType::kText, p(&TissuePart::name),
-                      "a physical group of the file `mesh`, or a node whose closed mesh lies in the tissue"));
+                      "physical group of the file `mesh`, or node whose closed mesh lies in the tissue"));
   keys.push_back(
       number("young", "Pa", {young, {50.0, 1e9}}, p(&TissuePart::young), "its Young's modulus; 0: the body's"));
   keys.push_back(
@@ -225,15 +225,14 @@ std::vector<Key> tissue_part_keys() {
   keys.push_back(number("damping", "1", {{0.0, 1e6}, {0.1, 100.0}}, p(&TissuePart::damping),
                         "factor on the body's `rayleigh` beta"));
   keys.push_back(number("relaxation", "1", {{0.0, 1e3}, {0.01, 10.0}}, p(&TissuePart::relaxation),
-                        "factor on the shares of the body's `prony`; 0: it does not relax"));
+                        "factor on the shares of the body's `prony`; 0: no relaxation"));
   return keys;
 }
 
 Key materials_key() {
   return items_key<TissuePart>(
       "materials",
-      "parts of the tissue with a material of their own (a lump, a group of the file); where two overlap the later "
-      "one counts",
+      "parts with another material (a lump, a group of the file); of two that overlap the later one counts",
       tissue_part_keys(), "name",
       [](const LevelNode& node) -> const std::vector<TissuePart>& { return node.soft_body->materials; },
       [](LevelNode& node, std::vector<TissuePart> parts) { node.soft_body->materials = std::move(parts); });
@@ -242,7 +241,7 @@ Key materials_key() {
 Key prony_key() {
   std::vector<Key> keys;
   keys.push_back(number("share", "1", {{0.0, 1.0}, {0.01, 0.99}}, of_item(&Prony::Arm::share),
-                        "of the stress at once, which relaxes; all shares together are below 1"));
+                        "of the stress at once; all shares together are below 1"));
   keys.push_back(number("time", "s", {{0.0, 1e6, true}, {1e-3, 1e3}}, of_item(&Prony::Arm::time), "relaxation time"));
   Key out = items_key<Prony::Arm>(
       "prony",
@@ -268,13 +267,13 @@ Key prony_key() {
 Key cavities_key() {
   std::vector<Key> keys;
   keys.push_back(text("name", KeyType::kText, of_item(&Cavity::name),
-                      "a node whose closed mesh encloses the hollow; left out: every remaining hollow of the tissue"));
+                      "node whose closed mesh encloses the hollow; left out: every remaining hollow"));
   keys.push_back(number("pressure", "Pa", {{-1e7, 1e7}, {-5e4, 5e4}}, of_item(&Cavity::pressure),
-                        "over that outside, of the hollow at its volume at rest"));
+                        "over that outside, at the volume at rest"));
   keys.push_back(number("bulk", "Pa", {{0.0, 1e12}, {1e3, 1e10}}, of_item(&Cavity::bulk),
-                        "rise of its pressure per relative loss of volume; large, 1e9 for a liquid: its volume stays"));
+                        "rise of pressure per relative loss of volume; 1e9 for a liquid"));
   return items_key<Cavity>(
-      "cavities", "closed hollows in the tissue, filled with gas or liquid", std::move(keys), "pressure",
+      "cavities", "closed hollows filled with gas or liquid", std::move(keys), "pressure",
       [](const LevelNode& node) -> const std::vector<Cavity>& { return node.soft_body->cavities; },
       [](LevelNode& node, std::vector<Cavity> cavities) { node.soft_body->cavities = std::move(cavities); });
 }
@@ -286,15 +285,14 @@ void add_fibre_keys(std::vector<Key>& keys) {
     };
   };
   keys.push_back(number("fibres.young", "Pa", {{0.0, 1e12}, {50.0, 1e9}}, f(&Fibres::young),
-                        "fibres in the tissue add this modulus along their direction; 0: none"));
-  keys.push_back(vector("fibres.direction", "1", {{-1e6, 1e6}, {-1e6, 1e6}}, f(&Fibres::direction),
-                        "of the fibres, in the object frame"));
+                        "modulus that fibres add along their direction; 0: none"));
   keys.push_back(
-      flag("fibres.only_tension", f(&Fibres::only_tension), "whether they bear tension alone, not compression"));
+      vector("fibres.direction", "1", {{-1e6, 1e6}, {-1e6, 1e6}}, f(&Fibres::direction), "in the object frame"));
+  keys.push_back(flag("fibres.only_tension", f(&Fibres::only_tension), "they bear no compression"));
   keys.push_back(number("fibres.contraction", "1", {{0.0, 0.9}, {0.01, 0.5}}, f(&Fibres::contraction),
-                        "their rest length is 1 - contraction times that of the unloaded tissue"));
+                        "their rest length: 1 - contraction, times that of unloaded tissue"));
   keys.push_back(number("fibres.period", "s", {{0.0, 1e6}, {0.05, 100.0}}, f(&Fibres::period),
-                        "of a contraction that comes and goes, from none; 0: it stays"));
+                        "of a contraction that comes and goes; 0: constant"));
 }
 
 std::vector<Key> deformable_keys() {
@@ -304,7 +302,7 @@ std::vector<Key> deformable_keys() {
   std::vector<Key> keys;
   keys.push_back(choice("spring", d(&D::spring), "law of the normal force"));
   keys.push_back(number("stiffness", "N/m", {R::kStiffness, {1.0, 1e5}}, d(&D::stiffness),
-                        "small-depth slope of normal force against depth at the probe"));
+                        "small-depth slope of normal force against depth"));
   keys.push_back(number("cubic", "N/m3", R::kCubic, d(&D::cubic),
                         "k3 of the cubic law; with `young`, unstated: 10,000/m2 of its stiffness"));
   keys.push_back(number("stiffening", "1/m", {R::kStiffening, {-1e3, 1e4}}, d(&D::stiffening),
@@ -352,16 +350,14 @@ std::vector<Key> deformable_keys() {
     it.contact_damping = value.is_string() ? 0.0 : value.get<double>();
   };
   keys.push_back(damping);
-  keys.push_back(choice("response", d(&D::response),
-                        "whether the drawn surface follows a pressing probe or lags by its settling time"));
-  keys.push_back(choice("shape", d(&D::shape), "shape of the dent around the probe"));
   keys.push_back(
-      choice("distance", d(&D::distance), "distance that the shape is a function of: straight, or along the surface"));
+      choice("response", d(&D::response), "drawn surface follows a pressing probe, or lags by its settling time"));
+  keys.push_back(choice("shape", d(&D::shape), "shape of the dent around the probe"));
+  keys.push_back(choice("distance", d(&D::distance), "argument of the shape: straight, or along the surface"));
   keys.push_back(
       number("reach", "m", {R::kReach, {1e-4, 1.0}}, d(&D::reach),
              fmt::format("radius R of the field; 0: {} of the diagonal of the object's box", kDefaultReach)));
-  keys.push_back(
-      number("volume", "1", R::kVolume, d(&D::volume), "share of the volume conserved by the shape `volume`"));
+  keys.push_back(number("volume", "1", R::kVolume, d(&D::volume), "volume share that the shape `volume` conserves"));
   std::vector<std::string> depending;
   for (std::size_t i = 0; i < std::size(kShapeRows); ++i)
     if (depends_on_contact(static_cast<Shape>(i))) depending.emplace_back(kShapeRows[i].word);
@@ -382,18 +378,18 @@ std::vector<Key> deformable_keys() {
   };
   keys.push_back(both);
   keys.push_back(number("friction_stribeck", "m/s", {R::kStribeck, {1e-4, 1.0}}, d(&D::friction_stribeck),
-                        "speed over which friction falls from static to sliding, as exp(-(v/v_s)^2); 0: at once"));
+                        "speed v_s of the fall from static to sliding, exp(-(v/v_s)^2); 0: at once"));
   keys.push_back(number("friction_viscous", "s/m", {R::kViscous, {0.01, 10.0}}, d(&D::friction_viscous),
-                        "rise of the coefficient of sliding friction with speed"));
+                        "rise of sliding friction with speed"));
   keys.push_back(number("texture.amplitude", "m", {R::kTextureAmplitude, {1e-6, 1e-3}}, d(&D::texture_amplitude),
-                        "roughness that is felt, its root mean square; 0: smooth"));
+                        "felt roughness, root mean square; 0: smooth"));
   keys.push_back(number("texture.wavelength", "m", {R::kTextureWavelength, {1e-4, 0.05}}, d(&D::texture_wavelength),
                         "length of its waves"));
   keys.push_back(number("texture.seed", "1", R::kTextureSeed, d(&D::texture_seed),
-                        "a whole number; another one: another roughness of the same kind"));
+                        "whole number: picks one roughness of this kind"));
   keys.back().whole = true;
   keys.push_back(number("transient.amplitude", "N s/m", {R::kTransientAmplitude, {0.1, 100.0}},
-                        d(&D::transient_amplitude), "force of the knock of an impact, per its speed; 0: none"));
+                        d(&D::transient_amplitude), "force of an impact's knock, per speed; 0: none"));
   keys.push_back(number("transient.frequency", "Hz", {R::kTransientFrequency, {20.0, 400.0}},
                         d(&D::transient_frequency), "of the knock; above 0.4 of `touch_rate` there is none"));
   keys.push_back(
@@ -403,9 +399,9 @@ std::vector<Key> deformable_keys() {
                         "none"));
   keys.push_back(layers_key());
   keys.push_back(number("hole_radius", "m", {R::kHoleRadius, {1e-4, 0.05}}, d(&D::hole_radius),
-                        "of the hole that a probe leaves in `layers`, at least the probe's"));
+                        "of the hole left in `layers`, at least the probe's"));
   keys.push_back(number("yield.force", "N", {R::kYieldForce, {0.05, 20.0}}, d(&D::yield_force),
-                        "normal force above which the dent stays; 0: never"));
+                        "normal force above which a dent stays; 0: never"));
   keys.push_back(number("yield.hardening", "N/m", {R::kHardening, {1.0, 1e5}}, d(&D::yield_hardening),
                         "rise of that force with the depth that stays"));
   keys.push_back(number(
@@ -416,15 +412,14 @@ std::vector<Key> deformable_keys() {
                         "Young's modulus, instead of `stiffness`; 0: not given"));
   keys.push_back(number("poisson", "1", {0.0, 0.5}, d(&D::poisson), "Poisson's ratio, with `young`"));
   keys.push_back(number("thickness", "m", {{0.0, 1e6}, {1e-4, 1.0}}, d(&D::thickness),
-                        "thickness of the layer, which is bonded to something rigid, with `young`; 0: deep"));
-  keys.push_back(choice("sphere", d(&D::sphere),
-                        "force of a spherical probe, with `young`: Hertz's, or Sneddon's exact sphere on deep tissue"));
+                        "of a layer bonded to something rigid, with `young`; 0: deep"));
+  keys.push_back(
+      choice("sphere", d(&D::sphere), "with `young`: Hertz's sphere, or Sneddon's exact one on deep tissue"));
   keys.push_back(
       choice("carries", d(&D::carries),
              "drawn meshes that are dented with it: none, or those inside of it or below its node, less with depth"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, d(&D::error),
-                        "error budget: takes the cheapest unstated shape, distance, reach and contact radius whose "
-                        "measured error is within it; 0: none"));
+                        "error budget for unstated shape, distance, reach and contact radius; 0: none"));
   return keys;
 }
 
@@ -504,9 +499,7 @@ std::vector<Key> probe_keys() {
                         "length of a capsule's axis, from the node along its +Y; 0: none"));
   Key points = key(
       "points", "m", KeyType::kPoints,
-      fmt::format(
-          "places of tips in the node's frame, at most {}, instead of the one at the node: a fork, a brush, a plate",
-          kMostPoints),
+      fmt::format("tips in the node's frame, at most {}, instead of the one at the node", kMostPoints),
       at(&LevelNode::probe, &Probe::points),
       [](const std::vector<vec3>& places) {
         Json json = Json::array();
@@ -524,7 +517,7 @@ std::vector<Key> probe_keys() {
   keys.push_back(
       choice("meets", at(&LevelNode::probe, &Probe::meets), "yielding surfaces, soft and rigid bodies, or both"));
   keys.push_back(pair("coupling", "N/m, N s/m", at(&LevelNode::probe, &Probe::coupling),
-                      "spring and damper between the device and the probe that meets bodies"));
+                      "spring and damper between the device and a probe that meets bodies"));
   Key color = key(
       "color", "linear RGB", KeyType::kColor, "colour it is drawn in", at(&LevelNode::probe, &Probe::color),
       [](vec3 c) {
@@ -551,13 +544,13 @@ std::vector<Key> device_keys() {
       "device of the driver `external`: DRIVER, DRIVER:ID, any-force, any-pose, any, mouse, or several in turn, "
       "separated by semicolons; behind each, after a bar, wrappers: scale=2, clutch=BUTTON, frame=X:Y:Z, border=40mm"));
   keys.push_back(number("scale", "1", {DeviceRange::kScale, {1e-3, 1e3}}, d(&H::scale),
-                        "workspace of a device with the driver `external` to world"));
+                        "workspace of an `external` device to world"));
   keys.push_back(
       number("max_force", "N", {DeviceRange::kMaxForce, {0.1, 50.0}}, d(&H::max_force), "norm of the force sent"));
   keys.push_back(number("max_stiffness", "N/m", {DeviceRange::kMaxStiffness, {10.0, 1e5}}, d(&H::max_stiffness),
                         "limit on the rise of force with displacement, per metre of the world; 0: none"));
   keys.push_back(number("max_slew", "N/s", {DeviceRange::kMaxSlew, {1.0, 1e6}}, d(&H::max_slew),
-                        "limit on the rise of force with time; what is let go falls by 1000 N/s at least"));
+                        "limit on the rise of force with time; a released force falls by 1000 N/s at least"));
   return keys;
 }
 
@@ -575,7 +568,7 @@ std::vector<Key> soft_body_keys() {
       "poisson", "1", SoftBodyRange::kPoisson, s(&S::poisson),
       fmt::format("Poisson's ratio; from {} on the tetrahedra lock: tissue is over 10 % too stiff", kLockingPoisson)));
   keys.push_back(number("stiffening", "1", {SoftBodyRange::kStiffening, {0.1, 20.0}}, s(&S::stiffening),
-                        "exponent b of the law `fung`, whose shear stress grows with exp(b (I1 - 3))"));
+                        "exponent b of `fung`: shear stress grows with exp(b (I1 - 3))"));
   keys.push_back(number("density", "kg/m3", {SoftBodyRange::kDensity, {10.0, 25e3}}, s(&S::density), "density"));
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
   keys.push_back(prony_key());
@@ -584,15 +577,14 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell),
                         fmt::format("lattice cell; 0: sized for some {} tetrahedra", kUsualTets)));
   keys.push_back(choice("elements", s(&S::elements),
-                        "of the lattice: `tetrahedra`, fitted to the surface; `hexahedra`, whole even cells that count "
-                        "by their part inside it, and neither lock nor resist bending too much"));
+                        "of the lattice: `tetrahedra`, fitted to the surface; `hexahedra`, whole cells that count by "
+                        "their part inside it and do not lock"));
   keys.push_back(
       box("focus", s(&S::focus),
           "box in the object frame with cells of `cell`, growing to six times outside; left out: even cells"));
-  keys.push_back(choice("fill", s(&S::fill),
-                        "fills all that the surface encloses, the cavity of a thin wall too, or only the wall"));
+  keys.push_back(choice("fill", s(&S::fill), "all that the surface encloses, or only a wall"));
   keys.push_back(number("thickness", "m", {SoftBodyRange::kThickness, {1e-4, 0.5}}, s(&S::thickness),
-                        "of a wall, inwards from the surface; 0: the wall as the surface has it"));
+                        "of a wall, inwards from the surface; 0: as the surface has it"));
   keys.push_back(text(
       "mesh", KeyType::kText, s(&S::mesh),
       fmt::format("tetrahedra file ({}), instead of `cell`, relative to the level", fmt::join(tet_endings(), ", "))));
@@ -607,23 +599,20 @@ std::vector<Key> soft_body_keys() {
       choice("under_gravity", s(&S::under_gravity),
              "meaning of the mesh: `falls`, the shape without weight, from which it falls; `settled`, the same, "
              "beginning at rest on its pins; `modelled`, the shape under its weight, kept until touched"));
+  keys.push_back(choice("carries", s(&S::carries),
+                        "drawn meshes that go with its tissue: none, or those inside of it or below its node"));
   keys.push_back(
-      choice("carries", s(&S::carries),
-             "drawn meshes that go with its tissue: none, or those inside of it or below its node (vessels, lumps)"));
-  keys.push_back(choice(
-      "contact", s(&S::contact),
-      "what a contact acts on: `lattice`, the nodes beside it, too stiff where it is small against the cells; "
-      "`split`, the lattice with its force smeared and an analytic dent in series; `auto`, `split` where that is "
-      "measured and in time"));
+      choice("contact", s(&S::contact),
+             "contact acts on: `lattice`, the nodes beside it, too stiff if small against the cells; `split`, the "
+             "lattice, smeared, and an analytic dent in series; `auto`, `split` where measured and in time"));
   keys.push_back(choice("integrator", s(&S::integrator),
                         "step of its motion: `euler`, which damps; `second_order`, which keeps swings; `quasi_static`, "
                         "the equilibrium of every step, for pinned tissue; the last two not of a tool"));
   keys.push_back(vector("velocity", "m/s", {kVelocityRange, {-10.0, 10.0}}, s(&S::velocity),
-                        "at the beginning, in the world; not of a tool; one number points down (-Y)"));
+                        "initial, in the world, not of a tool; one number points down (-Y)"));
   keys.push_back(materials_key());
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, s(&S::error),
-                        "error budget: takes the cheapest unstated cell, soft step, solver and, of a tool, force whose "
-                        "measured error is within it; 0: none"));
+                        "error budget for unstated cell, soft step, solver and, of a tool, force; 0: none"));
   return keys;
 }
 
@@ -641,10 +630,10 @@ std::vector<Key> handle_keys() {
                         "saturation of the coupling's force"));
   keys.push_back(number("coupling.max_torque", "N m", {kSaturationRange, {1e-3, 10.0}}, h(&H::max_torque),
                         "saturation of the coupling's torque"));
-  keys.push_back(flag("carried", h(&H::carried), "carries the tool's weight, so that the hand does not feel it"));
-  keys.push_back(choice(
-      "force", h(&H::force),
-      "force of the touch clock: held from the last soft step, linear model, or contacts solved again in every tick"));
+  keys.push_back(flag("carried", h(&H::carried), "the hand does not feel the tool's weight"));
+  keys.push_back(
+      choice("force", h(&H::force),
+             "force in a touch tick: of the last soft step, of a linear model, or of contacts solved again"));
   keys.push_back(text("device", KeyType::kNode, h(&H::device),
                       "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
   return keys;
@@ -661,7 +650,7 @@ std::vector<Key> rigid_body_keys() {
   keys.push_back(
       number("friction_sliding", "1", kFrictionRange, r(&R::friction_sliding), "coefficient of sliding friction"));
   keys.push_back(vector("velocity", "m/s", {kVelocityRange, {-10.0, 10.0}}, r(&R::velocity),
-                        "at the beginning, in the world; not of a tool; one number points down (-Y)"));
+                        "initial, in the world, not of a tool; one number points down (-Y)"));
   keys.push_back(flag("fixed", r(&R::fixed), "does not move"));
   return keys;
 }
@@ -670,10 +659,10 @@ std::vector<Key> motion_keys() {
   using M = NodeMotion;
   const auto m = [](auto member) { return at(&LevelNode::motion, member); };
   std::vector<Key> keys;
-  keys.push_back(text("script", KeyType::kText, m(&M::script),
-                      "CSV of poses in the parent's frame, relative to the level; instead of animations"));
+  keys.push_back(
+      text("script", KeyType::kText, m(&M::script), "CSV of poses in the parent's frame, instead of animations"));
   keys.push_back(text("animation", KeyType::kText, m(&M::animation),
-                      "name of the glTF animation that moves it; left out: every one that names the node"));
+                      "glTF animation that moves it; left out: every one of the node"));
   keys.push_back(flag("repeat", m(&M::repeat), "starts over at the end; else the end holds"));
   keys.push_back(number("speed", "1", {{0.0, 1e3}, {0.01, 100.0}}, m(&M::speed),
                         "of the motion's clock; 0: stands at its beginning"));
@@ -687,18 +676,15 @@ std::vector<Key> effect_keys() {
   std::vector<Key> keys;
   keys.push_back(choice("kind", e(&E::kind), "what it does to a probe"));
   keys.push_back(key(
-      "probes", "", KeyType::kNames,
-      fmt::format("names of the probes that feel it, at most {}; left out: every probe", kMostNames), e(&E::probes),
-      [](const std::vector<std::string>& names) { return names; },
+      "probes", "", KeyType::kNames, fmt::format("probes that feel it, at most {}; left out: all", kMostNames),
+      e(&E::probes), [](const std::vector<std::string>& names) { return names; },
       [](const Json& json) { return json.get<std::vector<std::string>>(); }));
-  keys.push_back(choice("region", e(&E::region),
-                        "where it acts: a sphere around the node, `box`, or below the plane through the node across "
-                        "its +Y"));
+  keys.push_back(choice("region", e(&E::region), "where it acts; `half_space`: below the node's XZ plane"));
   keys.push_back(number("radius", "m", {R::kWidth, {1e-3, 1.0}}, e(&E::radius), "radius of the sphere"));
   keys.push_back(double_box("box", &E::box, "the box, in the node's frame"));
   keys.push_back(number("edge", "m", {R::kWidth, {1e-3, 0.1}}, e(&E::edge),
-                        "depth below the region's border over which the effect comes in, at most to its middle; around "
-                        "the axis of detents the radius within which they fade"));
+                        "depth below the region's border over which the effect comes in, at most to its middle; of "
+                        "detents around, the radius within which they fade"));
   keys.push_back(number("damping", "N s/m", {R::kDamping, {0.1, 20.0}}, e(&E::damping), "drag per speed"));
   keys.push_back(vector("force", "N", {R::kForce, {-20.0, 20.0}}, e(&E::force),
                         "constant force in the node's frame; one number points down (-Y)"));
@@ -710,16 +696,15 @@ std::vector<Key> effect_keys() {
   keys.push_back(size);
   keys.push_back(number("stiffness", "N/m", {R::kStiffness, {1.0, 5e3}}, e(&E::stiffness),
                         "of a spring to the target or path, near it; of the wall of what is forbidden"));
-  keys.push_back(number("range", "m", {R::kWidth, {1e-3, 1.0}}, e(&E::range),
-                        "distance from the target or path beyond which nothing pulls; the largest force is 0.286 "
-                        "`stiffness` `range`, at 0.447 `range`"));
   keys.push_back(
-      text("path", KeyType::kText, e(&E::path),
-           "CSV of the path that guides, in the node's frame, relative to the level; its times do not count"));
+      number("range", "m", {R::kWidth, {1e-3, 1.0}}, e(&E::range),
+             "distance from target or path beyond which nothing pulls; the largest force is at 0.447 `range`"));
+  keys.push_back(
+      text("path", KeyType::kText, e(&E::path), "CSV of the guiding path in the node's frame; its times do not count"));
   keys.push_back(choice("detents", e(&E::detents), "detents along the node's +Y, or around it"));
   keys.push_back(number("spacing", "m", {R::kWidth, {1e-4, 0.1}}, e(&E::spacing), "of detents along"));
   keys.push_back(
-      number("count", "1", {R::kCount, {2.0, 100.0}}, e(&E::count), "of detents around, in a turn: a whole number"));
+      number("count", "1", {R::kCount, {2.0, 100.0}}, e(&E::count), "of detents around, a whole number per turn"));
   keys.back().whole = true;
   keys.push_back(number("peak", "N", {R::kPeak, {0.05, 5.0}}, e(&E::peak), "largest force from a detent to the next"));
   return keys;
@@ -730,15 +715,13 @@ std::vector<Key> joint_keys() {
   using R = JointRange;
   const auto j = [](auto member) { return at(&LevelNode::joint, member); };
   std::vector<Key> keys;
-  keys.push_back(choice("kind", j(&J::kind),
-                        "what it leaves free: nothing, turning, turning about the node's +Y, "
-                        "sliding along it, or all but stretching"));
+  keys.push_back(
+      choice("kind", j(&J::kind),
+             "what it leaves free: nothing, turning, turning about +Y, sliding along +Y, or all but stretching"));
   keys.push_back(text("a", KeyType::kText, j(&J::a), "name of the soft or rigid body that it holds"));
   keys.push_back(text("b", KeyType::kText, j(&J::b), "name of the body that holds it; left out: the world"));
-  Key limits =
-      pair("limits", "rad, m", j(&J::limits),
-           "least and largest angle of a hinge or way of a slider, of a against b, from where it begins; equal: "
-           "none");
+  Key limits = pair("limits", "rad, m", j(&J::limits),
+                    "least and largest angle or travel of a against b, from the beginning; equal: none");
   limits.range = R::kLimits;
   keys.push_back(limits);
   keys.push_back(number("stiffness", "N m/rad, N/m", {R::kStiffness, {0.0, 1e5}}, j(&J::stiffness),
@@ -746,17 +729,18 @@ std::vector<Key> joint_keys() {
   keys.push_back(number("damping", "N m s/rad, N s/m", {R::kDamping, {0.0, 1e3}}, j(&J::damping), "of that spring"));
   keys.push_back(number("rest", "rad, m", R::kLimits, j(&J::rest), "where that spring is at rest"));
   keys.push_back(vector("end", "m", {R::kPlace, {-1.0, 1.0}}, j(&J::end),
-                        "where a rope is tied to b, in the node's frame; to a it is tied at the node"));
+                        "where a rope is tied to b, in the node's frame; to a: at the node"));
   keys.push_back(number("length", "m", {R::kLength, {1e-3, 1.0}}, j(&J::length),
-                        "of a rope; 0: the distance of its ends at the beginning"));
+                        "of a rope; 0: the initial distance of its ends"));
   keys.push_back(number("strength", "N", {R::kStrength, {0.01, 1e4}}, j(&J::strength),
-                        "a larger force breaks the joint for good; 0: it never breaks"));
+                        "a larger force breaks the joint; 0: never"));
   return keys;
 }
 
 std::optional<Note> settle_joint(void* owner) {
   const Joint& it = *static_cast<LevelNode*>(owner)->joint;
-  if (!it.a.empty() && it.a == it.b) return Note{"names the same body twice", "name two, or leave out `b`", "key.value", "b"};
+  if (!it.a.empty() && it.a == it.b)
+    return Note{"names the same body twice", "name two, or leave out `b`", "key.value", "b"};
   if (it.limits[0] > it.limits[1])
     return Note{"has a least limit above its largest", "exchange them", "key.value", "limits"};
   if (it.limits[0] < it.limits[1] && (it.limits[0] > 0.0 || it.limits[1] < 0.0))
