@@ -119,7 +119,7 @@ std::string table_row(const std::string& name, const Key& key, const Json& stand
   const std::string shown = key.alias || standard.is_null() || standard == Json("") ? ""
                             : standard.is_string()                                  ? standard.get<std::string>()
                                                                                     : standard.dump();
-  return fmt::format("| `{}` | {} | {} | {} |\n", name, values_of(key), shown, key.doc);
+  return fmt::format("`{}` | {} | {} | {}\n", name, values_of(key), shown, key.doc);
 }
 
 // An object with this extension at its defaults.
@@ -164,7 +164,7 @@ std::string extension_tables() {
   std::string out;
   for (const Extension& extension : extension_table()) {
     Defaults defaults(extension);
-    out += fmt::format("### `PLIANT_{}`{}\n\n{}\n\n| key | values (usual) | default | meaning |\n|---|---|---|---|\n",
+    out += fmt::format("### `PLIANT_{}`{}\n\n{}\n\nkey | values (usual) | default | meaning\n---|---|---|---\n",
                        extension.name, extension.on_scene ? " of the scene" : "", extension.doc);
     for (const Key& key : extension.keys) out += table_row(key.name, key, key.get(defaults.owner));
     for (const Key& key : extension.keys)

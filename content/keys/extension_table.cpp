@@ -204,9 +204,7 @@ Key items_key(std::string name, std::string doc, std::vector<Key> items, std::st
 Key layers_key() {
   return items_key<Layer>(
       "layers",
-      fmt::format("layers that a probe breaks through, from the surface down, at most {}; below the last one is the "
-                  "law of `stiffness`",
-                  kMostLayers),
+      fmt::format("layers that break, downwards, at most {}; below them: the law of `stiffness`", kMostLayers),
       layer_keys(), "thickness", [](const LevelNode& node) -> const Layers& { return node.deformable->layers; },
       [](LevelNode& node, std::vector<Layer> layers) { node.deformable->layers = Layers(std::move(layers)); });
 }
@@ -246,7 +244,7 @@ Key prony_key() {
   Key out = items_key<Prony::Arm>(
       "prony",
       fmt::format("relaxation, at most {} arms: after a step of strain the stress is 1 - sum share (1 - exp(-t/time)) "
-                  "of that at once, whose modulus is `young`",
+                  "of that at once",
                   Prony::kMost),
       std::move(keys), "share",
       [](const LevelNode& node) {
@@ -304,13 +302,12 @@ std::vector<Key> deformable_keys() {
   keys.push_back(number("stiffness", "N/m", {R::kStiffness, {1.0, 1e5}}, d(&D::stiffness),
                         "small-depth slope of normal force against depth"));
   keys.push_back(number("cubic", "N/m3", R::kCubic, d(&D::cubic),
-                        "k3 of the cubic law; with `young`, unstated: 10,000/m2 of its stiffness"));
+                        "k3 of the cubic law; with `young`: 10,000/m2 of its stiffness"));
   keys.push_back(number("stiffening", "1/m", {R::kStiffening, {-1e3, 1e4}}, d(&D::stiffening),
                         "alpha of the exponential law; below 0 it softens"));
   Key table = key(
       "table", "m, N", KeyType::kTable,
-      fmt::format("rows [depth, force] of the law table, from [0, 0], at most {}; their slope there replaces "
-                  "`stiffness`",
+      fmt::format("rows [depth, force] from [0, 0], at most {}; their slope there replaces `stiffness`",
                   ForceTable::kMost),
       d(&D::table),
       [](const ForceTable& rows) {
@@ -327,9 +324,9 @@ std::vector<Key> deformable_keys() {
   keys.push_back(table);
   keys.push_back(number("relaxation.stiffness", "N/m", {R::kRelaxationStiffness, {1.0, 1e5}},
                         d(&D::relaxation_stiffness),
-                        "small-depth slope of a relaxing law's arm; with `young`, unstated: its stiffness"));
-  keys.push_back(number("relaxation.time", "s", {R::kRelaxationTime, {1e-3, 1e3}}, d(&D::relaxation_time),
-                        "relaxation time of that arm"));
+                        "small-depth slope of a relaxing law's arm; with `young`: its stiffness"));
+  keys.push_back(
+      number("relaxation.time", "s", {R::kRelaxationTime, {1e-3, 1e3}}, d(&D::relaxation_time), "of that arm"));
   keys.push_back(number("damping_ratio", "1", {R::kDampingRatio, {0.01, 20.0}}, d(&D::damping_ratio),
                         "damping ratio of the free surface"));
   keys.push_back(number("settling_time", "s", {R::kSettlingTime, {1e-3, 10.0}}, d(&D::settling_time),
@@ -361,10 +358,10 @@ std::vector<Key> deformable_keys() {
   std::vector<std::string> depending;
   for (std::size_t i = 0; i < std::size(kShapeRows); ++i)
     if (depends_on_contact(static_cast<Shape>(i))) depending.emplace_back(kShapeRows[i].word);
-  keys.push_back(number("contact_radius", "m", {R::kContactRadius, {1e-4, 1.0}}, d(&D::contact_radius),
-                        fmt::format("indenter's radius of the shapes {}, beside a probe's own contact circle; 0: a "
-                                    "fifth of `reach`",
-                                    listed(depending))));
+  keys.push_back(
+      number("contact_radius", "m", {R::kContactRadius, {1e-4, 1.0}}, d(&D::contact_radius),
+             fmt::format("indenter's radius of the shapes {}, beside the probe's contact circle; 0: a fifth of `reach`",
+                         listed(depending))));
   keys.push_back(number("friction_static", "1", kFrictionRange, d(&D::friction_static),
                         "coefficient of static friction, at least that of sliding"));
   keys.push_back(
@@ -395,8 +392,7 @@ std::vector<Key> deformable_keys() {
   keys.push_back(
       number("transient.decay", "1/s", {R::kTransientDecay, {5.0, 1000.0}}, d(&D::transient_decay), "of the knock"));
   keys.push_back(number("relief", "1", {R::kRelief, {0.01, 2.0}}, d(&D::relief),
-                        "share of the materials' drawn relief (normal and height maps) that is felt: 1 as drawn, 0 "
-                        "none"));
+                        "share of drawn relief (normal and height maps) that is felt"));
   keys.push_back(layers_key());
   keys.push_back(number("hole_radius", "m", {R::kHoleRadius, {1e-4, 0.05}}, d(&D::hole_radius),
                         "of the hole left in `layers`, at least the probe's"));
@@ -415,9 +411,8 @@ std::vector<Key> deformable_keys() {
                         "of a layer bonded to something rigid, with `young`; 0: deep"));
   keys.push_back(
       choice("sphere", d(&D::sphere), "with `young`: Hertz's sphere, or Sneddon's exact one on deep tissue"));
-  keys.push_back(
-      choice("carries", d(&D::carries),
-             "drawn meshes that are dented with it: none, or those inside of it or below its node, less with depth"));
+  keys.push_back(choice("carries", d(&D::carries),
+                        "drawn meshes that are dented with it: none, or those inside or below its node"));
   keys.push_back(number("error", "1", {{0.0, 10.0}, {1e-3, 1.0}}, d(&D::error),
                         "error budget for unstated shape, distance, reach and contact radius; 0: none"));
   return keys;
@@ -529,7 +524,7 @@ std::vector<Key> probe_keys() {
   keys.push_back(text(
       "device", KeyType::kNode,
       [](void* owner) -> std::string& { return static_cast<LevelNode*>(owner)->probe_device; },
-      "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
+      "node with a PLIANT_haptic_device, by name or glTF number"));
   return keys;
 }
 
@@ -539,16 +534,15 @@ std::vector<Key> device_keys() {
   std::vector<Key> keys;
   keys.push_back(choice("driver", d(&H::driver), "source of the motion"));
   keys.push_back(text("file", KeyType::kText, d(&H::file), "script (CSV), relative to the level"));
-  keys.push_back(text(
-      "id", KeyType::kText, d(&H::id),
-      "device of the driver `external`: DRIVER, DRIVER:ID, any-force, any-pose, any, mouse, or several in turn, "
-      "separated by semicolons; behind each, after a bar, wrappers: scale=2, clutch=BUTTON, frame=X:Y:Z, border=40mm"));
+  keys.push_back(text("id", KeyType::kText, d(&H::id),
+                      "device of the driver `external`: DRIVER, any-force, any-pose, any, mouse, or several in turn "
+                      "(semicolons), each with wrappers (bars)"));
   keys.push_back(number("scale", "1", {DeviceRange::kScale, {1e-3, 1e3}}, d(&H::scale),
                         "workspace of an `external` device to world"));
   keys.push_back(
       number("max_force", "N", {DeviceRange::kMaxForce, {0.1, 50.0}}, d(&H::max_force), "norm of the force sent"));
   keys.push_back(number("max_stiffness", "N/m", {DeviceRange::kMaxStiffness, {10.0, 1e5}}, d(&H::max_stiffness),
-                        "limit on the rise of force with displacement, per metre of the world; 0: none"));
+                        "limit on the rise of force with displacement, in the world; 0: none"));
   keys.push_back(number("max_slew", "N/s", {DeviceRange::kMaxSlew, {1.0, 1e6}}, d(&H::max_slew),
                         "limit on the rise of force with time; a released force falls by 1000 N/s at least"));
   return keys;
@@ -558,10 +552,9 @@ std::vector<Key> soft_body_keys() {
   using S = SoftBody;
   const auto s = [](auto member) { return at(&LevelNode::soft_body, member); };
   std::vector<Key> keys;
-  keys.push_back(
-      choice("law", s(&S::law),
-             "elasticity: `corotational`, linear in the strain, cheap; `neo_hookean`, right at large strain; "
-             "`fung`, stiffens exponentially"));
+  keys.push_back(choice("law", s(&S::law),
+                        "`corotational`: linear in the strain, cheap; `neo_hookean`: right at large strain; `fung`: "
+                        "stiffens exponentially"));
   keys.push_back(
       number("young", "Pa", {SoftBodyRange::kYoung, {50.0, 1e9}}, s(&S::young), "Young's modulus at small strain"));
   keys.push_back(number(
@@ -588,26 +581,24 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(text(
       "mesh", KeyType::kText, s(&S::mesh),
       fmt::format("tetrahedra file ({}), instead of `cell`, relative to the level", fmt::join(tet_endings(), ", "))));
-  keys.push_back(
-      box("pinned", s(&S::pinned), "pinned part: a box in the object frame; left out: the attribute _PINNED"));
+  keys.push_back(box("pinned", s(&S::pinned), "pinned part, in the object frame; left out: the attribute _PINNED"));
   keys.push_back(
       number("friction_static", "1", kFrictionRange, s(&S::friction_static), "coefficient of static friction"));
   keys.push_back(
       number("friction_sliding", "1", kFrictionRange, s(&S::friction_sliding), "coefficient of sliding friction"));
   keys.push_back(choice("solver", s(&S::solver), "linear solver; `auto` by size, as measured"));
-  keys.push_back(
-      choice("under_gravity", s(&S::under_gravity),
-             "meaning of the mesh: `falls`, the shape without weight, from which it falls; `settled`, the same, "
-             "beginning at rest on its pins; `modelled`, the shape under its weight, kept until touched"));
+  keys.push_back(choice("under_gravity", s(&S::under_gravity),
+                        "mesh is the shape without weight, from which it falls; the same, beginning at rest on its "
+                        "pins (`settled`); the shape under its weight (`modelled`)"));
   keys.push_back(choice("carries", s(&S::carries),
-                        "drawn meshes that go with its tissue: none, or those inside of it or below its node"));
+                        "drawn meshes that go with its tissue: none, or those inside or below its node"));
   keys.push_back(
       choice("contact", s(&S::contact),
              "contact acts on: `lattice`, the nodes beside it, too stiff if small against the cells; `split`, the "
              "lattice, smeared, and an analytic dent in series; `auto`, `split` where measured and in time"));
   keys.push_back(choice("integrator", s(&S::integrator),
-                        "step of its motion: `euler`, which damps; `second_order`, which keeps swings; `quasi_static`, "
-                        "the equilibrium of every step, for pinned tissue; the last two not of a tool"));
+                        "`euler` damps; `second_order` keeps swings; `quasi_static`: equilibrium in every step, for "
+                        "pinned tissue; the last two not of a tool"));
   keys.push_back(vector("velocity", "m/s", {kVelocityRange, {-10.0, 10.0}}, s(&S::velocity),
                         "initial, in the world, not of a tool; one number points down (-Y)"));
   keys.push_back(materials_key());
@@ -621,7 +612,7 @@ std::vector<Key> handle_keys() {
   const auto h = [](auto member) { return at(&LevelNode::handle, member); };
   std::vector<Key> keys;
   keys.push_back(
-      box("box", h(&H::box), "rigid part of a soft body: a box in the object frame; left out: the attribute _HANDLE"));
+      box("box", h(&H::box), "rigid part of a soft body, in the object frame; left out: the attribute _HANDLE"));
   keys.push_back(choice("attachment", h(&H::attachment), "how tissue joins the handle"));
   keys.push_back(
       pair("coupling.translation", "N/m, N s/m", h(&H::translation), "spring and damper between device and handle"));
@@ -634,8 +625,8 @@ std::vector<Key> handle_keys() {
   keys.push_back(
       choice("force", h(&H::force),
              "force in a touch tick: of the last soft step, of a linear model, or of contacts solved again"));
-  keys.push_back(text("device", KeyType::kNode, h(&H::device),
-                      "node with a PLIANT_haptic_device that moves it, by name or glTF number"));
+  keys.push_back(
+      text("device", KeyType::kNode, h(&H::device), "node with a PLIANT_haptic_device, by name or glTF number"));
   return keys;
 }
 
@@ -715,9 +706,8 @@ std::vector<Key> joint_keys() {
   using R = JointRange;
   const auto j = [](auto member) { return at(&LevelNode::joint, member); };
   std::vector<Key> keys;
-  keys.push_back(
-      choice("kind", j(&J::kind),
-             "what it leaves free: nothing, turning, turning about +Y, sliding along +Y, or all but stretching"));
+  keys.push_back(choice("kind", j(&J::kind),
+                        "leaves free: nothing, turning, turning about +Y, sliding along +Y, all but stretching"));
   keys.push_back(text("a", KeyType::kText, j(&J::a), "name of the soft or rigid body that it holds"));
   keys.push_back(text("b", KeyType::kText, j(&J::b), "name of the body that holds it; left out: the world"));
   Key limits = pair("limits", "rad, m", j(&J::limits),
