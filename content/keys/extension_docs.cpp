@@ -1,6 +1,5 @@
 // The key table as JSON Schemas and as Markdown.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -91,7 +90,7 @@ Json schema_of(const Key& key, const Json& standard) {
 }
 
 // 1e7, not 10000000 or 1e+07; every digit of a number that six do not hold.
-std::string short_text(double value) {
+std::string number_text(double value) {
   std::string text = fmt::format("{:g}", value);
   if (std::stod(text) != value) return fmt::format("{}", value);
   const std::size_t e = text.find('e');
@@ -99,27 +98,40 @@ std::string short_text(double value) {
   return text.substr(0, e + 1) + std::to_string(std::stoi(text.substr(e + 1)));
 }
 
-std::string short_text(const Range& range) {
-  return (range.above_min ? ">" : "") + short_text(range.min) + ".." + short_text(range.max);
+std::string span_text(const Range& range) {
+  return (range.above_min ? ">" : "") + number_text(range.min) + ".." + number_text(range.max);
 }
 
-// The words of a choice; else the range with its unit, and the usual one.
-std::string values_of(const Key& key) {
-  if (key.choices) return fmt::format("`{}`", fmt::join(key.choices(), "`, `"));
+std::string default_text(const Json& standard) {
+  if (standard.is_number()) return number_text(standard.get<double>());
+  return standard.is_string() ? standard.get<std::string>() : standard.dump();
+}
+
+// The words of a choice, or the range with its unit and the usual one; the default is bold.
+std::string values_of(const Key& key, const Json& standard) {
+  const bool none = key.alias || standard.is_null() || standard == Json("") || standard == Json::array();
+  const std::string bold = none ? "" : "**" + default_text(standard) + "**";
   std::string out;
+  if (key.choices) {
+    for (const std::string& word : key.choices())
+      out += (out.empty() ? "" : ", ") + (standard == Json(word) ? "**`" + word + "`**" : "`" + word + "`");
+    return out;
+  }
+  const auto add = [&out](const std::string& text, const char* between) {
+    if (!text.empty()) out += (out.empty() ? "" : between) + text;
+  };
   const bool bounded = std::isfinite(key.range.min) && std::isfinite(key.range.max);
   const bool plain = key.type == KeyType::kText || key.type == KeyType::kNode || key.type == KeyType::kFlag ||
                      key.type == KeyType::kItems;
-  if (!plain) out = bounded ? short_text(key.range) : "any";
-  if (!key.unit.empty() && key.unit != "1") out += (out.empty() ? "" : " ") + key.unit;
-  return std::isfinite(key.usual.min) ? fmt::format("{} ({})", out, short_text({key.usual.min, key.usual.max})) : out;
+  add(bold, "");
+  if (!plain) add(bounded ? span_text(key.range) : "any", ", ");
+  if (key.unit != "1") add(key.unit, " ");
+  return std::isfinite(key.usual.min) ? fmt::format("{} ({})", out, span_text(Range{key.usual.min, key.usual.max}))
+                                      : out;
 }
 
 std::string table_row(const std::string& name, const Key& key, const Json& standard) {
-  const std::string shown = key.alias || standard.is_null() || standard == Json("") ? ""
-                            : standard.is_string()                                  ? standard.get<std::string>()
-                                                                                    : standard.dump();
-  return fmt::format("`{}` | {} | {} | {}\n", name, values_of(key), shown, key.doc);
+  return fmt::format("`{}` | {} | {}\n", name, values_of(key, standard), key.doc);
 }
 
 // An object with this extension at its defaults.
@@ -164,7 +176,7 @@ std::string extension_tables() {
   std::string out;
   for (const Extension& extension : extension_table()) {
     Defaults defaults(extension);
-    out += fmt::format("### `PLIANT_{}`{}\n\n{}\n\nkey | values (usual) | default | meaning\n---|---|---|---\n",
+    out += fmt::format("### `PLIANT_{}`{}\n\n{}\n\nkey | **default**, values (usual) | meaning\n---|---|---\n",
                        extension.name, extension.on_scene ? " of the scene" : "", extension.doc);
     for (const Key& key : extension.keys) out += table_row(key.name, key, key.get(defaults.owner));
     for (const Key& key : extension.keys)

@@ -325,8 +325,8 @@ std::vector<Key> deformable_keys() {
   keys.push_back(number("relaxation.stiffness", "N/m", {R::kRelaxationStiffness, {1.0, 1e5}},
                         d(&D::relaxation_stiffness),
                         "small-depth slope of a relaxing law's arm; with `young`: its stiffness"));
-  keys.push_back(
-      number("relaxation.time", "s", {R::kRelaxationTime, {1e-3, 1e3}}, d(&D::relaxation_time), "of that arm"));
+  keys.push_back(number("relaxation.time", "s", {R::kRelaxationTime, {1e-3, 1e3}}, d(&D::relaxation_time),
+                        "relaxation time of the arm"));
   keys.push_back(number("damping_ratio", "1", {R::kDampingRatio, {0.01, 20.0}}, d(&D::damping_ratio),
                         "damping ratio of the free surface"));
   keys.push_back(number("settling_time", "s", {R::kSettlingTime, {1e-3, 10.0}}, d(&D::settling_time),
