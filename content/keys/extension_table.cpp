@@ -588,8 +588,8 @@ std::vector<Key> soft_body_keys() {
       number("friction_sliding", "1", kFrictionRange, s(&S::friction_sliding), "coefficient of sliding friction"));
   keys.push_back(choice("solver", s(&S::solver), "linear solver; `auto` by size, as measured"));
   keys.push_back(choice("under_gravity", s(&S::under_gravity),
-                        "mesh is the shape without weight, from which it falls; the same, beginning at rest on its "
-                        "pins (`settled`); the shape under its weight (`modelled`)"));
+                        "`falls`: the mesh is the shape without weight; `settled`: the same, at rest on its pins at "
+                        "first; `modelled`: the shape under its weight"));
   keys.push_back(choice("carries", s(&S::carries),
                         "drawn meshes that go with its tissue: none, or those inside or below its node"));
   keys.push_back(
