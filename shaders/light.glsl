@@ -48,7 +48,7 @@ float gloss(vec3 n, vec3 l, vec3 to_eye, float roughness) {
 }
 
 // Cosine of the angle of incidence, wrapped around the body: the same light in all, spread beyond the edge of shade.
-// Of that edge the body's own shadow is no obstacle, and the shadows of others have soft, coloured borders.
+// The body's own shadow does not cover that edge; shadows of others have soft, coloured borders.
 vec3 wrapped(float n_l, vec3 wrap, float open) {
   if (wrap == vec3(0.0)) return vec3(open * max(n_l, 0.0));
   float edge = max(open, 1.0 - smoothstep(0.0, 0.25, n_l));

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-// What libpng's functions use. Its errors jump over frames of C, so that no object here may have a destructor between.
+// State of libpng's functions. Its errors jump over frames of C, so that no object here may have a destructor between.
 struct PngFile {
   std::span<const std::uint8_t> rest;
   char error[120] = {};

@@ -43,7 +43,7 @@ void read_relief(const SourceDocument& document, const Json& json, Material& out
   out.height_scale = scale;
 }
 
-// Says once what a file asks for and no picture shows.
+// Notes, once each, the parts of a material that are not drawn.
 void note_undrawn(const Json& material, Level& level) {
   const auto say = [&](const std::string& sentence) {
     if (std::find(level.notes.begin(), level.notes.end(), sentence) == level.notes.end())
