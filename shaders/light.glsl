@@ -62,6 +62,7 @@ vec3 lit_by(Lamp lamp, Surface s, float open) {
   vec3 l;
   vec3 arriving = arriving_from(lamp, s.position, l);
   float n_l = dot(s.normal, l);
+  if (n_l <= 0.0 && s.coat.x == 0.0 && s.wrap == vec3(0.0) && s.behind == vec3(0.0)) return vec3(0.0);
   vec3 h = normalize(l + s.to_eye);
   vec3 mirrored = fresnel(s.reflectance, max(dot(l, h), 0.0));
   vec3 light = (1.0 - mirrored) * s.diffuse / kPi * wrapped(n_l, s.wrap, open);  // mirrored light does not enter

@@ -50,6 +50,19 @@ vec3 zone_color(uint zone) {
   return 0.1 + 0.7 * smoothstep(0.15, 0.85, abs(2.0 * hue - 1.0));
 }
 
+// Share of the surroundings that no ball covers (Quilez, Sphere ambient occlusion: exact above the horizon).
+float open_to_surroundings(vec3 position, vec3 n) {
+  float open = 1.0;
+  for (uint i = 0u; i < modes.z; ++i) {
+    vec3 way = balls[i].xyz - position;
+    float r2 = balls[i].w * balls[i].w, d2 = max(dot(way, way), 1e-12), up = dot(n, way);
+    float covered = up * inversesqrt(d2) * r2 / d2;
+    if (up * up < r2) covered = pow(clamp(0.5 * (up / balls[i].w + 1.0) * r2 / d2, 0.0, 1.0), 1.5);  // partly below it
+    open *= 1.0 - clamp(covered, 0.0, 1.0);
+  }
+  return open;
+}
+
 void main() {
   vec4 base = base_color_at(from.uv);
   if (base.a < emissive.w) discard;
@@ -72,7 +85,7 @@ void main() {
   s.behind = behind.rgb * (1.0 - metallic) * (1.0 - through);
   s.coat_normal = normal;
   s.coat = vec2(coat.y, clamp(coat.w, 0.045, 1.0));
-  s.occlusion = mix(1.0, texture(occlusion_map, from.uv).r, numbers.w);
+  s.occlusion = mix(1.0, texture(occlusion_map, from.uv).r, numbers.w) * open_to_surroundings(from.position, normal);
 
   vec3 light = lit_by_lamps(s, open_to_lamp(from.position, normal)) + lit_by_surroundings(s);
   if (through > 0.0) {

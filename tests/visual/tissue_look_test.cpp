@@ -115,6 +115,27 @@ TEST(TissueLook, ACoatMirrorsItsShareAndLetsTheRestIn) {
             4);
 }
 
+TEST(TissueLook, AProbeOverASurfaceKeepsItsShareOfTheSurroundingsFromIt) {
+  NEEDS_A_CONTEXT();
+  World world = ball_in_room(matte(vec3(0.8f)));
+  test::add_probe(world, {0, 0, 1.5}, 0.3);  // 0.5 m before the middle of the picture
+  auto renderer = renderer_for(world);
+  renderer->options().background = false;
+  Viewpoint aside = kLookFront;
+  aside.eye = {1.5, 0, 2};  // past the probe
+  aside.target = {0, 0, 1};
+  const auto looked_at = [&](Renderer& from) {
+    const Image image = from.picture(aside, kLookWidth, kLookHeight);
+    const std::uint8_t* p = &image.rgba[std::size_t{4} * kLookWidth * (kLookHeight / 2) + 4 * (kLookWidth / 2)];
+    return vec3(p[0], p[1], p[2]);
+  };
+  const Material as_bright = shining(vec3(0.8f * kRoom * (1 - 0.36f)));
+  EXPECT_LE(length(looked_at(*renderer) - looked_at(*renderer_for(ball_in_room(as_bright)))), 3);
+  renderer->options().shadows = false;
+  const Material open = shining(vec3(0.8f * kRoom));
+  EXPECT_LE(length(looked_at(*renderer) - looked_at(*renderer_for(ball_in_room(open)))), 3);
+}
+
 TEST(TissueLook, PressedTissueIsPale) {
   NEEDS_A_CONTEXT();
   Material tissue = matte(vec3(0.5f, 0.1f, 0.08f));
