@@ -15,6 +15,8 @@ find_package(draco REQUIRED)
 find_package(TinyGLTF 2.7 REQUIRED)
 find_package(OpenEXR REQUIRED)
 find_package(assimp REQUIRED)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(stb REQUIRED IMPORTED_TARGET GLOBAL stb)
 # visual

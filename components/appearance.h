@@ -47,7 +47,13 @@ struct Material {
   float transmission = 0.0f;               // KHR_materials_transmission
   float thickness = 0.0f;                  // [m] KHR_materials_volume
   vec3 attenuation_color{1};
-  float attenuation_distance = 0.0f;  // [m] 0: none
+  float attenuation_distance = 0.0f;       // [m] 0: none
+  float specular = 1.0f;                   // KHR_materials_specular, without textures
+  vec3 specular_color{1};
+  float clearcoat = 0.0f;                  // [1] KHR_materials_clearcoat, without textures: a wet film, say
+  float clearcoat_roughness = 0.0f;
+  float diffuse_transmission = 0.0f;       // [1] KHR_materials_diffuse_transmission, without textures; with
+  vec3 diffuse_transmission_color{1};      // `thickness`, light scatters below the surface
   enum class Alpha : std::uint8_t { kOpaque, kMask, kBlend } alpha = Alpha::kOpaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;

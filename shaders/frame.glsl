@@ -17,7 +17,8 @@ layout(std140, binding = 0) uniform Frame {
   vec4 picture;            // exposure, brightness of the background, [1/m] height as colour (0: off), background's blur
   vec4 shadow;             // [m] width of a shadow map's texel in the scene, [1] its share of the map
   Lamp lamps[4];           // the first casts the shadow
-  uvec4 modes;             // number of lamps, enabled modes
+  vec4 balls[16];          // [m] middle and radius: of probes, which keep surroundings from what is below them
+  uvec4 modes;             // number of lamps, enabled modes, number of balls
 };
 
 const uint kReflection = 1u, kRefraction = 2u, kBump = 4u, kShadows = 8u, kZones = 16u, kBehind = 32u, kLinear = 64u;

@@ -8,6 +8,10 @@ struct Surface {
   vec3 diffuse;       // [1] diffuse albedo
   vec3 reflectance;   // [1] of the coat, at normal incidence
   float roughness;    // [1] perceptual
+  vec3 wrap;          // [1] how far diffuse light wraps around the body, per channel
+  vec3 behind;        // [1] share of the light on the far side that comes through
+  vec3 coat_normal;   // [1] of the clear coat, which fills the relief
+  vec2 coat;          // [1] clear coat and its roughness (KHR_materials_clearcoat)
   float occlusion;    // [1] 1: open to the sky
 };
 
@@ -35,35 +39,66 @@ vec3 arriving_from(Lamp lamp, vec3 position, out vec3 to_light) {
   return lamp.color.rgb * (lamp.place.w > 0.0 ? reach * cone * cone / distance2 : 1.0);
 }
 
-vec3 lit_by(Lamp lamp, Surface s) {
-  vec3 l;
-  vec3 arriving = arriving_from(lamp, s.position, l);
-  float n_l = dot(s.normal, l), n_v = max(dot(s.normal, s.to_eye), 1e-3);
-  if (n_l <= 0.0) return vec3(0.0);
-  vec3 h = normalize(l + s.to_eye);
-  float alpha = s.roughness * s.roughness;
-  vec3 mirrored = fresnel(s.reflectance, max(dot(l, h), 0.0));
-  vec3 coat = mirrored * ggx(max(dot(s.normal, h), 0.0), alpha) * visibility(n_l, n_v, alpha);
-  return arriving * n_l * ((1.0 - mirrored) * s.diffuse / kPi + coat);  // light mirrored by the coat does not enter
+// A glossy layer of this reflectance: light of direction `l` towards the eye, for one unit of irradiance.
+float gloss(vec3 n, vec3 l, vec3 to_eye, float roughness) {
+  float n_l = dot(n, l);
+  if (n_l <= 0.0) return 0.0;
+  float alpha = roughness * roughness;
+  return n_l * ggx(max(dot(n, normalize(l + to_eye)), 0.0), alpha) * visibility(n_l, max(dot(n, to_eye), 1e-3), alpha);
 }
 
-// All lamps; the first is scaled by `open`, its unshadowed share.
+// Cosine of the angle of incidence, wrapped around the body: the same light in all, spread beyond the edge of shade.
+// The body's own shadow does not cover that edge; shadows of others have soft, coloured borders.
+vec3 wrapped(float n_l, vec3 wrap, float open) {
+  if (wrap == vec3(0.0)) return vec3(open * max(n_l, 0.0));
+  float edge = max(open, 1.0 - smoothstep(0.0, 0.25, n_l));
+  return pow(vec3(edge), 1.0 / (1.0 + 2.0 * wrap)) * max(n_l + wrap, 0.0) / ((1.0 + wrap) * (1.0 + wrap));
+}
+
+const vec3 kCoat = vec3(0.04);  // reflectance of a clear coat at normal incidence
+
+// `open`: the lamp's unshadowed share.
+vec3 lit_by(Lamp lamp, Surface s, float open) {
+  vec3 l;
+  vec3 arriving = arriving_from(lamp, s.position, l);
+  float n_l = dot(s.normal, l);
+  if (n_l <= 0.0 && s.coat.x == 0.0 && s.wrap == vec3(0.0) && s.behind == vec3(0.0)) return vec3(0.0);
+  vec3 h = normalize(l + s.to_eye);
+  vec3 mirrored = fresnel(s.reflectance, max(dot(l, h), 0.0));
+  vec3 light = (1.0 - mirrored) * s.diffuse / kPi * wrapped(n_l, s.wrap, open);  // mirrored light does not enter
+  light += open * mirrored * gloss(s.normal, l, s.to_eye, s.roughness);
+  light += s.behind / kPi * max(-n_l, 0.0);
+  if (s.coat.x > 0.0) {
+    vec3 film = s.coat.x * fresnel(kCoat, max(dot(l, h), 0.0));
+    light = (1.0 - film) * light + open * film * gloss(s.coat_normal, l, s.to_eye, s.coat.y);
+  }
+  return arriving * light;
+}
+
+// All lamps; `open` is the first one's unshadowed share.
 vec3 lit_by_lamps(Surface s, float open) {
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < modes.x; ++i) sum += (i == 0u ? open : 1.0) * lit_by(lamps[i], s);
+  for (uint i = 0u; i < modes.x; ++i) sum += lit_by(lamps[i], s, i == 0u ? open : 1.0);
   return sum;
 }
 
 // The coat's directional reflectance, the second factor of the split sum (systems/visual/coat.h).
 layout(binding = 8) uniform sampler2D coat_map;
-vec3 coat_of_surroundings(Surface s) {
-  vec2 ab = textureLod(coat_map, vec2(max(dot(s.normal, s.to_eye), 0.0), s.roughness), 0.0).rg;
-  return s.reflectance * ab.x + ab.y;
+vec3 mirrored_by(vec3 n, vec3 to_eye, vec3 reflectance, float roughness) {
+  vec2 ab = textureLod(coat_map, vec2(max(dot(n, to_eye), 0.0), roughness), 0.0).rg;
+  return reflectance * ab.x + ab.y;
 }
+vec3 coat_of_surroundings(Surface s) { return mirrored_by(s.normal, s.to_eye, s.reflectance, s.roughness); }
 
 vec3 lit_by_surroundings(Surface s) {
   vec3 coat = coat_of_surroundings(s);
   vec3 light = (1.0 - coat) * s.diffuse / kPi * irradiance_on(s.normal);
+  if (s.behind != vec3(0.0)) light += s.behind / kPi * irradiance_on(-s.normal);
   if (on(kReflection)) light += coat * radiance_from(reflect(-s.to_eye, s.normal), s.roughness);
+  if (s.coat.x > 0.0) {
+    vec3 film = s.coat.x * mirrored_by(s.coat_normal, s.to_eye, kCoat, s.coat.y);
+    light *= 1.0 - film;
+    if (on(kReflection)) light += film * radiance_from(reflect(-s.to_eye, s.coat_normal), s.coat.y);
+  }
   return s.occlusion * light;
 }

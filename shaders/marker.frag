@@ -21,5 +21,8 @@ void main() {
   s.reflectance = vec3(0.04);
   s.roughness = from.tint.w;
   s.occlusion = 1.0;
+  s.wrap = s.behind = vec3(0.0);
+  s.coat = vec2(0.0);
+  s.coat_normal = s.normal;
   color = vec4(tone_mapped(lit_by_lamps(s, 1.0) + lit_by_surroundings(s)), 1.0);
 }

@@ -37,10 +37,30 @@ vec3 tinted(vec3 albedo) {
   return mix(albedo, x < 0.0 ? vec3(0.05, 0.2, 0.9) : vec3(0.9, 0.15, 0.05), sqrt(abs(x)));
 }
 
+// Pressed tissue is pale: blood is pushed out of a dent within some two millimetres of depth.
+vec3 blanched(vec3 albedo) {
+  float pressed = scatter.w * (1.0 - exp(500.0 * min(from.height, 0.0)));
+  float most = max(albedo.r, max(albedo.g, albedo.b));
+  return mix(albedo, most * vec3(1.0, 0.82, 0.72), 0.6 * pressed);
+}
+
 // A colour per zone, distinct from its neighbours': steps of the golden ratio around the colour circle.
 vec3 zone_color(uint zone) {
   vec3 hue = fract(float(zone) * 0.61803399 + vec3(0.0, 1.0 / 3.0, 2.0 / 3.0));
   return 0.1 + 0.7 * smoothstep(0.15, 0.85, abs(2.0 * hue - 1.0));
+}
+
+// Share of the surroundings that no ball covers (Quilez, Sphere ambient occlusion: exact above the horizon).
+float open_to_surroundings(vec3 position, vec3 n) {
+  float open = 1.0;
+  for (uint i = 0u; i < modes.z; ++i) {
+    vec3 way = balls[i].xyz - position;
+    float r2 = balls[i].w * balls[i].w, d2 = max(dot(way, way), 1e-12), up = dot(n, way);
+    float covered = up * inversesqrt(d2) * r2 / d2;
+    if (up * up < r2) covered = pow(clamp(0.5 * (up / balls[i].w + 1.0) * r2 / d2, 0.0, 1.0), 1.5);  // partly below it
+    open *= 1.0 - clamp(covered, 0.0, 1.0);
+  }
+  return open;
 }
 
 void main() {
@@ -48,6 +68,7 @@ void main() {
   if (base.a < emissive.w) discard;
   float through = on(kRefraction) ? volume.x * texture(transmission_map, from.uv).r : 0.0;
   if (on(kZones)) base.rgb = zone_color(from.zone), through = 0.0;
+  base.rgb = blanched(base.rgb);
   if (picture.z > 0.0) base.rgb = tinted(base.rgb);
   vec4 map = texture(roughness_map, from.uv);
   float metallic = numbers.x * map.b;
@@ -57,10 +78,14 @@ void main() {
   s.position = from.position;
   s.normal = with_relief(normal);
   s.to_eye = normalize(eye.xyz - from.position);
-  s.diffuse = base.rgb * (1.0 - metallic) * (1.0 - through);
-  s.reflectance = mix(vec3(coat.y), base.rgb, metallic);
+  s.diffuse = base.rgb * (1.0 - metallic) * (1.0 - through) * (1.0 - specular.w);
+  s.reflectance = mix(specular.rgb, base.rgb, metallic);
   s.roughness = clamp(numbers.y * map.g, 0.045, 1.0);
-  s.occlusion = mix(1.0, texture(occlusion_map, from.uv).r, numbers.w);
+  s.wrap = scatter.rgb;
+  s.behind = behind.rgb * (1.0 - metallic) * (1.0 - through);
+  s.coat_normal = normal;
+  s.coat = vec2(coat.y, clamp(coat.w, 0.045, 1.0));
+  s.occlusion = mix(1.0, texture(occlusion_map, from.uv).r, numbers.w) * open_to_surroundings(from.position, normal);
 
   vec3 light = lit_by_lamps(s, open_to_lamp(from.position, normal)) + lit_by_surroundings(s);
   if (through > 0.0) {

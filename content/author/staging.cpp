@@ -41,7 +41,7 @@ std::int32_t add_light(Level& level, std::int32_t object) {
 }
 
 std::int32_t add_camera(Level& level, std::int32_t object) {
-  constexpr double kRoom = 1.35;  // [1] margin, so that an instrument over the object is in the picture too
+  constexpr double kRoom = 0.9;  // [1] margin: the tip of an instrument over the object is in the picture too
   const Target target = target_of(level, object);
   LevelNode node;
   node.name = "camera";

@@ -133,7 +133,7 @@ Level instrument() {
   level.about = "A rigid stylus and a probe press and stroke one soft organ.";
   const std::int32_t stone = add_material(level, "stone", kStone, 0.7f);
   LevelNode& body = add_soft(level, "organ", lying_organ, {{-0.13f, -0.07f, -0.10f}, {0.14f, 0.07f, 0.11f}}, 0.006,
-                             0.021, 8e3, add_material(level, "liver", kLiver, 0.3f));
+                             0.021, 8e3, add_tissue(level, "liver", 0.08f));
   body.soft_body->pinned = {{-0.2f, -0.1f, -0.2f}, {0.2f, -0.022f, 0.2f}};
   add_fixed(level, "table", {0.16, 0.008, 0.13}, {0.0, -0.060, 0.0}, 0.0, stone);
   add_stylus(level, stylus_path().front());

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "content/author/presets.h"
 #include "content/generate/effects_level.h"
 #include "content/generate/fields_level.h"
 #include "content/generate/instrument_levels.h"
@@ -183,11 +184,7 @@ Level inclusion(const Detail& detail) {
   Level level;
   level.name = "inclusion";
   level.about = "Two fingers search a pad for a hard spot that cannot be seen, only felt.";
-  Material skin;
-  skin.name = "skin";
-  skin.base_color = vec4(0.60f, 0.33f, 0.25f, 1.0f);
-  skin.roughness = 0.5f;
-  level.materials.push_back(skin);
+  level.materials.push_back(look_of(*find_preset("skin"), 0.03f));
   Primitive primitive = to_primitive(cover(solid, detail.pad_coarse, detail.pad_doublings), solid);
   primitive.material = 0;
   primitive.uv.clear();  // no painting: the hard spot can only be felt

@@ -33,7 +33,7 @@ Level palpation() {
   level.name = "palpation";
   level.about = "A finger presses place by place on a soft pad, and feels the lump inside that cannot be seen.";
   LevelNode& pad = add_soft(level, "pad", rounded_box(kPadHalf, 0.005), around(kPadHalf + 0.007), 0.003, 0.007, 8e3,
-                            add_material(level, "skin", kSkin, 0.45f));
+                            add_tissue(level, "skin", 0.03f));
   place(pad, {0.0, {0, -kPadHalf.y, 0}, dvec3(0)});
   pad.soft_body->poisson = 0.45;
   pad.soft_body->contact = SoftContact::kSplit;

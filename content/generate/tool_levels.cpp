@@ -9,7 +9,7 @@ namespace {
 
 // A hand of soft tissue, stiff enough to keep its fingers straight, on a bone with a strong virtual coupling.
 void add_hand(Level& level, const Waypoint& start) {
-  const std::int32_t skin = add_material(level, "skin", kSkin, 0.45f);
+  const std::int32_t skin = add_tissue(level, "skin", 0.02f);
   LevelNode& node = add_soft(level, "hand", hand_solid(), hand_box(), 0.0042, 0.0115, 2e5, skin);
   place(node, start);
   node.soft_body->density = 500.0;
@@ -64,7 +64,7 @@ Level hand() {
   level.name = "hand";
   level.about = "A soft hand presses and strokes a soft organ, sticks, slips and rolls on it.";
   const std::int32_t stone = add_material(level, "stone", kStone, 0.7f);
-  const std::int32_t liver = add_material(level, "liver", kLiver, 0.3f);
+  const std::int32_t liver = add_tissue(level, "liver", 0.08f);
   // The organ lies on its back: its groove points up.
   const Solid upright = organ();
   const Solid lying = [upright](dvec3 p) { return upright({p.x, -p.z, p.y}); };
@@ -104,7 +104,7 @@ Level hand_crowd() {
   add_cup("cup", {-0.085, 0.002, -0.010});
   add("ball", ball(0.026), dvec3(0.026), {-0.085, 0.0300, -0.010}, kCoral);
   add_cup("little_cup", {-0.025, 0.002, -0.010});
-  add("little_ball", ball(0.022), dvec3(0.022), {-0.025, 0.0250, -0.010}, kLiver);
+  add("little_ball", ball(0.022), dvec3(0.022), {-0.025, 0.0250, -0.010}, {0.50f, 0.13f, 0.11f});
   add_hand(level, crowd_path().front());
   level.nodes.back().soft_body->friction_static = level.nodes.back().soft_body->friction_sliding = 0.5;
   add_view(level, {0.06, 0.15, -0.32}, {-0.01, 0.02, 0.0}, "sky.exr", {0.3, 0.8, -0.4});

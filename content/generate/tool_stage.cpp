@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "content/author/presets.h"
 #include "content/generate/instrument.h"
 #include "content/generate/stage.h"
 #include "content/generate/strokes.h"
@@ -77,6 +78,11 @@ Solid ball(double radius) {
 
 Solid torus(double major, double minor) {
   return [major, minor](dvec3 p) { return length(dvec2(length(dvec2(p.x, p.z)) - major, p.y)) - minor; };
+}
+
+std::int32_t add_tissue(Level& level, const std::string& preset, float thickness) {
+  level.materials.push_back(look_of(*find_preset(preset), thickness));
+  return static_cast<std::int32_t>(level.materials.size()) - 1;
 }
 
 LevelNode& add_shape(Level& level, const std::string& name, const Solid& solid, const Box& box, double cell,

@@ -12,7 +12,7 @@
 
 namespace pliant::generate {
 
-inline constexpr vec3 kSkin{0.72f, 0.42f, 0.32f}, kStone{0.42f, 0.44f, 0.47f}, kLiver{0.50f, 0.13f, 0.11f},
+inline constexpr vec3 kSkin{0.72f, 0.42f, 0.32f}, kStone{0.42f, 0.44f, 0.47f},
     kSteel{0.60f, 0.62f, 0.65f};  // linear RGB
 
 // A device pose at a time; the motion between waypoints is smooth.
@@ -32,6 +32,8 @@ Solid ball(double radius);
 // A torus about +Y. [m]
 Solid torus(double major, double minor);
 
+// The look of a preset on a body of this thickness [m]. Returns the material's index.
+std::int32_t add_tissue(Level& level, const std::string& preset, float thickness);
 // A node whose mesh covers `solid`; `cell` [m] is the grid spacing.
 LevelNode& add_shape(Level& level, const std::string& name, const Solid& solid, const Box& box, double cell,
                      std::int32_t material);

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "content/level/zones.h"
+#include "content/mesh/mesh_border.h"
 #include "content/mesh/mesh_crease.h"
 #include "content/mesh/mesh_draw.h"
 #include "content/mesh/mesh_finer.h"
@@ -230,7 +231,17 @@ Result<TouchMesh> build_touch_mesh(const std::string& name, std::span<const Prim
   lay_out(touch.welded, mesh);
   if (stops()) return stopped;
   touch.corners = corners_of(mesh);
-  const std::vector<SideAgainst> against = connect_triangles(mesh, touch.corners, touch.report);
+  std::vector<SideAgainst> against = connect_triangles(mesh, touch.corners, touch.report);
+  if (touch.report.border_edges > 0)
+    if (const std::uint32_t joined = join_borders(mesh, touch.welded, touch.gathered); joined > 0) {
+      touch.report = {};
+      touch.report.joined_vertices = joined;
+      mesh.box = {};
+      touch.welded = weld(touch.gathered, options.mend_winding, touch.report);
+      lay_out(touch.welded, mesh);
+      touch.corners = corners_of(mesh);
+      against = connect_triangles(mesh, touch.corners, touch.report);
+    }
   if (options.mend_winding) {
     const std::vector<std::uint8_t> turned =
         find_wrong_winding(primitives, to_object, touch.welded, against, mesh, touch.gathered, touch.report);

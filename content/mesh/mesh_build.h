@@ -17,7 +17,8 @@ namespace pliant {
 
 // Repairs and defects of the mesh.
 struct MeshReport {
-  std::uint32_t welded_vertices = 0;       // coincident positions that were merged
+  std::uint32_t welded_vertices = 0;  // coincident positions that were merged
+  std::uint32_t joined_vertices = 0;  // of borders, merged with another that was nearer than rounding (mesh_border.h)
   std::uint32_t degenerate_triangles = 0;  // zero area or a repeated corner: dropped
   std::uint32_t duplicate_triangles =
       0;                           // the same three corners again, in any order: not touched (a reversed one is drawn)

@@ -153,6 +153,7 @@ void SoftPanel::draw_material(Editor& editor, const DocumentNode& node) {
         to.friction_static = from.friction_static;
         to.friction_sliding = from.friction_sliding;
       }
+      add_look(level, at, preset);
       return Status(Done{});
     });
   }

@@ -217,6 +217,8 @@ Result<std::vector<Led>> author_level(const AuthorOptions& options, Plan& plan, 
   for (const std::int32_t node : plan.surface)
     if (const Status s = make_touchable_surface(level, node, with_parts(surface_of(*plan.preset))); !s)
       return s.error();
+  for (const std::vector<std::int32_t>* nodes : {&plan.soft, &plan.surface})
+    for (const std::int32_t node : *nodes) add_look(level, node, *plan.preset);
   // New nodes become roots after all shown nodes. Nodes of other scenes come after them and are unchanged.
   const std::int32_t object = plan.soft.empty() ? plan.surface.front() : plan.soft.front();
   std::vector<Led> led;

@@ -114,6 +114,7 @@ std::vector<std::string> problems(const ObjectReport& object) {
   };
   if (!object.refused.empty()) list.push_back(object.refused);
   const MeshReport& r = object.report;
+  add(r.joined_vertices, "border vertex", "border vertices", "joined with others that differ by rounding alone");
   add(r.degenerate_triangles, "degenerate triangle", "degenerate triangles", "dropped");
   add(r.duplicate_triangles, "duplicate triangle", "duplicate triangles", "dropped");
   add(r.flush_walls, "pair of triangles", "pairs of triangles",
@@ -179,6 +180,7 @@ OrderedJson describe(const Level& level, const std::vector<ObjectReport>& object
                     {"closed", object.mesh.closed},
                     {"mean_edge_m", object.mesh.mean_edge},
                     {"welded_vertices", object.report.welded_vertices},
+                    {"joined_vertices", object.report.joined_vertices},
                     {"degenerate_triangles", object.report.degenerate_triangles},
                     {"duplicate_triangles", object.report.duplicate_triangles},
                     {"flush_walls", object.report.flush_walls},

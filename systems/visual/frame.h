@@ -9,6 +9,7 @@
 namespace pliant {
 
 inline constexpr unsigned kMaxLamps = 4;
+inline constexpr unsigned kMostShadingBalls = 16;
 
 struct LampConstants {
   vec4 place{0, 1, 0, 0};
@@ -37,9 +38,10 @@ struct FrameConstants {
   vec4 picture{1, 1, 0, 0};
   vec4 shadow{0};
   std::array<LampConstants, kMaxLamps> lamps{};
+  std::array<vec4, kMostShadingBalls> balls{};
   glm::uvec4 modes{0};
 };
-static_assert(sizeof(FrameConstants) == 3 * 64 + 16 + 9 * 16 + 3 * 16 + kMaxLamps * 64 + 16);
+static_assert(sizeof(FrameConstants) == 3 * 64 + 16 + 9 * 16 + 3 * 16 + kMaxLamps * 64 + kMostShadingBalls * 16 + 16);
 
 // Binding points, as written in the shaders.
 enum UniformBinding : unsigned { kFrameBinding = 0, kPlacementBinding = 1, kMaterialBinding = 2 };

@@ -279,6 +279,15 @@ void Markers::draw() const {
   }
 }
 
+std::uint32_t Markers::balls(std::span<vec4> balls) const {
+  const std::size_t count = std::min(balls.size(), placed_[kBall].size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Instance& ball = placed_[kBall][i];
+    balls[i] = {ball.row_x.w, ball.row_y.w, ball.row_z.w, length(vec3(ball.row_x.x, ball.row_y.x, ball.row_z.x))};
+  }
+  return static_cast<std::uint32_t>(count);
+}
+
 void Markers::draw_shadow() const {
   shadow_.use();
   glBindVertexArray(layout_.id());

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "components/probe_shape.h"
@@ -26,6 +27,8 @@ class Markers {
   // Lays out and uploads every marker; returns the bytes uploaded.
   std::size_t upload(const Viewpoint& viewpoint, const RenderOptions& options);
   void draw() const;
+  // Middle and radius [m] of the balls of the last upload, at most as many as `balls` holds; returns their number.
+  std::uint32_t balls(std::span<vec4> balls) const;
   // Only the balls, into the current shadow map: a stylus leans with the eye, and an arrow is not an object.
   void draw_shadow() const;
   bool changed() const { return changed_; }  // a ball moved since the last upload

@@ -12,8 +12,23 @@ namespace {
 
 // Block MaterialOf of shaders/material.glsl.
 struct MaterialConstants {
-  vec4 base_color, emissive, numbers, coat, volume, absorption;
+  vec4 base_color, emissive, numbers, coat, volume, absorption, specular, scatter, behind;
 };
+
+// Light that enters a body leaves it again within its mean free path. Round a body of this thickness it wraps by the
+// ratio of the two (docs/reference.md). A thin sheet (no thickness) returns less and lets the rest through.
+void scatter_of(const Material& m, vec3 absorption, MaterialConstants& out) {
+  const float through = m.diffuse_transmission;
+  if (through <= 0) return;
+  if (m.thickness <= 0) {
+    out.specular.w = through;
+    out.behind = vec4(through * m.diffuse_transmission_color, 0);
+    return;
+  }
+  const vec3 free_path = 1.0f / glm::max(absorption, vec3(1e-3f));  // [m]
+  out.scatter = vec4(through * free_path / (free_path + m.thickness), 1);
+  out.behind = vec4(through * m.diffuse_transmission_color * glm::exp(-absorption * m.thickness), 0);
+}
 
 MaterialConstants constants_of(const Material& m) {
   const float straight_on = (m.ior - 1) / (m.ior + 1);
@@ -21,13 +36,19 @@ MaterialConstants constants_of(const Material& m) {
   const vec3 absorption =
       absorbs ? -glm::log(glm::max(m.attenuation_color, vec3(1e-4f))) / m.attenuation_distance : vec3(0);
   const bool relief = m.height_texture >= 0;
-  return {.base_color = m.base_color,
-          .emissive = vec4(m.emissive, m.alpha == Material::Alpha::kMask ? m.alpha_cutoff : 0.0f),
-          .numbers = {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength},
-          .coat = {m.alpha == Material::Alpha::kBlend ? 1.0f : 0.0f, straight_on * straight_on,
-                   relief ? m.height_scale : 0.0f, 0},
-          .volume = {m.transmission, std::max(m.ior, 1.0f), m.thickness, 0},
-          .absorption = vec4(absorption, 0)};
+  MaterialConstants out{
+      .base_color = m.base_color,
+      .emissive = vec4(m.emissive, m.alpha == Material::Alpha::kMask ? m.alpha_cutoff : 0.0f),
+      .numbers = {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength},
+      .coat = {m.alpha == Material::Alpha::kBlend ? 1.0f : 0.0f, m.clearcoat, relief ? m.height_scale : 0.0f,
+               m.clearcoat_roughness},
+      .volume = {m.transmission, std::max(m.ior, 1.0f), m.thickness, 0},
+      .absorption = vec4(absorption, 0),
+      .specular = vec4(m.specular * glm::min(straight_on * straight_on * m.specular_color, vec3(1)), 0),
+      .scatter = vec4(0),
+      .behind = vec4(0)};
+  scatter_of(m, absorption, out);
+  return out;
 }
 
 // A mostly transparent material casts no shadow worth drawing.

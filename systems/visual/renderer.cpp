@@ -76,6 +76,7 @@ std::size_t Renderer::Parts::upload(const Viewpoint& viewpoint, int width, int h
   if (shadow.place(constants.lamps[0], scene, constants) && options.shadows) constants.modes.y |= kShadowMode;
   shaded = constants.modes.y & kShadowMode;
   std::size_t travelled = surfaces.upload() + markers.upload(viewpoint, options);
+  if (options.markers && options.shadows) constants.modes.z = markers.balls(constants.balls);
   if (options.tetrahedra) travelled += tetrahedra.upload();
   through = options.refraction && surfaces.has_glass();
   if (through) {

@@ -82,6 +82,12 @@ Level everything() {
   material.thickness_texture = 0;
   material.attenuation_color = {0.9f, 0.1f, 0.2f};
   material.attenuation_distance = 0.02f;
+  material.specular = 0.7f;
+  material.specular_color = {0.9f, 0.8f, 1.0f};
+  material.clearcoat = 0.6f;
+  material.clearcoat_roughness = 0.15f;
+  material.diffuse_transmission = 0.4f;
+  material.diffuse_transmission_color = {0.9f, 0.3f, 0.2f};
   material.alpha = Material::Alpha::kMask;
   material.alpha_cutoff = 0.33f;
   material.double_sided = true;

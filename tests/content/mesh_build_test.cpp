@@ -98,6 +98,39 @@ TEST(MeshBuild, UnsharedSphereWeldsToTheEulerCountAndIsClosed) {
   EXPECT_TRUE(built.mesh.closed);
 }
 
+// A sphere by angles whose sines are rounded: its seam and its lower pole have copies that differ in the last digits.
+Primitive rounded_sphere(std::uint32_t rows) {
+  Primitive out;
+  const std::uint32_t columns = 2 * rows;
+  for (std::uint32_t j = 0; j <= rows; ++j)
+    for (std::uint32_t i = 0; i <= columns; ++i) {
+      const double down = std::numbers::pi * j / rows, around = 2 * std::numbers::pi * i / columns;
+      out.position.push_back(
+          0.05f * vec3(std::sin(down) * std::cos(around), std::cos(down), std::sin(down) * std::sin(around)));
+    }
+  for (std::uint32_t j = 0; j < rows; ++j)
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const std::uint32_t a = j * (columns + 1) + i, b = a + columns + 1;
+      out.index.insert(out.index.end(), {a, a + 1, b, a + 1, b + 1, b});
+    }
+  return out;
+}
+
+TEST(MeshBuild, SeamsAndPolesThatDifferByRoundingAreClosed) {
+  for (const std::uint32_t rows : {6u, 17u, 40u}) {
+    const BuiltMesh built = build(rounded_sphere(rows));
+    EXPECT_GT(built.report.joined_vertices, 0u) << rows;
+    EXPECT_EQ(built.report.border_edges + built.report.non_manifold_edges, 0u) << rows;
+    EXPECT_TRUE(built.mesh.closed) << rows;
+    EXPECT_EQ(built.mesh.vertex_count, 2 * rows * (rows - 1) + 2) << rows;
+  }
+  Primitive two = sheet(3);  // a gap that is no rounding stays
+  const std::size_t count = two.position.size(), indices = two.index.size();
+  for (std::size_t v = 0; v < count; ++v) two.position.push_back(two.position[v] + vec3(0, 1e-5f, 0));
+  for (std::size_t i = 0; i < indices; ++i) two.index.push_back(two.index[i] + static_cast<std::uint32_t>(count));
+  EXPECT_EQ(build(two).report.joined_vertices, 0u);
+}
+
 TEST(MeshBuild, VertexAreasSumToTheTriangles) {
   for (const Primitive& p : {icosphere(4), sheet(17)}) {
     const Mesh mesh = build(p).mesh;

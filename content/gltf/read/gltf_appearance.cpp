@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "content/files/image.h"
 #include "content/keys/json_integer.h"
 #include "runtime/long_work.h"
@@ -41,6 +43,23 @@ void read_relief(const SourceDocument& document, const Json& json, Material& out
   out.height_scale = scale;
 }
 
+// Notes, once each, the parts of a material that are not drawn.
+void note_undrawn(const Json& material, Level& level) {
+  const auto say = [&](const std::string& sentence) {
+    if (std::find(level.notes.begin(), level.notes.end(), sentence) == level.notes.end())
+      level.notes.push_back(sentence);
+  };
+  for (const char* extension :
+       {"KHR_materials_sheen", "KHR_materials_anisotropy", "KHR_materials_dispersion", "KHR_materials_iridescence",
+        "KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"})
+    if (extension_of(material, extension)) say(std::string(extension) + " is not drawn");
+  for (const char* extension :
+       {"KHR_materials_specular", "KHR_materials_clearcoat", "KHR_materials_diffuse_transmission"})
+    if (const Json* found = extension_of(material, extension))
+      for (const auto& [key, value] : found->items())
+        if (key.ends_with("Texture")) say(fmt::format("{}: its textures are not drawn, its factors are", extension));
+}
+
 }  // namespace
 
 Material material_of(const SourceDocument& document, std::size_t material, Level& level) {
@@ -75,6 +94,17 @@ Material material_of(const SourceDocument& document, std::size_t material, Level
   out.thickness_texture = texture_of(document, volume, "thicknessTexture", level);
   out.attenuation_color = vector_of(value_of(volume, "attenuationColor", std::vector<double>{}), vec3(1));
   out.attenuation_distance = value_of(volume, "attenuationDistance", 0.0f);
+  const Json& specular = part(extension_of(json, "KHR_materials_specular"));
+  out.specular = value_of(specular, "specularFactor", 1.0f);
+  out.specular_color = vector_of(value_of(specular, "specularColorFactor", std::vector<double>{}), vec3(1));
+  const Json& clearcoat = part(extension_of(json, "KHR_materials_clearcoat"));
+  out.clearcoat = value_of(clearcoat, "clearcoatFactor", 0.0f);
+  out.clearcoat_roughness = value_of(clearcoat, "clearcoatRoughnessFactor", 0.0f);
+  const Json& diffuse = part(extension_of(json, "KHR_materials_diffuse_transmission"));
+  out.diffuse_transmission = value_of(diffuse, "diffuseTransmissionFactor", 0.0f);
+  out.diffuse_transmission_color =
+      vector_of(value_of(diffuse, "diffuseTransmissionColorFactor", std::vector<double>{}), vec3(1));
+  note_undrawn(json, level);
   out.alpha = from.alphaMode == "MASK"    ? Material::Alpha::kMask
               : from.alphaMode == "BLEND" ? Material::Alpha::kBlend
                                           : Material::Alpha::kOpaque;

@@ -38,6 +38,7 @@ constexpr const char* kSupported[] = {"KHR_mesh_quantization",
                                       "KHR_materials_specular",
                                       "KHR_materials_sheen",
                                       "KHR_materials_clearcoat",
+                                      "KHR_materials_diffuse_transmission",
                                       "KHR_materials_anisotropy",
                                       "KHR_materials_dispersion",
                                       "KHR_materials_iridescence"};

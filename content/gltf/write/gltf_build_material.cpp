@@ -39,7 +39,7 @@ void add_material(const Material& m, ModelWriter& writer) {
   float strength = 1.0f;
   while (std::max({m.emissive.x, m.emissive.y, m.emissive.z}) > strength) strength *= 2.0f;
   out.emissiveFactor = numbers(m.emissive / strength);
-  tinygltf::Value::Object emission, ior, transmission, volume;
+  tinygltf::Value::Object emission, ior, transmission, volume, specular, clearcoat, diffuse;
   if (strength != 1.0f) emission["emissiveStrength"] = value(strength);
   if (m.ior != 1.5f) ior["ior"] = value(m.ior);
   if (m.transmission != 0.0f) transmission["transmissionFactor"] = value(m.transmission);
@@ -48,6 +48,16 @@ void add_material(const Material& m, ModelWriter& writer) {
   if (m.thickness_texture >= 0) volume["thicknessTexture"] = texture_value(m.thickness_texture);
   if (m.attenuation_color != vec3(1)) volume["attenuationColor"] = value(m.attenuation_color);
   if (m.attenuation_distance != 0.0f) volume["attenuationDistance"] = value(m.attenuation_distance);
+  if (m.specular != 1.0f) specular["specularFactor"] = value(m.specular);
+  if (m.specular_color != vec3(1)) specular["specularColorFactor"] = value(m.specular_color);
+  if (m.clearcoat != 0.0f) clearcoat["clearcoatFactor"] = value(m.clearcoat);
+  if (m.clearcoat_roughness != 0.0f) clearcoat["clearcoatRoughnessFactor"] = value(m.clearcoat_roughness);
+  if (m.diffuse_transmission != 0.0f) diffuse["diffuseTransmissionFactor"] = value(m.diffuse_transmission);
+  if (m.diffuse_transmission_color != vec3(1))
+    diffuse["diffuseTransmissionColorFactor"] = value(m.diffuse_transmission_color);
+  writer.extend(out.extensions, "KHR_materials_specular", std::move(specular));
+  writer.extend(out.extensions, "KHR_materials_clearcoat", std::move(clearcoat));
+  writer.extend(out.extensions, "KHR_materials_diffuse_transmission", std::move(diffuse));
   writer.extend(out.extensions, "KHR_materials_emissive_strength", std::move(emission));
   writer.extend(out.extensions, "KHR_materials_ior", std::move(ior));
   writer.extend(out.extensions, "KHR_materials_transmission", std::move(transmission));
