@@ -124,7 +124,7 @@ TEST(MeshBuild, SeamsAndPolesThatDifferByRoundingAreClosed) {
     EXPECT_TRUE(built.mesh.closed) << rows;
     EXPECT_EQ(built.mesh.vertex_count, 2 * rows * (rows - 1) + 2) << rows;
   }
-  Primitive two = sheet(3);  // a gap that is no rounding stays
+  Primitive two = sheet(3);  // a gap wider than rounding stays
   const std::size_t count = two.position.size(), indices = two.index.size();
   for (std::size_t v = 0; v < count; ++v) two.position.push_back(two.position[v] + vec3(0, 1e-5f, 0));
   for (std::size_t i = 0; i < indices; ++i) two.index.push_back(two.index[i] + static_cast<std::uint32_t>(count));
