@@ -80,10 +80,12 @@ static class Program
             var c = mesh.vertices[mesh.triangles[i + 2]];
             Expect((b.z - a.z) * (c.x - a.x) - (b.x - a.x) * (c.z - a.z) > 0, "the order of a triangle");
         }
+        // Up and down until it is felt: on a busy machine a probe may be lost for a while.
         float most = 0;
-        for (int frame = 0; frame < 40; ++frame)
+        for (int frame = 0; frame < 2000 && !(most > 0.1f && mesh.vertices[at].y < summit.y - 0.0005f); ++frame)
         {
-            level.transform.position = new UnityEngine.Vector3(summit.x, summit.y + 0.002f - 0.0002f * frame, summit.z);
+            float press = 0.0002f * (30 - Math.Abs(frame % 60 - 30));
+            level.transform.position = new UnityEngine.Vector3(summit.x, summit.y + 0.002f - press, summit.z);
             Call(level, "Update");
             if (level.Touching) most = Math.Max(most, level.Force.y);
             Thread.Sleep(10);
