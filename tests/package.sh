@@ -81,7 +81,8 @@ for macros in -DGLM_FORCE_LEFT_HANDED -DGLM_FORCE_DEPTH_ZERO_TO_ONE "-DGLM_FORCE
   check_header $macros || fail "glm with $macros is refused"
 done
 
-cc -std=c11 -Wall -Wextra -Werror -pedantic -fsyntax-only -xc "$work/installed/include/pliant.h"
+echo '#include <pliant.h>' >"$work/one.c"
+cc -std=c11 -Wall -Wextra -Werror -pedantic -fsyntax-only -I "$work/installed/include" "$work/one.c"
 
 cp -r "$2" "$work/examples"  # away from the sources
 configure "$work/examples" || { cat "$work/configure.log"; exit 1; }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The binary interface of libpliant.so is the committed one, and what is made from its header is as committed.
+# The binary interface of libpliant.so is the committed one, what is made from its header is as committed, and what its
+# header and docs/embedding.md show compiles.
 # Usage: abi.sh SOURCES LIBRARY CC [--write]
 set -euo pipefail
 source=$1 library=$2 cc=$3
@@ -28,3 +29,16 @@ diff <(sed -nE 's/^symbol T ([a-z_0-9]+)@.*$/\1/p' "$work/abi.txt" | sort) \
 diff "$source/tests/c/abi.txt" "$work/abi.txt" || { echo "the ABI changed (<: committed): see its first lines"; exit 1; }
 diff "$source/bindings/unity/PliantNative.cs" "$work/PliantNative.cs" >/dev/null ||
   { echo "bindings/unity/PliantNative.cs is not what the header gives; run tests/c/abi.sh ... --write"; exit 1; }
+# Each ```c block, and the program in the header's first comment, as the body of a function.
+awk -v head='#include <pliant.h>\n#include <stdio.h>\n#include <stdlib.h>\nint more_pictures(void);' '
+  BEGIN { print head }
+  /^```c$/ { printf "int shown_%d(pliant_session* session, pliant_pose pose);\nint shown_%d(pliant_session* session, pliant_pose pose) {(void)pose;(void)session;{\n", ++n, n; inside = 1; next }
+  /^```$/ { if (inside) print "}return 0;}"; inside = 0; next }
+  inside' "$source/docs/embedding.md" >"$work/shown.c"
+{
+  echo 'int in_header(void);int in_header(void) {'
+  sed -nE '/^#pragma/q; s|^//   (.*)|\1|p' "$source/include/pliant.h"
+  echo 'return 0;}'
+} >>"$work/shown.c"
+[[ $(grep -c '^int shown' "$work/shown.c") -ge 4 ]] || { echo "docs/embedding.md shows no C"; exit 1; }
+"$cc" -std=c11 -Wall -Wextra -Werror -pedantic -I"$source/include" -fsyntax-only "$work/shown.c"
