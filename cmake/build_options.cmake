@@ -22,10 +22,10 @@ endif()
 # build a local may legally shadow such a name of another file, so the shadow warning is enabled only in the debug
 # build, file by file. GCC treats an unnamed namespace in an included file as one in a header.
 if(CMAKE_UNITY_BUILD)
-  add_compile_options(-Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  add_compile_options(-Wno-shadow $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
 endif()
 # A driver's thread may run a function that is called by the vendor's loop (Driver::run).
-add_compile_options($<$<CXX_COMPILER_ID:Clang>:-Wno-overloaded-virtual>)
+add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-overloaded-virtual>)
 
 # Also needed by targets that link to our libraries.
 add_library(pliant_options INTERFACE)

@@ -62,7 +62,7 @@ nm -C "$(find "$work/installed" -name 'libpliant_content.*' | head -1)" | grep -
   fail "tinygltf is not under our own name"
 
 # Only public headers; each compiles alone and includes only installed ones.
-find "$work/installed/include" -name '*.h' | grep -v '/include/pliant/[a-z_]*\.h$' && fail "not public"
+find "$work/installed/include" -name '*.h' | grep -vE '/include/pliant(\.h|/[a-z_]*\.h)$' && fail "not public"
 check_header() { c++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I "$work/installed/include" "$work/one.cpp" "$@"; }
 for header in "$work"/installed/include/pliant/*.h; do
   echo "#include <pliant/$(basename "$header")>" >"$work/one.cpp"
@@ -81,6 +81,9 @@ for macros in -DGLM_FORCE_LEFT_HANDED -DGLM_FORCE_DEPTH_ZERO_TO_ONE "-DGLM_FORCE
   check_header $macros || fail "glm with $macros is refused"
 done
 
+echo '#include <pliant.h>' >"$work/one.c"
+cc -std=c11 -Wall -Wextra -Werror -pedantic -fsyntax-only -I "$work/installed/include" "$work/one.c"
+
 cp -r "$2" "$work/examples"  # away from the sources
 configure "$work/examples" || { cat "$work/configure.log"; exit 1; }
 compile "$work/examples"
@@ -93,7 +96,7 @@ refused() {  # COMPONENTS SENTENCE
   if configure "$work/wrong"; then fail "components $1 are found"; fi
   tr -s ' \n' ' ' <"$work/configure.log" | grep -qE "$2" || { cat "$work/configure.log"; fail "no sentence: $2"; }
 }
-refused "engine viewer" 'no component .viewer.; its components are engine, content, visual and devices'
+refused "engine viewer" 'no component .viewer.; its components are engine, content, visual, devices and c'
 visual=$(find "$work/installed" -name pliant-visual-targets.cmake)
 mv "$visual" "$work/kept"
 refused visual 'installed without its component .visual'

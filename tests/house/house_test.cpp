@@ -28,6 +28,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"content", {"runtime", "components"}},
     {"devices", {"runtime", "components"}},
     {"engine", {"runtime", "components", "systems", "content", "devices"}},
+    {"c", {}},
     {"viewer", {"runtime", "components", "systems", "content", "engine", "plot"}},
     {"editor", {"runtime", "components", "systems", "content", "engine", "devices", "plot", "viewer"}},
     {"scenes", {"runtime", "components", "systems", "content"}},

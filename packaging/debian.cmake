@@ -1,0 +1,61 @@
+# Debian packages by `cpack -G DEB` (`./dev package`): libpliant0, libpliant-dev, pliant. A further one (python3-pliant) is
+# a component, with its name in CPACK_COMPONENTS_ALL and its CPACK_DEBIAN_<COMPONENT>_... below.
+set(CPACK_GENERATOR DEB)
+set(PLIANT_MAINTAINER "The Pliant contributors <noreply@pliant.invalid>" CACHE STRING "Maintainer of the Debian packages")
+set(CPACK_PACKAGE_CONTACT "${PLIANT_MAINTAINER}")
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "visuo-haptic engine: touch soft things, feel the force")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL library dev command)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ
+                                                WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpliant0)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "libegl1, libgl1-mesa-dri")
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "A probe or tool touches soft objects, and its force is computed at 1 kHz.
+This package has the shared library with the C interface.")
+# Beside CPack's scripts that call ldconfig, Debian's trigger.
+file(WRITE ${PROJECT_BINARY_DIR}/packaging/triggers "activate-noawait ldconfig\n")
+file(WRITE ${PROJECT_BINARY_DIR}/packaging/shlibs "libpliant 0 libpliant0 (>= ${PROJECT_VERSION})\n")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/packaging/triggers ${PROJECT_BINARY_DIR}/packaging/shlibs)
+
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libpliant-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libpliant0 (= ${PROJECT_VERSION}), libglm-dev, libfmt-dev, libmetis-dev, libdraco-dev, libopenexr-dev, libassimp-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "libgl-dev, libegl-dev, libopengl-dev, libepoxy-dev, libhidapi-dev, libusb-1.0-0-dev, libwebsockets-dev, libssl-dev, pkg-config")
+set(CPACK_DEBIAN_DEV_DESCRIPTION "A probe or tool touches soft objects, and its force is computed at 1 kHz.
+This package has the C header pliant.h, the C++ headers and static libraries,
+the CMake package and the pkg-config file.")
+
+set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME pliant)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "libegl1, libgl1-mesa-dri, fonts-inter, fonts-dejavu-core, fonts-droid-fallback")
+set(CPACK_DEBIAN_COMMAND_DESCRIPTION "Runs and edits levels of soft and rigid objects that probes, tools and haptic
+ devices touch; imports any mesh, measures forces, and writes pictures, plots
+and reports.")
+install(FILES packaging/lintian-overrides DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides RENAME libpliant0 COMPONENT library)
+
+# Text that Debian asks of each package.
+if(DEFINED ENV{SOURCE_DATE_EPOCH})
+  string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+else()
+  set(date "Thu, 01 Jan 1970 00:00:00 +0000")
+endif()
+find_program(PLIANT_GZIP gzip)
+foreach(component library dev command)
+  string(TOUPPER ${component} upper)
+  set(name ${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
+  set(folder ${PROJECT_BINARY_DIR}/packaging/${name})
+  file(WRITE ${folder}/changelog "pliant (${PROJECT_VERSION}) unstable; urgency=medium\n\n  * CHANGELOG.md of the sources.\n\n -- ${CPACK_PACKAGE_CONTACT}  ${date}\n")
+  execute_process(COMMAND ${PLIANT_GZIP} -9nf ${folder}/changelog)
+  install(FILES ${folder}/changelog.gz packaging/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
+endforeach()
+include(CPack)
