@@ -31,6 +31,6 @@ with Experiment("simulated", out / "trials.csv") as experiment:
 fit = psychometric([row["level"] for row in experiment.rows], [row["answer"] for row in experiment.rows])
 print(fit)                                                          # the hand's JND: 300 * 0.08 * sqrt(2) * 0.674 = 23 N/m
 try:
-    fit.plot(unit="N/m").figure.savefig(out / "psychometric.png", dpi=120)
+    fit.plot(unit="N/m", level="comparison", answer="share of `stiffer`").figure.savefig(out / "psychometric.png", dpi=120)
 except ImportError:
     print("no picture: matplotlib is not installed")

@@ -116,7 +116,7 @@ struct StreamPart {
 
 enum class NamedKind : std::uint8_t { kSurface, kSoftBody, kRigidBody, kTool, kProbe, kEffect };
 
-// What a name of the scene stands for.
+// The kind of a name of the scene, and its keys.
 struct NamedKeys {
   NamedKind kind = NamedKind::kSurface;
   std::vector<std::string> live;  // the keys that Session::set changes

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 def _content() -> list[Path]:
     """Folders with shipped levels: $PLIANT_CONTENT, the package's own, those of an installed or built command."""
+    import sys
+
     here = Path(__file__).parent
     folders = [here / "content/levels"]
     if "PLIANT_CONTENT" in os.environ:
@@ -32,6 +34,7 @@ def _content() -> list[Path]:
     command = command_or_none()
     if command is not None:
         folders.append(command.resolve().parent.parent / "share/pliant/content/levels")
+    folders.append(Path(sys.prefix) / "share/pliant/content/levels")
     folders.append(here.parent.parent / "share/pliant/content/levels")  # in a build tree
     return [folder for folder in folders if folder.is_dir()]
 
@@ -219,6 +222,8 @@ def _of_bytes(data: bytes, format: str | None, max_force: float) -> Scene:
             raise argument("source", "these bytes are neither .glb nor .gltf", "give their format: format='.stl'")
     import tempfile
 
+    if not isinstance(format, str) or not format.lstrip(".").isalnum():
+        raise argument("format", f"must be the suffix of a file, as '.stl'; got {format!r}")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / ("bytes" + ("" if format.startswith(".") else ".") + format)
         file.write_bytes(data)

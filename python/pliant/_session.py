@@ -306,6 +306,8 @@ class Run(Mapping[str, Felt]):
 
 def _rows(path: ArrayLike, where: str) -> NDArray[np.float64]:
     try:
+        if np.iscomplexobj(path):
+            raise TypeError
         rows = np.ascontiguousarray(path, dtype=np.float64)
     except (TypeError, ValueError):
         raise argument(where, "must be rows of numbers, all of one length", "give an array (n, 3) or (n, 7)") from None

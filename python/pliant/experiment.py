@@ -253,19 +253,19 @@ class Fit:
         level, inverse, count = np.unique(self.levels, return_inverse=True, return_counts=True)
         return level, np.bincount(inverse, self.answers.astype(float)) / count, count
 
-    def plot(self, axes: Any = None, unit: str = "") -> Any:
+    def plot(self, axes: Any = None, unit: str = "", level: str = "level", answer: str = "share of True") -> Any:
         """Draws the function, its interval and the shares with matplotlib; returns the axes."""
         if axes is None:
             import matplotlib.pyplot as plt  # type: ignore[import]
 
             axes = plt.subplots(figsize=(5, 3.6), layout="constrained")[1]
-        level, share, count = self.shares()
-        span = np.linspace(level[0] - 0.05 * np.ptp(level), level[-1] + 0.05 * np.ptp(level), 300)
+        at, share, count = self.shares()
+        span = np.linspace(at[0] - 0.05 * np.ptp(at), at[-1] + 0.05 * np.ptp(at), 300)
         axes.axvspan(*self.threshold_interval, color="tab:blue", alpha=0.15, lw=0,
                      label=f"{100 * self.confidence:.0f} % of the threshold")
         axes.plot(span, self(span), color="tab:blue", label=f"threshold {self.threshold:.4g}, JND {self.jnd:.3g} {unit}".rstrip())
-        axes.scatter(level, share, s=8 + 60 * count / count.max(), color="black", zorder=3, label="answers")
-        axes.set(xlabel=f"level [{unit}]" if unit else "level", ylabel="share of True", ylim=(-0.03, 1.03))
+        axes.scatter(at, share, s=8 + 60 * count / count.max(), color="black", zorder=3, label="answers")
+        axes.set(xlabel=f"{level} [{unit}]" if unit else level, ylabel=answer, ylim=(-0.03, 1.03))
         axes.legend(loc="best", fontsize="small")
         return axes
 

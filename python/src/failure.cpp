@@ -49,6 +49,11 @@ void Raised::keep(py::error_already_set& raised) {
   if (raised.trace()) PyException_SetTraceback(exception_, raised.trace().ptr());
 }
 
+bool Raised::any() {
+  const std::lock_guard lock(mutex_);
+  return exception_ != nullptr;
+}
+
 py::object Raised::take() {
   const std::lock_guard lock(mutex_);
   return py::reinterpret_steal<py::object>(std::exchange(exception_, nullptr));
@@ -59,6 +64,13 @@ Failure::Failure(pliant::Error e, std::shared_ptr<Raised> by)
 
 void wrong_argument(const std::string& where, const std::string& what, const std::string& cure) {
   throw Failure(pliant::Error{where, what, cure, "arguments"});
+}
+
+void Failure::caused_by(const std::shared_ptr<Raised>& raised) {
+  if (cause || !raised->any()) return;
+  cause = raised;
+  error.cure = "correct the driver, and restart() the session";
+  sentence = error.message();
 }
 
 void not_initialised(const char* type) {
@@ -81,6 +93,9 @@ void bind_errors(py::module_& module) {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Failure& failure) {
       raise(failure);
+    } catch (const py::cast_error&) {
+      raise(Failure(
+          pliant::Error{"", "an argument has the wrong type", "give a number where one is needed", "arguments"}));
     }
   });
 }

@@ -21,6 +21,7 @@ class Raised {
   Raised& operator=(const Raised&) = delete;
   ~Raised();
   void keep(py::error_already_set& raised);  // with the GIL; the first one is kept
+  bool any();                                // from any thread, without the GIL
   py::object take();                         // with the GIL; none: an empty object
 
  private:
@@ -33,6 +34,7 @@ struct Failure : std::exception {
   enum class Kind { kError, kArgument, kName };
   explicit Failure(pliant::Error e, std::shared_ptr<Raised> by = {});
   const char* what() const noexcept override { return sentence.c_str(); }
+  void caused_by(const std::shared_ptr<Raised>& raised);  // if that holds an exception
   pliant::Error error;
   Kind kind;
   std::shared_ptr<Raised> cause;

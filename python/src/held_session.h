@@ -84,7 +84,7 @@ class HeldSession {
         return result;
       }
     } catch (Failure& failure) {
-      if (!failure.cause) failure.cause = raised_;
+      failure.caused_by(raised_);
       throw;
     }
   }

@@ -48,7 +48,7 @@ py::tuple tick_pose(HeldSession& held, double x, double y, double z, double qw, 
   });
 }
 
-// What the other overloads do not take as it is: whole numbers, an array; anything else is refused with what there is.
+// For arguments that the other overloads do not take as they are: whole numbers, an array. Others are refused.
 py::tuple tick_any(HeldSession& held, const py::args& given) {
   double v[7] = {0, 0, 0, 1, 0, 0, 0};
   bool sound = given.size() == 3 || given.size() == 7;
