@@ -18,12 +18,20 @@ struct Named {
   std::vector<const Extension*> extensions;
 };
 
+NamedKind number_of(const Named& named) {
+  if (named.node.deformable) return NamedKind::kSurface;
+  if (named.node.probe) return NamedKind::kProbe;
+  if (named.node.handle) return NamedKind::kTool;
+  if (named.node.effect) return NamedKind::kEffect;
+  return named.node.soft_body ? NamedKind::kSoftBody : NamedKind::kRigidBody;
+}
+
+// In the order of NamedKind.
+constexpr const char* kKindWords[] = {
+    "a deformable surface", "a soft body", "a rigid body", "a tool", "a probe", "an effect"};
+
 const char* kind_of(const Named& named) {
-  if (named.node.deformable) return "a deformable surface";
-  if (named.node.probe) return "a probe";
-  if (named.node.handle) return "a tool";
-  if (named.node.effect) return "an effect";
-  return named.node.soft_body ? "a soft body" : "a rigid body";
+  return kKindWords[static_cast<std::size_t>(number_of(named))];
 }
 
 Result<Named> find_named(const SessionRun& p, const std::string& name) {
@@ -44,6 +52,14 @@ Result<Named> find_named(const SessionRun& p, const std::string& name) {
                   unknown("name", name, "the scene", "its objects, probes, tools and effects", names));
 }
 
+std::vector<std::string> live_keys_of(const Named& named) {
+  std::vector<std::string> keys;
+  for (const Extension* extension : named.extensions)
+    for (const Key& each : extension->keys)
+      if (why_not_live(*extension, each).empty()) keys.push_back(each.name);
+  return keys;
+}
+
 struct Found {
   const Extension* extension = nullptr;
   const Key* key = nullptr;
@@ -52,16 +68,14 @@ struct Found {
 // `live`: an existing key that cannot change is an error with its reason.
 Result<Found> find_named_key(const Named& named, const std::string& name, const std::string& key, bool live) {
   const std::string where = "`" + name + "`: " + key;
-  std::vector<std::string> keys;
   for (const Extension* extension : named.extensions) {
     if (const Key* const found = find_key(*extension, key)) {
       const std::string why = live ? why_not_live(*extension, *found) : std::string();
       if (!why.empty()) return Error{where, why};
       return Found{extension, found};
     }
-    for (const Key& each : extension->keys)
-      if (why_not_live(*extension, each).empty()) keys.push_back(each.name);
   }
+  const std::vector<std::string> keys = live_keys_of(named);
   std::string whose;
   for (const Extension& extension : extension_table())
     if (find_key(extension, key)) whose += (whose.empty() ? "" : " and ") + ("`" + extension.name + "`");
@@ -273,6 +287,12 @@ Result<double> Session::get(const std::string& object, const std::string& key) c
   const Json value = found->key->get(&now);
   if (!value.is_number()) return Error{"`" + object + "`: " + key, "is no single number"};
   return value.get<double>();
+}
+
+Result<NamedKeys> Session::keys(const std::string& name) const {
+  const Result<Named> named = find_named(*run_, name);
+  if (!named) return named.error();
+  return NamedKeys{number_of(*named), live_keys_of(*named)};
 }
 
 }  // namespace pliant

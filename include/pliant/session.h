@@ -114,6 +114,14 @@ struct StreamPart {
   std::uint32_t first = 0, count = 0;
 };
 
+enum class NamedKind : std::uint8_t { kSurface, kSoftBody, kRigidBody, kTool, kProbe, kEffect };
+
+// The kind of a name of the scene, and its keys.
+struct NamedKeys {
+  NamedKind kind = NamedKind::kSurface;
+  std::vector<std::string> live;  // the keys that Session::set changes
+};
+
 struct SessionRun;  // engine/session/session_run.h; not part of the public interface
 
 class Session {
@@ -184,6 +192,8 @@ class Session {
   Status set(const std::string& object, const std::string& key, const std::string& word);
   Status set(const std::string& object, const std::string& key, const std::vector<double>& values);
   Result<double> get(const std::string& object, const std::string& key) const;
+  // Of an object, probe, tool or effect.
+  Result<NamedKeys> keys(const std::string& name) const;
 
   // --- Results
   Result<Reading> reading(const std::string& effector) const;

@@ -305,6 +305,25 @@ TEST(SessionSet, WhatIsWrongIsSaid) {
   EXPECT_TRUE(session.set("tissue", "stiffness", 0 + 400)) << "whole numbers are numbers";
 }
 
+TEST(SessionSet, KeysAreThoseThatCanBeSet) {
+  Scene scene = press_scene();
+  scene.add_rigid_body("bowl", box(0.01f), {.fixed = true}, {.position = {0, -0.2, 0}});
+  Session session = opened(scene);
+  for (const auto& [name, kind] : {std::pair("tissue", NamedKind::kSurface), std::pair("bowl", NamedKind::kRigidBody),
+                                   std::pair("finger", NamedKind::kProbe)}) {
+    const auto keys = session.keys(name);
+    ASSERT_TRUE(keys);
+    EXPECT_EQ(keys->kind, kind);
+    EXPECT_FALSE(keys->live.empty());
+    for (const std::string& key : keys->live)
+      if (const auto value = session.get(name, key); value && (name != std::string("bowl") || key != "mass"))
+        EXPECT_TRUE(session.set(name, key, *value) || *value == 0.0) << name << ' ' << key;
+  }
+  EXPECT_THAT(session.keys("tissue")->live, testing::Contains("stiffness"));
+  EXPECT_THAT(session.keys("tissue")->live, testing::Not(testing::Contains("crease_angle")));
+  EXPECT_EQ(session.keys("tisue").error().code, "name.unknown");
+}
+
 // 0.8 is above the static coefficient of the scene until that has been set, too.
 TEST(SessionSet, WhatWasSetIsInARecordingWhateverItsOrder) {
   const std::filesystem::path file =

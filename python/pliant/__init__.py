@@ -1,0 +1,47 @@
+"""Pliant: touch soft things, feel the force at 1 kHz.
+
+    import pliant as pl
+    s = pl.Session("minimal")
+    fx, fy, fz = s.tick(0, -0.002, 0)
+
+SI units, right-handed, Y up, world frame. docs/python.md has the tour.
+"""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ._errors import ArgumentError, Error, UnknownName
+from ._pliant import (Contact, DeviceInfo, Event, Hit, Note, Reading, __version__, devices, driver_names,
+                      register_spring)
+from ._scene import Scene, level_file, levels
+from ._session import Body, Contacts, Felt, Hand, Named, Names, Run, Session, batch
+
+if TYPE_CHECKING:
+    from . import env, experiment
+    from ._command import fit, plot, study, sweep
+
+__all__ = [
+    "ArgumentError", "Body", "Contact", "Contacts", "DeviceInfo", "Error", "Event", "Felt", "Hand", "Hit", "UnknownName",
+    "Named", "Names", "Note", "Reading", "Run", "Scene", "Session", "__version__", "batch", "devices", "driver_names",
+    "env", "experiment", "fit", "level_file", "levels", "plot", "register_spring", "study", "sweep",
+]
+
+_LATER = {"fit": "_command", "plot": "_command", "study": "_command", "sweep": "_command", "env": "", "experiment": ""}
+
+
+def __getattr__(name: str) -> Any:
+    """Modules that a session does not need are imported when they are first used."""
+    import importlib
+
+    if name not in _LATER:
+        from ._errors import unknown
+
+        raise unknown(name, "name in pliant", __all__)
+    module = importlib.import_module("." + (_LATER[name] or name), __name__)
+    value = getattr(module, name) if _LATER[name] else module
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__
