@@ -53,7 +53,10 @@ void* make_handle(HandleKind kind, std::unique_ptr<Handle> object) {
     all.free.reserve(++all.count);  // a free slot is noted without an allocation
   }
   Slot& slot = *slot_at(index);
-  slot.object = std::move(object);
+  {
+    const std::lock_guard stopping(slot.devices);  // an emergency stop of the destroyed handle may look at it
+    slot.object = std::move(object);
+  }
   const std::uint64_t token = token_of(kind, ++slot.generation, index);
   slot.token.store(token, std::memory_order_release);
   return reinterpret_cast<void*>(token);

@@ -123,6 +123,12 @@ pliant_status pliant_pictures_draw_texture(pliant_pictures* pictures, const plia
   return with_pictures(pictures, __func__, [&](PicturesHandle& of, Held&) {
     throw_if_headless(of);
     if (!glIsTexture(texture)) throw Misuse{"`texture` is not one of the current context", "", "call.context"};
+    GLint wide = 0, high = 0;
+    glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &wide);
+    glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &high);
+    if (wide != width || high != height)
+      throw Misuse{"`texture` has " + std::to_string(wide) + " x " + std::to_string(high) + " pixels",
+                   "pass its width and height", "call.context"};
     struct Framebuffer {
       GLuint id = 0;
       Framebuffer() { glCreateFramebuffers(1, &id); }

@@ -618,7 +618,7 @@ PLIANT_API pliant_status pliant_pictures_view(pliant_pictures* pictures, pliant_
 PLIANT_API pliant_status pliant_pictures_picture(pliant_pictures* pictures, const pliant_view* view, int32_t width,
                                                  int32_t height, uint8_t* rgba, size_t room);
 // Into a framebuffer, or into a two-dimensional texture (GL_RGBA8 or GL_SRGB8_ALPHA8 of that size) of the current
-// context. Only for pictures in the current context. Framebuffer 0 is the window's.
+// context, whose first row is the lowest. Only for pictures in the current context. Framebuffer 0 is the window's.
 PLIANT_API pliant_status pliant_pictures_draw(pliant_pictures* pictures, const pliant_view* view, uint32_t framebuffer,
                                               int32_t width, int32_t height);
 PLIANT_API pliant_status pliant_pictures_draw_texture(pliant_pictures* pictures, const pliant_view* view,

@@ -208,6 +208,8 @@ echo "$said"
 echo "$said" | grep -q '0.2 N: the cube went  0.0 mm; the table carries 0.98 N; beside it is `table`' || fail "friction holds it"
 said=$("$run/headless_sweep" "$work/installed/share/pliant/content/levels/minimal.gltf" 2>&1)
 [[ $(echo "$said" | wc -l) -gt 100 ]] || { echo "$said" | head; fail "the sweep is too short"; }
+said=$("$run/hello_c" "$work/installed/share/pliant/content/levels/minimal.gltf")
+echo "$said" | tail -1 | grep -q 'depth  5.00 mm  force 1.500 N' || { echo "$said"; fail "300 N/m times 5 mm is 1.5 N"; }
 if [[ -x $run/own_renderer ]] && command -v xvfb-run >/dev/null; then
   said=$(xvfb-run -a "$run/own_renderer" 40)
   echo "$said"
