@@ -165,7 +165,8 @@ void SessionRun::go_on(const SavedState& state, std::vector<EffectorSource>& sou
     device.driver = before[i].driver;
     device.path = before[i].path;
     const bool posed = was.kind == static_cast<std::uint8_t>(EffectorSource::kPose);
-    if (posed && (effector.source == EffectorSource::kNone || effector.source == EffectorSource::kReleased)) {
+    if (posed && (effector.source == EffectorSource::kNone || effector.source == EffectorSource::kReleased ||
+                  effector.source == EffectorSource::kLevel)) {
       effector.source = EffectorSource::kPose;  // the next poses that are set continue from here
       device.driver = DriverKind::kExternal;
     }

@@ -76,6 +76,22 @@ TEST(SessionState, GoesOnWithTheSameBitsAmongBodiesAndInAnotherSession) {
   EXPECT_EQ(*later, *session.save_state()) << "the same state has the same bytes";
 }
 
+// The level's own source has not begun: poses go on as if they had been given from time 0.
+TEST(SessionState, GoesOnInASessionWhoseProbeStillHasTheLevelsSource) {
+  Scene scene = press_scene();
+  for (LevelNode& node : scene.level().nodes)
+    if (node.device) node.device->driver = DriverKind::kOrbit;
+  Session session = opened(scene), other = opened(scene);
+  play(session, 0, 170, 0.002);
+  const auto state = session.save_state();
+  ASSERT_TRUE(state) << state.error().message();
+  ASSERT_GT(length(session.reading("finger")->force), 0.2) << "it is restored in contact";
+  const StateFelt once = play(session, 170, 100, 0.002);
+  ASSERT_TRUE(other.restore_state(*state));
+  EXPECT_EQ(*other.save_state(), *state);
+  EXPECT_TRUE(play(other, 170, 100, 0.002) == once);
+}
+
 TEST(SessionState, WithoutAnotherPoseTheLastOneHoldsAndPathsGoOn) {
   for (const bool path : {false, true}) {
     Session session = opened(press_scene());
