@@ -24,6 +24,7 @@ struct SplitBlock {
   int squares = 12;
   SoftContact contact = SoftContact::kSplit;
   std::optional<Deformable> law;         // of its dents
+  std::optional<Primitive> shape;        // in its place, and its size
   std::function<float(vec3)> stiffness;  // [1] painted
   double reduced() const { return young / (1 - poisson * poisson); }
 };
@@ -84,10 +85,10 @@ inline Entity add_block(ToolStage& stage, const SplitBlock& block) {
   body.friction_static = body.friction_sliding = block.friction;
   const auto wide = static_cast<float>(2 * block.half_width), deep = static_cast<float>(block.thickness);
   body.pinned.add(vec3(-wide, -2 * deep, -wide));
-  body.pinned.add(vec3(wide, -0.999f * deep, wide));
+  body.pinned.add(vec3(wide, (block.shape ? -0.85f : -0.999f) * deep, wide));
   node.soft_body = body;
   if (block.law) node.deformable = *block.law;
-  LevelMesh mesh{"block", {block_surface(block)}};
+  LevelMesh mesh{"block", {block.shape ? *block.shape : block_surface(block)}};
   Primitive& primitive = mesh.primitives.front();
   if (block.stiffness)
     for (const vec3 p : primitive.position) primitive.stiffness.push_back(block.stiffness(p));

@@ -214,5 +214,51 @@ TEST(SplitContact, RandomPathsAtThreeSpeedsGiveTheHandNoEnergy) {
     }
 }
 
+// An egg pressed smoothly by a rod with a round end, which then leaves. Its points go from fine to coarse on the way
+// in.
+TEST(SplitContact, ARodThatPressesAnEggAndLeavesGetsNoEnergy) {
+  constexpr double kRodRadius = 0.0017, kTop = 0.001, kDeep = -0.004;  // [m]
+  Primitive egg = ball_of_triangles(0.0225, 32), rod = ball_of_triangles(kRodRadius, 16);
+  for (vec3& p : egg.position) p = vec3(p.x / 0.75f, p.y - 0.0225f, p.z);
+  for (vec3& p : rod.position) p.y += static_cast<float>(kRodRadius) + (p.y > 1e-6f ? 0.06f : 0.0f);
+  SplitBlock block{.half_width = 0.03, .thickness = 0.045, .cell = 0.009, .young = 5600, .shape = egg};
+  ToolStage stage(kSplitStep);
+  const Entity tissue = add_block(stage, block);
+  Handle6 handle;
+  handle.translation = {1000.0, 8.0};
+  handle.rotation = {0.38, 0.0038};
+  RigidBody body;
+  body.mass = 0.025;
+  const Entity tool = stage.add_rigid(rod, body, Pose{dvec3(0, kTop, 0)}, &handle);
+  stage.prepare();
+  stage.lead(tool, dvec3(0, kTop, 0), 0.02);
+  const ToolTouchState& touch = *stage.world.tools->tools.front();
+  double work = 0.0, most = 0.0;  // [J] on the hand, before the safety layer; [N]
+  dvec3 before = touch.sensed.pose.position, force(0);
+  const auto lead = [&](double from, double to, double seconds) {
+    for (double share = 0.0; share < 1.0 - 1e-9;) {
+      share += 0.005 / seconds;
+      const double u = share * share * share * (10 - 15 * share + 6 * share * share);
+      stage.lead(tool, dvec3(0, from + u * (to - from), 0), 0.005, [&] {
+        const dvec3 at = touch.sensed.pose.position, now = linear(touch.device_wrench);
+        work += 0.5 * dot(force + now, at - before);
+        before = at, force = now, most = std::max(most, length(now));
+      });
+    }
+  };
+  for (const double seconds : {0.2, 0.5})
+    for (const double friction : {0.0, 0.2, 0.6}) {
+      if (seconds < 0.5 && friction != 0.2) continue;
+      for (const Entity e : {tissue, tool}) stage.body(e).friction_static = stage.body(e).friction_sliding = friction;
+      work = most = 0.0;
+      lead(kTop, kDeep, seconds);
+      lead(kDeep, kTop, seconds);
+      lead(kTop, kTop, 0.1);
+      EXPECT_GT(most, 0.04) << seconds;
+      EXPECT_LT(work, 5e-8) << "[J] " << seconds << ' ' << friction;
+    }
+  EXPECT_EQ(touch.force_safety.tally.of(SafetyLimit::kWithheld).ticks, 0u);
+}
+
 }  // namespace
 }  // namespace pliant

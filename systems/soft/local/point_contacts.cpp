@@ -16,11 +16,14 @@ namespace {
 
 constexpr std::uint32_t kPointFeature = 0x80000000u;  // features of points in contact keys: beyond all vertices
 constexpr std::uint32_t kPointsOfLevel = 1u << 20;
-constexpr std::size_t kMostPressed = 40, kFewPressed = 12;  // loaded points, from level to level
-constexpr std::size_t kFarTooMany = 120;                    // points that press or will
-constexpr double kFacesBody = 0.02;                         // [1] of a point's area: less of it does not face the other
-constexpr double kReadyAt = 0.5;                            // [1] of the spacing: gap of contacts that are kept ready
-constexpr double kAround = 3.0;                             // [1] of the spacing: points this near to known contacts
+// Loaded points, from level to level. The coarser of two levels is up to 2 % stiffer: a press on one and a release on
+// the other gives energy out, so they overlap little.
+constexpr std::size_t kMostPressed = 40, kFewPressed = 18;
+constexpr std::size_t kFewAtFirst = 24;   // points that press, or a first touch takes a finer level
+constexpr std::size_t kFarTooMany = 120;  // points that press or will
+constexpr double kFacesBody = 0.02;       // [1] of a point's area: less of it does not face the other
+constexpr double kReadyAt = 0.5;          // [1] of the spacing: gap of contacts that are kept ready
+constexpr double kAround = 3.0;           // [1] of the spacing: points this near to known contacts
 
 double area_of(const Mesh& mesh) {
   double twice = 0.0;
@@ -315,7 +318,7 @@ void PointContacts::place(const std::vector<std::unique_ptr<Body>>& bodies, std:
   std::vector<ContactPoint> found;
   std::size_t pressing = press(pair, level, found);
   if (loaded == 0)
-    while (level > 0 && pressing < 2 * kFewPressed) pressing = press(pair, --level, found);
+    while (level > 0 && pressing < kFewAtFirst) pressing = press(pair, --level, found);
   while (level < coarsest && pressing > kFarTooMany) pressing = press(pair, ++level, found);
   level_[{a, b}] = level;
   contacts.insert(contacts.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
