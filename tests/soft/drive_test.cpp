@@ -14,12 +14,13 @@ constexpr double kInertia = kMass * ((kLong * kLong + 0.02 * 0.02) / 12.0 + 0.25
 // A rod on a hinge about +Z, driven from straight down.
 struct Driven : Jointed {
   Entity rod, hand;
-  Driven(double step, JointParameters joint, double gravity) : Jointed(step) {
+  Driven(double step, JointParameters joint, double gravity, Track target = {}) : Jointed(step) {
     stage.world.simulation.gravity = dvec3(0, -gravity, 0);
     rod = box(dvec3(0.02, kLong, 0.03), dvec3(0, -0.5 * kLong, 0));
     hand = stage.world.registry.create();
     joint.kind = JointKind::kHinge;
     join(joint, rod, kNoEntity, dvec3(0), kAcross, joint.grip.empty() ? kNoEntity : hand);
+    for (auto [entity, made] : stage.world.registry.view<Joint>()) made.target = target, made.repeats = false;
     stage.prepare();
   }
   double angle() {
@@ -58,6 +59,17 @@ TEST(Drives, BalanceAWeightWithTheTorqueOfTheirSpring) {
   EXPECT_NEAR(2.0 * (1.2 - at), weighs, 1e-4 * weighs);
   EXPECT_NEAR(std::abs(scene.report().push), weighs, 1e-4 * weighs);
   EXPECT_EQ(scene.report().limited_for, 0.0);
+}
+
+TEST(Drives, FollowAnAnimation) {
+  Track target;
+  target.times = {0.0, 1.0, 2.0}, target.length = 2.0;
+  target.values = {{0.0, 0, 0, 0}, {0.8, 0, 0, 0}, {-0.4, 0, 0, 0}};
+  Driven scene(1.0 / 60.0, {.stiffness = 500.0, .damping = 1.0}, kG, target);
+  for (const double due : {0.4, 0.8, 0.2, -0.4, -0.4}) {
+    scene.run(0.5);
+    EXPECT_NEAR(scene.angle(), due, 0.004);
+  }
 }
 
 // At its bound a drive accelerates evenly: theta_n = M/I T^2 n (n + 1) / 2.
