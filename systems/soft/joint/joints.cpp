@@ -43,28 +43,6 @@ bool has_limits(const Joint& joint) {
   return joint.limits[0] < joint.limits[1];
 }
 
-bool is_driven(const Joint& joint) {
-  return joint.hand != kNoEntity || !joint.target.empty();
-}
-// [rad], [m] Where its spring is at rest.
-double rest_at(const Joint& joint, double grip, double time) {
-  double rest = joint.rest;
-  if (!joint.target.empty()) {
-    PrescribedMotion clock;
-    clock.repeats = joint.repeats, clock.speed = joint.speed;
-    rest = std::clamp(sample_vector(joint.target, track_time(joint.target, clock, time).time).x,
-                      JointRange::kLimits.min, JointRange::kLimits.max);
-  }
-  return joint.hand == kNoEntity ? rest : rest + grip * (joint.closed - rest);
-}
-
-// [J] held by its spring, `off` [rad], [m] from rest: beyond its bound the force is constant.
-double held_by(const Joint& joint, double off) {
-  const double free = 0.5 * joint.stiffness * off * off, most = joint.max_force;
-  if (!(most > 0.0) || joint.stiffness * std::abs(off) <= most) return free;
-  return most * (std::abs(off) - 0.5 * most / joint.stiffness);
-}
-
 // [rad] of a against b about b's +Y, near `near`.
 double angle_of(const Pose& a, const Pose& b, double near) {
   const dvec3 x = glm::conjugate(b.rotation) * (a.rotation * dvec3(1, 0, 0));
@@ -138,27 +116,6 @@ void Joints::add_free_axis(const JointState& state, const Pose& a, const Pose& b
   row.stiffness = joint.stiffness / (arm * arm), row.damping = joint.damping / (arm * arm);
   if (joint.max_force > 0.0) row.most = joint.max_force / arm;
   push(at - state.target, 1.0, kFirst);
-}
-
-void Joints::drive(const std::vector<std::unique_ptr<Body>>& bodies, JointState& state, Tick tick) const {
-  if (!is_driven(state.joint) || !state.a.rigid || !state.b.rigid) return;
-  const Pose a = frame_of(bodies, state.a, 0.0), b = frame_of(bodies, state.b, 0.0);
-  const double at =
-      state.joint.kind == JointKind::kHinge ? state.turned : dot(a.position - b.position, b.rotation * dvec3(0, 1, 0));
-  const double was = state.target;
-  state.target = rest_at(state.joint, state.grip, tick.time + tick.dt);
-  state.report.fed += held_by(state.joint, at - state.target) - held_by(state.joint, at - was);
-}
-
-void Joints::set_grip(Entity hand, double grip) {
-  for (JointState& state : joints_)
-    if (state.joint.hand == hand && hand != kNoEntity) state.grip = std::clamp(grip, 0.0, 1.0);
-}
-
-double Joints::fed() const {
-  double sum = 0.0;
-  for (const JointState& state : joints_) sum += state.report.fed;
-  return sum;
 }
 
 void Joints::find_rows(const std::vector<std::unique_ptr<Body>>& bodies, const JointState& state, double T,

@@ -108,7 +108,9 @@ class Joints {
   static SurfacePoint point_of(const std::vector<std::unique_ptr<Body>>& bodies, const Side& side, std::size_t i,
                                double T);
   static Pose frame_of(const std::vector<std::unique_ptr<Body>>& bodies, const Side& side, double T);
-  // Moves the rest of a spring to that of the step's end.
+  // [rad], [m] Where its spring is at rest.
+  static double rest_at(const Joint& joint, double grip, double time);
+  // Moves that to where it is at the step's end.
   void drive(const std::vector<std::unique_ptr<Body>>& bodies, JointState& state, Tick tick) const;
   static void add_frames(const JointState& state, const Pose& a, const Pose& b, Rows& out);
   static void add_free_axis(const JointState& state, const Pose& a, const Pose& b, Rows& out);
