@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -132,7 +133,7 @@ void DriverLink::read(HapticDevice& device, Tick tick) {
       device.rotation = sample.rotation / glm::length(sample.rotation);
     else
       device.rotation = sample.rotation;  // no rotation: the pose is rejected and counted
-    device.grip = sample.grip;
+    if (std::isfinite(sample.grip)) device.grip = std::clamp(sample.grip, 0.0, 1.0);
     device.sensed_at = tick.time;
     ready_ = sample.ready && !(state_ && state_->renewed());
   }

@@ -7,16 +7,17 @@
 namespace pliant::test {
 namespace {
 
-constexpr double kLong = 0.3;                           // [m] of a rod that hangs from the origin
-constexpr double kMass = 0.02 * kLong * 0.03 * 1000.0;  // [kg]
-constexpr double kInertia = kMass * ((kLong * kLong + 0.02 * 0.02) / 12.0 + 0.25 * kLong * kLong);  // [kg m2]
+constexpr double kRodLong = 0.3;                              // [m] of a rod that hangs from the origin
+constexpr double kRodMass = 0.02 * kRodLong * 0.03 * 1000.0;  // [kg]
+constexpr double kRodInertia =
+    kRodMass * ((kRodLong * kRodLong + 0.02 * 0.02) / 12.0 + 0.25 * kRodLong * kRodLong);  // [kg m2]
 
 // A rod on a hinge about +Z, driven from straight down.
 struct Driven : Jointed {
   Entity rod, hand;
   Driven(double step, JointParameters joint, double gravity, Track target = {}) : Jointed(step) {
     stage.world.simulation.gravity = dvec3(0, -gravity, 0);
-    rod = box(dvec3(0.02, kLong, 0.03), dvec3(0, -0.5 * kLong, 0));
+    rod = box(dvec3(0.02, kRodLong, 0.03), dvec3(0, -0.5 * kRodLong, 0));
     hand = stage.world.registry.create();
     joint.kind = JointKind::kHinge;
     join(joint, rod, kNoEntity, dvec3(0), kAcross, joint.grip.empty() ? kNoEntity : hand);
@@ -33,7 +34,7 @@ struct Driven : Jointed {
 // Under-damped and over-damped: theta'' = (K (rest - theta) - D theta') / I.
 TEST(Drives, StepToTheirTargetAsASpringAndADamperWithInertiaDo) {
   for (const double ratio : {0.3, 2.0}) {
-    const double K = 0.4, w = std::sqrt(K / kInertia), D = 2.0 * ratio * w * kInertia;
+    const double K = 0.4, w = std::sqrt(K / kRodInertia), D = 2.0 * ratio * w * kRodInertia;
     double last = 0.0;
     for (const double step : {2e-3, 1e-3}) {
       Driven scene(step, {.stiffness = K, .damping = D, .rest = 0.5}, 0.0);
@@ -55,7 +56,7 @@ TEST(Drives, StepToTheirTargetAsASpringAndADamperWithInertiaDo) {
 TEST(Drives, BalanceAWeightWithTheTorqueOfTheirSpring) {
   Driven scene(1.0 / 60.0, {.stiffness = 2.0, .damping = 0.2, .rest = 1.2}, kG);
   scene.run(6.0);
-  const double at = scene.angle(), weighs = kMass * kG * 0.5 * kLong * std::sin(at);
+  const double at = scene.angle(), weighs = kRodMass * kG * 0.5 * kRodLong * std::sin(at);
   EXPECT_NEAR(2.0 * (1.2 - at), weighs, 1e-4 * weighs);
   EXPECT_NEAR(std::abs(scene.report().push), weighs, 1e-4 * weighs);
   EXPECT_EQ(scene.report().limited_for, 0.0);
@@ -82,7 +83,7 @@ TEST(Drives, KeepTheirBoundExactly) {
     ASSERT_NEAR(std::abs(scene.report().push), kMost, 1e-9 * kMost) << i;
   }
   EXPECT_NEAR(scene.report().limited_for, kSteps * kStep, 1e-9);
-  const double due = kMost / kInertia * kStep * kStep * kSteps * (kSteps + 1) / 2.0;
+  const double due = kMost / kRodInertia * kStep * kStep * kSteps * (kSteps + 1) / 2.0;
   EXPECT_NEAR(scene.angle(), due, 1e-3 * due);
 }
 
