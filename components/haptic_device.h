@@ -37,6 +37,8 @@ struct HapticDevice : DeviceParameters {
   DeviceStatus status = DeviceStatus::kReady;
   dvec3 position{0};  // [m] world, as last sensed
   dquat rotation{1, 0, 0, 0};
+  double grip = 0.0;       // [1] 0 to 1, as last sensed
+  bool grips = false;      // its grip is sensed
   double sensed_at = 0.0;  // [s] time of that pose; older than kStaleAfter: treated as lost
   dvec3 force_sent{0};     // [N] world, sent to the hand in this tick
   dvec3 torque_sent{0};    // [N m] world, the same; only tools produce torque

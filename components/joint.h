@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "components/kinematic.h"
 #include "components/range.h"
 #include "pliant/parameters.h"
 #include "runtime/entity.h"
@@ -12,11 +13,11 @@
 namespace pliant {
 
 // JOINT(enumerator, word, reads): `reads` are the keys of PLIANT_joint beside `kind`, `a`, `b` and `strength`.
-#define PLIANT_JOINTS(JOINT)                              \
-  JOINT(kFixed, fixed, "")                                \
-  JOINT(kBall, ball, "")                                  \
-  JOINT(kHinge, hinge, "limits stiffness damping rest")   \
-  JOINT(kSlider, slider, "limits stiffness damping rest") \
+#define PLIANT_JOINTS(JOINT)                                                    \
+  JOINT(kFixed, fixed, "")                                                      \
+  JOINT(kBall, ball, "")                                                        \
+  JOINT(kHinge, hinge, "limits stiffness damping rest closed grip max_force")   \
+  JOINT(kSlider, slider, "limits stiffness damping rest closed grip max_force") \
   JOINT(kRope, rope, "end length stiffness damping")
 
 struct JointKindRow {
@@ -41,7 +42,11 @@ static_assert([] {
 
 // Rate: soft (read). Writer: content at spawn. Its node has a Pose, the joint's frame at the beginning.
 struct Joint : JointParameters {
-  Entity body_a, body_b;  // set at spawn; kNoEntity: the world
+  Entity body_a, body_b;    // set at spawn; kNoEntity: the world
+  Entity hand = kNoEntity;  // the same: the tool or probe of `grip`
+  Track target;             // of an animation: `rest` over time, x of its values; empty: it does not change
+  bool repeats = true;      // of that track
+  double speed = 1.0;       // [1] of its clock against simulated time
 };
 
 // Bounds of the parameters, in a file and in code.
@@ -52,6 +57,7 @@ struct JointRange {
   static constexpr Range kPlace{-1e3, 1e3};     // [m] each component of `end`
   static constexpr Range kLength{0.0, 1e3};     // [m]
   static constexpr Range kStrength{0.0, 1e6};   // [N]
+  static constexpr Range kMaxForce{0.0, 1e6};   // [N m], [N]
 };
 
 }  // namespace pliant

@@ -144,7 +144,7 @@ std::int32_t copy_node(Level& level, std::int32_t node, NodesMoved* moved) {
       for (std::string& name : made.effect->probes)
         if (const auto it = probe.find(name); it != probe.end()) name = it->second;
     if (made.joint)
-      for (std::string* const name : {&made.joint->a, &made.joint->b})
+      for (std::string* const name : {&made.joint->a, &made.joint->b, &made.joint->grip})
         if (const auto it = body.find(*name); it != body.end()) *name = it->second;
   }
   if (const std::int32_t parent = at(level, node).parent; parent >= 0) {
@@ -185,9 +185,10 @@ NodesMoved remove_node(Level& level, std::int32_t node) {
 }
 
 void rename_body(LevelNode& node, const std::string& from, const std::string& to) {
-  if (!node.joint || (node.joint->a != from && node.joint->b != from)) return;
+  if (node.joint && to.empty() && node.joint->grip == from) node.joint->grip.clear();
+  if (!node.joint || (node.joint->a != from && node.joint->b != from && node.joint->grip != from)) return;
   if (to.empty()) return node.joint.reset();
-  for (std::string* const name : {&node.joint->a, &node.joint->b})
+  for (std::string* const name : {&node.joint->a, &node.joint->b, &node.joint->grip})
     if (*name == from) *name = to;
 }
 

@@ -14,12 +14,14 @@ double smooth_step(double from, double to, double t) {
 Status save_script(const Path& path, const std::string& comment, const std::filesystem::path& file, Existing existing) {
   bool turns = false;
   for (const PathRow& row : path.rows) turns = turns || row.rotation != dquat(1, 0, 0, 0);
-  std::string text = "# " + comment + (turns ? "\ntime_s,x,y,z,qw,qx,qy,qz\n" : "\ntime_s,x,y,z\n");
+  const char* const end = path.grips ? ",grip\n" : "\n";
+  std::string text = "# " + comment + (turns ? "\ntime_s,x,y,z,qw,qx,qy,qz" : "\ntime_s,x,y,z") + end;
   for (const PathRow& row : path.rows) {
     const dvec3 p = row.position;
     const dquat q = row.rotation;
     text += fmt::format("{:.2f},{:.7f},{:.7f},{:.7f}", row.time, p.x, p.y, p.z);
-    text += turns ? fmt::format(",{:.8f},{:.8f},{:.8f},{:.8f}\n", q.w, q.x, q.y, q.z) : "\n";
+    if (turns) text += fmt::format(",{:.8f},{:.8f},{:.8f},{:.8f}", q.w, q.x, q.y, q.z);
+    text += path.grips ? fmt::format(",{:.4f}\n", row.grip) : "\n";
   }
   return write_file(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, existing);
 }

@@ -717,7 +717,13 @@ std::vector<Key> joint_keys() {
   keys.push_back(number("stiffness", "N m/rad, N/m", {R::kStiffness, {0.0, 1e5}}, j(&J::stiffness),
                         "of a spring to `rest`; of a rope, 0: it does not stretch"));
   keys.push_back(number("damping", "N m s/rad, N s/m", {R::kDamping, {0.0, 1e3}}, j(&J::damping), "of that spring"));
-  keys.push_back(number("rest", "rad, m", R::kLimits, j(&J::rest), "where that spring is at rest"));
+  keys.push_back(
+      number("rest", "rad, m", R::kLimits, j(&J::rest), "where that spring is at rest; an animation may vary it"));
+  keys.push_back(number("closed", "rad, m", R::kLimits, j(&J::closed), "the same while the grip is closed"));
+  keys.push_back(text("grip", KeyType::kText, j(&J::grip),
+                      "name of a tool or probe: its device's grip moves the spring's rest to `closed`"));
+  keys.push_back(number("max_force", "N m, N", {R::kMaxForce, {0.0, 100.0}}, j(&J::max_force),
+                        "largest torque or force of that spring; 0: no bound"));
   keys.push_back(vector("end", "m", {R::kPlace, {-1.0, 1.0}}, j(&J::end),
                         "where a rope is tied to b, in the node's frame; to a: at the node"));
   keys.push_back(number("length", "m", {R::kLength, {1e-3, 1.0}}, j(&J::length),
@@ -735,6 +741,8 @@ std::optional<Note> settle_joint(void* owner) {
     return Note{"has a least limit above its largest", "exchange them", "key.value", "limits"};
   if (it.limits[0] < it.limits[1] && (it.limits[0] > 0.0 || it.limits[1] < 0.0))
     return Note{"begins outside of its limits", "let them enclose 0, where it begins", "key.value", "limits"};
+  if (!it.grip.empty() && it.stiffness == 0.0)
+    return Note{"is driven by a grip without `stiffness`, so nothing moves it", "give one", "key.missing", "stiffness"};
   return std::nullopt;
 }
 

@@ -8,11 +8,12 @@
 namespace pliant {
 
 Status check_references(const Level& level) {
-  std::vector<std::string> devices, probes, bodies;
+  std::vector<std::string> devices, probes, bodies, hands;
   for (const LevelNode& node : level.nodes) {
     if (node.soft_body || node.rigid_body) bodies.push_back(node.name);
     if (node.device) devices.push_back(node.name);
     if (node.probe) probes.push_back(node.name);
+    if (node.probe || node.handle) hands.push_back(node.name);
   }
   const auto check = [&](const LevelNode& node, const char* extension, const std::string& device) -> Status {
     if (device.empty() || std::find(devices.begin(), devices.end(), device) != devices.end()) return Done{};
@@ -33,6 +34,11 @@ Status check_references(const Level& level) {
           return Error{fmt::format("{}.joint.{}", node.name, key),
                        "names '" + name->substr(0, 100) + "', which is no soft or rigid body",
                        suggestion(*name, bodies), "name.unknown"};
+    if (node.joint && !node.joint->grip.empty() &&
+        std::find(hands.begin(), hands.end(), node.joint->grip) == hands.end())
+      return Error{node.name + ".joint.grip",
+                   "names '" + node.joint->grip.substr(0, 100) + "', which is no tool or probe",
+                   suggestion(node.joint->grip, hands), "name.unknown"};
     if (node.probe)
       if (const Status status = check(node, "probe", node.probe_device); !status) return status;
     if (node.handle)

@@ -203,8 +203,14 @@ std::optional<UnusedWords> unused_of_effect(const Effect& effect, const std::str
 
 std::optional<UnusedWords> unused_of_joint(const Joint& joint, const std::string& key) {
   const auto reads = [&](std::size_t i) { return has_word(kJointRows[i].reads, key); };
-  if (key == "kind" || key == "a" || key == "b" || key == "strength" || reads(static_cast<std::size_t>(joint.kind)))
-    return std::nullopt;
+  const auto needs = [](bool has, const char* what) -> std::optional<UnusedWords> {
+    if (has) return std::nullopt;
+    return UnusedWords{fmt::format("is read with `{}` only", what), "set that, or remove the key"};
+  };
+  if (key == "kind" || key == "a" || key == "b" || key == "strength") return std::nullopt;
+  if (reads(static_cast<std::size_t>(joint.kind)))
+    return key == "closed" ? needs(!joint.grip.empty(), "grip")
+                           : needs(key != "max_force" || joint.stiffness > 0.0 || joint.damping > 0.0, "stiffness");
   return only_with("kind", kJointRows, reads);
 }
 

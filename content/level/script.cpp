@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, as written by spreadsheet programs
 constexpr std::string_view kPositions = "time_s,x,y,z", kPoses = "time_s,x,y,z,qw,qx,qy,qz";
+constexpr std::string_view kGrip = ",grip";  // a last column
 
 std::string_view trim(std::string_view s) {
   const std::size_t begin = s.find_first_not_of(" \t\r");
@@ -52,7 +54,7 @@ bool parse_row(std::string_view line, double* values, int count) {
 
 Result<Path> parse_script(std::string_view text, const std::string& where) {
   Path path;
-  int columns = 0;
+  int columns = 0;  // without the grip
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::string_view line = take_line(text);
@@ -61,16 +63,24 @@ Result<Path> parse_script(std::string_view text, const std::string& where) {
     };
     if (line.empty() || line.front() == '#') continue;
     if (columns == 0) {
-      const std::string names = without_blanks(line);
+      std::string names = without_blanks(line);
+      if ((path.grips = names.ends_with(kGrip))) names.resize(names.size() - kGrip.size());
       columns = names == kPositions ? 4 : names == kPoses ? 8 : 0;
       if (columns == 0)
-        return error("the header is not `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz`", "begin the script with one");
+        return error("the header is not `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz`, with or without a last `grip`",
+                     "begin the script with one");
       continue;
     }
-    double v[8] = {0, 0, 0, 0, 1, 0, 0, 0};
-    if (!parse_row(line, v, columns))
-      return error(fmt::format("this row is not {} finite numbers between commas", columns == 4 ? "four" : "eight"),
-                   fmt::format("write {}", columns == 4 ? kPositions : kPoses));
+    constexpr const char* kCounts[] = {"four", "five", "eight", "nine"};
+    double v[9] = {0, 0, 0, 0, 1, 0, 0, 0, 0};
+    double cells[9];
+    if (!parse_row(line, cells, columns + path.grips))
+      return error(
+          fmt::format("this row is not {} finite numbers between commas", kCounts[columns / 8 * 2 + path.grips]),
+          fmt::format("write {}{}", columns == 4 ? kPositions : kPoses, path.grips ? kGrip : ""));
+    std::copy_n(cells, columns, v);
+    if (path.grips) v[8] = cells[columns];
+    if (!(v[8] >= 0.0 && v[8] <= 1.0)) return error("the grip is not between 0 and 1", "0 is open, 1 is closed");
     if (!path.rows.empty() && !(v[0] > path.rows.back().time))
       return error("time does not grow from the row before", "sort the rows and remove doubles");
     const dquat rotation(v[4], v[5], v[6], v[7]);
@@ -81,7 +91,7 @@ Result<Path> parse_script(std::string_view text, const std::string& where) {
       const double rows = static_cast<double>(path.rows.size() + 1);
       return error_at(where, beyond("has", limits::kScriptRows, rows, "split the script or sample it more coarsely"));
     }
-    path.rows.push_back({v[0], {v[1], v[2], v[3]}, rotation * (1.0 / norm)});
+    path.rows.push_back({v[0], {v[1], v[2], v[3]}, rotation * (1.0 / norm), v[8]});
   }
   path.turns = columns == 8;
   if (path.rows.empty())

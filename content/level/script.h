@@ -10,10 +10,10 @@
 
 namespace pliant {
 
-// Reads `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz`: a header line with exactly these names, then rows of numbers.
-// Times in seconds, strictly ascending; positions in metres, world frame; rotations to world, normalised here. Ignores
-// empty lines, lines that start with #, a UTF-8 byte order mark, blanks and CR. At most 64 MiB and 4,000,000 rows.
-// Errors name the file and the line.
+// Reads `time_s,x,y,z` or `time_s,x,y,z,qw,qx,qy,qz`, with or without a last column `grip` (0 to 1): a header line with
+// exactly these names, then rows of numbers. Times in seconds, strictly ascending; positions in metres, world frame;
+// rotations to world, normalised here. Ignores empty lines, lines that start with #, a UTF-8 byte order mark, blanks
+// and CR. At most 64 MiB and 4,000,000 rows. Errors name the file and the line.
 Result<Path> load_script(const std::filesystem::path& path);
 
 // The same from text; errors begin with `where`.

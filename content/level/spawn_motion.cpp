@@ -83,7 +83,7 @@ class MotionMaker {
     for (std::size_t n = level_.nodes.size(); n-- > 0;) {
       const LevelNode& node = level_.nodes[n];
       if (!node.in_scene) continue;
-      if (node.deformable || node.effect) touched_[n] = true;
+      if (node.deformable || node.effect || node.rigid_body) touched_[n] = true;
       if (node.soft_body || (node.rigid_body && !node.rigid_body->fixed)) something_is_pushed_ = true;
       if (touched_[n] && node.parent >= 0) touched_[static_cast<std::size_t>(node.parent)] = true;
     }
@@ -179,9 +179,12 @@ class MotionMaker {
 
   Status check_carried(std::size_t n) {
     const LevelNode& node = level_.nodes[n];
-    if (node.soft_body || node.rigid_body || node.handle)
-      return at(n, "is a soft or rigid body under a node that an animation or a script moves, which is not supported",
-                "hang it elsewhere, or set PLIANT_motion/speed of that node to 0");
+    if (node.soft_body || node.handle)
+      return at(n, "is a soft body or a tool that an animation or a script moves, which is not supported",
+                "move a `fixed` rigid body and hold it by a joint, or set PLIANT_motion/speed of that node to 0");
+    if (node.rigid_body && !node.rigid_body->fixed)
+      return at(n, "is a rigid body that an animation or a script moves, and that contacts move, too",
+                "set `fixed`, so that its motion alone moves it, or PLIANT_motion/speed of that node to 0");
     if (node.deformable && something_is_pushed_)
       return at(n, "is moved by an animation or a script in a level with soft or rigid bodies, which is not supported",
                 "leave those out, or set PLIANT_motion/speed of the node to 0");

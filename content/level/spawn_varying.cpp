@@ -41,6 +41,7 @@ Status add_varying(SpawnState& state, std::size_t n) {
     if (!asked.animation.empty() && animation.name != asked.animation) continue;
     for (const LevelChannel& channel : animation.channels) {
       if (channel.property != NodeProperty::kKey || channel.node != static_cast<std::int32_t>(n)) continue;
+      if (find_varying_key(channel.key)->of_joint()) continue;
       if (Status s = check_key(state, n, deformable, channel.key); !s) return s;
       const VaryingKey& key = *find_varying_key(channel.key);
       for (const auto member : key.members) {

@@ -1,4 +1,4 @@
-// Keys of PLIANT_deformable that an animation may vary: targets of KHR_animation_pointer.
+// Keys that an animation may vary: targets of KHR_animation_pointer. Of PLIANT_deformable, and `rest` of PLIANT_joint.
 #pragma once
 
 #include <string>
@@ -11,15 +11,22 @@ namespace pliant {
 struct VaryingKey {
   const char* key;
   Range range;
-  std::vector<double DeformableParameters::*> members;
+  std::vector<double DeformableParameters::*> members;  // none: of PLIANT_joint
+  bool of_joint() const { return members.empty(); }
 };
 const std::vector<VaryingKey>& varying_keys();
 // nullptr: none.
 const VaryingKey* find_varying_key(const std::string& key);
 
-// False: a key of a node that has no PLIANT_deformable any more.
+// Whether the node has the extension of a key.
+inline bool has_extension(const LevelNode& node, const std::string& key) {
+  const VaryingKey* const its = find_varying_key(key);
+  return its && its->of_joint() ? node.joint.has_value() : node.deformable.has_value();
+}
+// False: a key of a node that has its extension no more.
 inline bool has_target(const Level& level, const LevelChannel& channel) {
-  return channel.property != NodeProperty::kKey || level.nodes[static_cast<std::size_t>(channel.node)].deformable;
+  return channel.property != NodeProperty::kKey ||
+         has_extension(level.nodes[static_cast<std::size_t>(channel.node)], channel.key);
 }
 
 // The target of "/nodes/3/extensions/PLIANT_deformable/relaxation/time": node 3, `relaxation.time`. No node: another

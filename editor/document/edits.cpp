@@ -25,7 +25,7 @@ void rename_references(State& state, const std::string from, const std::string t
     const LevelNode& node = each->node;
     const bool probe = node.probe && node.probe_device == from, handle = node.handle && node.handle->device == from,
                felt = node.effect && std::count(node.effect->probes.begin(), node.effect->probes.end(), from) > 0;
-    const bool joined = node.joint && (node.joint->a == from || node.joint->b == from);
+    const bool joined = node.joint && (node.joint->a == from || node.joint->b == from || node.joint->grip == from);
     if (!probe && !handle && !felt && !joined) continue;
     auto changed = std::make_shared<DocumentNode>(*each);
     if (joined) rename_body(changed->node, from, to);
@@ -124,7 +124,7 @@ State add_copies(State next, const State& from, NodeIds ids, std::optional<NodeI
     if (copy->node.handle) follow(copy->node.handle->device);
     if (copy->node.effect)
       for (std::string& probe : copy->node.effect->probes) follow(probe);
-    if (copy->node.joint) follow(copy->node.joint->a), follow(copy->node.joint->b);
+    if (copy->node.joint) follow(copy->node.joint->a), follow(copy->node.joint->b), follow(copy->node.joint->grip);
     next.nodes[at] = std::move(copy);
   }
   put_in_order(next);

@@ -257,6 +257,8 @@ Status save_keys(const ScriptKeys& script, const std::filesystem::path& file) {
 Result<ScriptKeys> load_keys(const std::filesystem::path& file) {
   Result<Path> path = load_script(file);
   if (!path) return path.error();
+  if (path->grips)
+    return Error{file.string(), "has a column `grip`, which the editor would lose", "edit the file as text"};
   ScriptKeys script;
   script.repeats = path->repeats;
   const Result<Bytes> bytes = read_file(file, limits::kScriptFile);

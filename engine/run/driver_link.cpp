@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -108,6 +109,7 @@ void DriverLink::close() noexcept {
 
 void DriverLink::begin(HapticDevice& device, dquat placed, dvec3 middle) {
   device.can = driver_ ? can_ : kNoDriver;
+  device.grips = driver_ && can_.senses_grip;
   device.workspace = driver_ ? device.scale : 1.0;
   device.origin = driver_ && can_.workspace != dvec3(0) ? middle : dvec3(0);
   device.force_sent = device.torque_sent = dvec3(0);
@@ -131,6 +133,7 @@ void DriverLink::read(HapticDevice& device, Tick tick) {
       device.rotation = sample.rotation / glm::length(sample.rotation);
     else
       device.rotation = sample.rotation;  // no rotation: the pose is rejected and counted
+    if (std::isfinite(sample.grip)) device.grip = std::clamp(sample.grip, 0.0, 1.0);
     device.sensed_at = tick.time;
     ready_ = sample.ready && !(state_ && state_->renewed());
   }

@@ -37,6 +37,7 @@ void PoseRecorder::note(std::uint64_t tick, std::uint32_t effector, const Haptic
   if (sound) last = {device.position, device.rotation, ready};
   last.ready = sound && ready;
   last.felt = felt;
+  last.grips = device.grips, last.grip = std::clamp(device.grip, 0.0, 1.0);
   rows_.record({tick, effector, last});
 }
 

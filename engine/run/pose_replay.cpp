@@ -28,6 +28,7 @@ Tick PoseReplay::begin_tick(std::size_t n) {
     HapticDevice& device = world_->registry.get<HapticDevice>(devices_[i]);
     device.position = pose.position;
     device.rotation = pose.rotation;
+    device.grip = pose.grip, device.grips = pose.grips;
     device.status = pose.ready ? DeviceStatus::kReady : DeviceStatus::kLost;
     device.sensed_at = tick.time;
     if (SafetyState* const safety = safety_of(*world_, hands_[i])) safety->felt = pose.felt;

@@ -68,11 +68,13 @@ struct HashingReader : Reader {
   }
 };
 
+constexpr int kGrips = 4;  // in the u8 of a pose
+
 bool sound(const RecordedPose& pose) {
   const dquat& q = pose.rotation;
   const double norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
   return std::isfinite(pose.position.x) && std::isfinite(pose.position.y) && std::isfinite(pose.position.z) &&
-         std::abs(norm - 1.0) < 1e-3;  // false for NaN
+         std::abs(norm - 1.0) < 1e-3 && pose.grip >= 0.0 && pose.grip <= 1.0;  // false for NaN
 }
 
 Error too_short(const std::string& name) {
@@ -87,12 +89,17 @@ Status read_poses(const std::string& name, HashingReader& in, std::uint32_t prob
     for (double* value : {&pose.position.x, &pose.position.y, &pose.position.z, &pose.rotation.w, &pose.rotation.x,
                           &pose.rotation.y, &pose.rotation.z})
       *value = in.get<double>();
-    const auto state = in.get<std::uint8_t>();
+    const auto byte = in.get<std::uint8_t>();
+    const int state = byte & ~kGrips;
+    if ((pose.grips = (byte & kGrips) != 0)) pose.grip = in.get<double>();
     pose.ready = state == 1 || state == 2;
     pose.felt = state != 2;
     if (!in.ok) return too_short(name);
     if (!sound(pose))
-      return Error{name, "has a pose at tick " + std::to_string(index) + " that is not finite or not a unit quaternion",
+      return Error{name,
+                   "has a pose at tick " + std::to_string(index) +
+                       " that is not finite, not a unit quaternion, or "
+                       "with a grip that is not 0 to 1",
                    "record it again"};
     recording.poses.push_back(pose);
   }
@@ -286,7 +293,8 @@ void RecordingWriter::pose(const RecordedPose& pose) {
   for (double value : {pose.position.x, pose.position.y, pose.position.z, pose.rotation.w, pose.rotation.x,
                        pose.rotation.y, pose.rotation.z})
     put(value);
-  put(static_cast<std::uint8_t>(!pose.ready ? 0 : pose.felt ? 1 : 2));
+  put(static_cast<std::uint8_t>((!pose.ready ? 0 : pose.felt ? 1 : 2) + (pose.grips ? kGrips : 0)));
+  if (pose.grips) put(pose.grip);
   if (++poses_ == probes_) add_record();
 }
 

@@ -4,7 +4,7 @@
 // (u32 length and bytes each), u64 scene_hash() of the recorded scene, u32 settings and a text for each; then records,
 // each preceded by a u8.
 // 1, a tick: u64 index and per probe 7 f64 (x y z [m, world], qw qx qy qz) and a u8 (1: the device was ready; 2: it
-// was, and its guard withheld the force).
+// was, and its guard withheld the force; plus 4: an f64 follows, its grip).
 // 2, an event of the following tick: u64 index, u8 kind, name, key (u32 length and bytes each), u32 vertex, 7 f64.
 // 0, the end: a u64 hash of everything before.
 // Older formats are read as well: 3 has ticks alone, without the u8; 1 has neither scene nor settings; the hash of 2
@@ -29,7 +29,9 @@ struct RecordedPose {
   dvec3 position{0};  // [m] world
   dquat rotation{1, 0, 0, 0};
   bool ready = true;
-  bool felt = true;  // false: its guard withheld the force
+  bool felt = true;    // false: its guard withheld the force
+  bool grips = false;  // its device senses a grip
+  double grip = 0.0;   // [1] 0 to 1
 };
 
 // Actions of a program on a session between two ticks, other than moving its probes (Session::set, set_hand_force...).

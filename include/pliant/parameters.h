@@ -380,6 +380,9 @@ struct JointParameters {
   double stiffness = 0.0;  // hinge [N m/rad], slider [N/m]: of a spring to `rest`; rope [N/m]: 0, it does not stretch
   double damping = 0.0;    // [N m s/rad], [N s/m] of that spring
   double rest = 0.0;       // [rad], [m] from where it begins
+  double closed = 0.0;     // [rad], [m] the same, at a closed grip
+  std::string grip;        // name of a tool or probe: its device's grip moves that spring's rest to `closed`
+  double max_force = 0.0;  // [N m], [N] bound of that spring; 0: none
   dvec3 end{0, -0.1, 0};   // [m] node's frame: where a rope is tied to b; to a at the node
   double length = 0.0;     // [m] of a rope; 0: the distance at the beginning
   double strength = 0.0;   // [N] a larger force breaks the joint; 0: none does
@@ -390,11 +393,13 @@ struct PathRow {
   double time = 0.0;  // [s] ascending
   dvec3 position{0};  // [m] world
   dquat rotation{1, 0, 0, 0};
+  double grip = 0.0;  // [1] 0: open, 1: closed
 };
 struct Path {
   std::vector<PathRow> rows;
   bool turns = false;    // the rows contain rotations; else every rotation is the identity
   bool repeats = false;  // restarts after the last row (whose position equals the first's)
+  bool grips = false;    // the rows contain grips; else the grip is unknown
 };
 
 }  // namespace pliant

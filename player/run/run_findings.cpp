@@ -20,6 +20,12 @@ bool is_moved(const RunFigures& figures, std::size_t hand) {
   return driver != DriverKind::kNull;
 }
 
+bool is_joined(const World& world, Entity hand) {
+  for (auto [entity, joint] : world.registry.view<const Joint>())
+    if (joint.body_a == hand || joint.body_b == hand) return true;
+  return false;
+}
+
 }  // namespace
 
 std::vector<Note> explain_run(RunFigures& figures, DeviceLinks& devices) {
@@ -35,6 +41,8 @@ std::vector<Note> explain_run(RunFigures& figures, DeviceLinks& devices) {
       // its device reports the reason
     } else if (summary.contact_ticks == 0 && summary.max_force > 0.0 && figures.world.registry.has<FeltEffects>(hand)) {
       // it felt effects in space
+    } else if (summary.contact_ticks == 0 && summary.max_force > 0.0 && is_joined(figures.world, hand)) {
+      // it felt what is joined to it
     } else if (summary.contact_ticks == 0 && !is_moved(figures, i)) {
       notes.push_back({fmt::format("{} `{}` never touched anything: nothing moves it", summary.tool ? "tool" : "probe",
                                    summary.name),

@@ -9,6 +9,7 @@
 namespace pliant {
 namespace {
 
+constexpr double kSaidLimited = 0.01;   // [s]
 constexpr double kSaidApart = 0.02;     // [1] of the size of a joint
 constexpr double kSaidResidual = 1e-4;  // [m/s] slower creep is invisible
 constexpr double kSaidLoss = 0.02;      // [1] of the run: a smaller loss occurs while the first step compares solvers
@@ -17,6 +18,12 @@ std::string body_name(const World& world, std::uint32_t body) {
   const Entity entity = world.soft->bodies[body]->entity;
   const Name* name = world.registry.find<Name>(entity);
   return name ? "`" + name->value + "`" : fmt::format("body {}", body);
+}
+
+// Of a tool or probe; null: it has none.
+const HapticDevice* grip_device(const World& world, Entity hand) {
+  const ToolTouchState* const tool = hand == kNoEntity ? nullptr : find_tool(world, hand);
+  return tool ? &world.registry.get<HapticDevice>(tool->device) : nullptr;
 }
 
 // [s] Mean age of a force that is held and fades in, in lockstep: sensed a tick ago, kept for a soft step.
@@ -103,6 +110,16 @@ std::vector<Note> explain_soft_steps(const World& world, const SoftFigures& figu
       add("joint.broke",
           fmt::format("joint `{}` broke at {:.3f} s, under {:.3g} N", joints.name(i), joint.broke_at, joint.largest),
           "raise its `strength`, or pull less");
+    if (joint.limited_for > kSaidLimited)
+      add("joint.limited",
+          fmt::format("joint `{}` was driven with its `max_force` for {:.3g} s, so that it did not follow its target",
+                      joints.name(i), joint.limited_for),
+          "raise its `max_force`, or lower its `stiffness`");
+    if (const HapticDevice* const device = grip_device(world, joints.joint(i).hand); device && !device->grips)
+      add("joint.no_grip",
+          fmt::format("joint `{}` is driven by the grip of `{}`, whose device senses none: it stays open",
+                      joints.name(i), joints.joint(i).grip),
+          "use a device with a grip (`pliant devices`), or a script with a column `grip`");
     if (joint.apart > kSaidApart * joints.arm(i))
       add("joint.apart",
           fmt::format("joint `{}` came {:.3g} mm apart: its bodies turned too far within a soft step", joints.name(i),

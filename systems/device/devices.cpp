@@ -25,6 +25,7 @@ void sense(const World& world, HapticDevice& device, double time) {
   const PathRow row = sample_path(world.paths[device.path], time);
   device.position = row.position;
   device.rotation = row.rotation;
+  device.grip = row.grip, device.grips = world.paths[device.path].grips;
   device.sensed_at = time;
 }
 
@@ -78,6 +79,13 @@ void write_wrench(World& world, HapticDevice& device, const SafetyPair& safety, 
   device.torque_sent = turn.force;
 }
 
+// [J] of the hand, since the last tick: what drives and kinematic bodies gave may reach the hand.
+double fed_since(ToolTouchState& tool) {
+  const double before = tool.fed;
+  tool.fed = tool.model.read().fed;
+  return std::isfinite(tool.fed - before) ? tool.force_safety.share * (tool.fed - before) : 0.0;
+}
+
 void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   HapticDevice& device = world.registry.get<HapticDevice>(tool.device);
   const Handle6& handle = world.registry.get<Handle6>(tool.entity);
@@ -88,6 +96,7 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   limits.touched = soften(world, tool.entity, device, tool.force_safety);
   turning.touched = tool.force_safety.share * handle.rotation[0];
   limits.ease = turning.ease = ease_of_tool(tick.skipped);
+  limits.stiffened = fed_since(tool);
   limits.weight = tool.force_safety.share * tool.weight;
   turning.weight = cross(tool.sensed.pose.rotation * tool.balance, limits.weight);
   const dvec3 push =

@@ -15,7 +15,8 @@ PathRow sample_path(const Path& path, double time) {
       std::upper_bound(rows.begin(), rows.end(), time, [](double t, const PathRow& row) { return t < row.time; });
   const PathRow &a = *(after - 1), &b = *after;
   const double share = (time - a.time) / (b.time - a.time);
-  return {time, a.position + share * (b.position - a.position), glm::slerp(a.rotation, b.rotation, share)};
+  return {time, a.position + share * (b.position - a.position), glm::slerp(a.rotation, b.rotation, share),
+          a.grip + share * (b.grip - a.grip)};
 }
 
 }  // namespace pliant

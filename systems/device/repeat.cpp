@@ -31,16 +31,16 @@ Path repeated(const Path& path, double period) {
   const double last = path.rows.back().time;
   PathRow begin = sample_path(path, 0.0);
   begin.time = 0.0;
-  Path all{{begin}, path.turns, true};
+  Path all{{begin}, path.turns, true, path.grips};
   std::copy_if(path.rows.begin(), path.rows.end(), std::back_inserter(all.rows),
                [](const PathRow& row) { return row.time > 0.0; });
   if (ends_where_it_begins(path, begin)) {
-    if (last > 0.0) all.rows.back() = {last, begin.position, begin.rotation};
+    if (last > 0.0) all.rows.back() = {last, begin.position, begin.rotation, begin.grip};
   } else if (last > 0.0) {
     for (std::size_t i = all.rows.size() - 1; i-- > 0;)
-      all.rows.push_back({2.0 * last - all.rows[i].time, all.rows[i].position, all.rows[i].rotation});
+      all.rows.push_back({2.0 * last - all.rows[i].time, all.rows[i].position, all.rows[i].rotation, all.rows[i].grip});
   }
-  if (all.rows.back().time < period) all.rows.push_back({period, begin.position, begin.rotation});
+  if (all.rows.back().time < period) all.rows.push_back({period, begin.position, begin.rotation, begin.grip});
   return all;
 }
 

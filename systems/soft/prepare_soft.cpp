@@ -80,6 +80,8 @@ Status add_rigid(const World& world, SoftState& soft) {
     std::unique_ptr<Body> state;
     if (body.fixed) {
       state = std::make_unique<FixedBody>(mesh, pose);
+      if (std::vector<KinematicBody::Link> links = links_of(world, entity); !links.empty())
+        soft.kinematic.push_back({static_cast<std::uint32_t>(soft.bodies.size()), std::move(links)});
     } else {
       const Result<RigidMass> mass = rigid_mass(world, entity, body);
       if (!mass) return mass.error();

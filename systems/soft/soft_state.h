@@ -11,6 +11,7 @@
 #include "components/world.h"
 #include "runtime/exchange.h"
 #include "systems/soft/body/body.h"
+#include "systems/soft/body/kinematic_body.h"
 #include "systems/soft/body/rigid_state.h"
 #include "systems/soft/body/tool_body.h"
 #include "systems/soft/body/yielding_body.h"
@@ -39,6 +40,7 @@ struct SoftTally {
   double residual = 0.0;           // [m/s] largest final residual of a step
   double deepest = 0.0;            // [m] >= 0: largest penetration at the beginning of a step
   std::uint64_t halted = 0;        // number of times that bodies stopped in a step before an unprevented crossing
+  double fed = 0.0;                // [J] by kinematic bodies, and by gravity to joined rigid ones
   double halted_for = 0.0;         // [s] time lost by it, as the step had no more parts
 
   // [m] Largest initial penetration in the first step, if beyond 1 % of the smaller body's diagonal; and its bodies.
@@ -65,6 +67,7 @@ struct SoftState {
   std::vector<std::unique_ptr<Body>> bodies;  // fixed ones too
   std::vector<std::uint32_t> moving;          // those with degrees of freedom, which are in the snapshot
   std::vector<std::uint32_t> yielding;        // YieldingBody, one per Deformable
+  std::vector<KinematicBody> kinematic;
   std::unique_ptr<Proximity> proximity;
   std::vector<ContactPoint> contacts;  // of the last step, with their impulses
   double impulse_time = 0.0;           // [s] over which these act

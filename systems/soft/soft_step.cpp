@@ -73,6 +73,18 @@ void stop_non_finite(SoftState& soft) {
   }
 }
 
+// [J] What gravity gives to rigid bodies that are joined, in T [s]: weight of a tool's fingers moves the hand.
+double given_by_weight(const SoftState& soft, dvec3 gravity, double T) {
+  double sum = 0.0;
+  for (const std::uint32_t i : soft.moving) {
+    const RigidState* const body = soft.bodies[i]->as_rigid();
+    if (!body || body->joined.empty()) continue;
+    const Vector& v = body->velocity();
+    sum += T * body->mass().mass * dot(gravity, dvec3(v[0], v[1], v[2]));
+  }
+  return sum;
+}
+
 // Prevents tunnelling: bodies stop before a crossing that no contact prevents. The remainder of the step becomes an
 // additional part, which has these contacts from its beginning.
 void stop_before(SoftState& soft, const Crossings& left, double T) {
@@ -101,6 +113,8 @@ void free_motion(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   const std::uint64_t begin = now_ns();
+  for (const KinematicBody& led : soft.kinematic)
+    lead(world, led, static_cast<FixedBody&>(*soft.bodies[led.body]), tick);
   for (const std::unique_ptr<Body>& body : soft.bodies) {
     if (body->taken_out) continue;
     body->free_step(tick.dt, world.simulation.gravity);
@@ -127,7 +141,7 @@ void find_contacts(World& world, Tick tick) {
   soft.split.place(soft.bodies, tick.dt, soft.contacts);
   soft.tally.contacts_cut += cut_contacts(soft.bodies, kMostOfBody, soft.contacts);
   for (const std::uint32_t i : soft.yielding) soft.surface(i).place(soft.contacts, i, tick.dt);
-  soft.joints.place(soft.bodies, tick.dt, soft.contacts);
+  soft.joints.place(soft.bodies, tick, soft.contacts);
   for (const ContactPoint& contact : soft.contacts) soft.tally.deepest = std::max(soft.tally.deepest, contact.depth);
   if (soft.steps == 0) tally_beginning(soft);
   soft.times.proximity = ms_since(begin);
@@ -144,7 +158,8 @@ void solve_contacts(World& world, Tick tick) {
   Crossings left;
   soft.report = solve_and_apply(soft.bodies, *soft.proximity, tick.dt, undone, kSweeps, soft.delassus, soft.contacts,
                                 soft.problem, &left, &soft.joints);
-  soft.joints.measure(soft.contacts, tick);
+  soft.joints.measure(soft.bodies, soft.contacts, tick);
+  soft.tally.fed += energy_given(soft.bodies, soft.contacts);
   stop_before(soft, left, tick.dt);
   soft.times.sweeps = ms_since(built);
   soft.tally.unconverged += soft.settled && !soft.report.settled;
@@ -157,6 +172,7 @@ void advance_bodies(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   const double dt = soft.share * tick.dt;
+  soft.tally.fed += given_by_weight(soft, world.simulation.gravity, dt);
   for (const std::unique_ptr<Body>& body : soft.bodies) {
     if (body->taken_out) continue;
     body->advance(dt);

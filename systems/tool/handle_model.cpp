@@ -1,5 +1,7 @@
 #include "systems/tool/handle_model.h"
 
+#include <cmath>
+
 #include "systems/soft/linear/symmetric_product.h"
 
 namespace pliant {
@@ -16,6 +18,7 @@ void CondensedContacts::resize(int most_contacts, int most_modes) {
   delassus.setZero(rows, rows);
   force.setZero(rows);
   gap.setZero(most_contacts);
+  drift.setZero(rows);
   push.setZero(most_contacts);
   mu_static.assign(static_cast<std::size_t>(most_contacts), 0.0);
   mu_sliding.assign(static_cast<std::size_t>(most_contacts), 0.0);
@@ -27,6 +30,8 @@ void CondensedContacts::resize(int most_contacts, int most_modes) {
   slip.assign(static_cast<std::size_t>(most_contacts), dvec2(0.0));
   sliding.assign(static_cast<std::size_t>(most_contacts), 0);
   held.assign(static_cast<std::size_t>(most_contacts), 0);
+  most.assign(static_cast<std::size_t>(most_contacts), HUGE_VAL);
+  unbounded.assign(static_cast<std::size_t>(most_contacts), 0.0);
   stiff.assign(static_cast<std::size_t>(most_contacts), 0);
 }
 

@@ -60,11 +60,14 @@ struct CondensedContacts {
   Eigen::MatrixXd flexibility;               // [m/N] 3 count x 3 count: residual flexibility, without inertia
   double flexibility_lag = 0.0;              // [s] its damping: stretch + lag stretch' = flexibility f
   Vector force;                              // [N] 3 count, at the model's time
+  Vector drift;                              // [m/s] 3 count: by the prescribed motion of kinematic bodies
   Vector gap;                                // [m] count: > 0: still open; < 0: penetration being corrected
   Vector push;                               // [m/s] count: <= 0: rate of that correction
   std::vector<double> mu_static, mu_sliding;
   std::vector<std::uint8_t> sliding;
   std::vector<std::uint8_t> held;   // bits of the axes along which it is a joint (ContactProblem::held)
+  std::vector<double> most;         // [N] bound of a joint's force along its first axis (JointHold::most)
+  std::vector<double> unbounded;    // [N] that force without the bound
   std::vector<dvec2> lean;          // [1] tilt of the normal against the model's axes
   std::vector<dmat2> turning;       // [1/m] change of that tilt with slip (contact_point.h)
   std::vector<std::uint64_t> key;   // the same contact has the same key in the next model (contact_point.h)
@@ -104,6 +107,7 @@ struct HandleModel {
   Matrix6 handle_mass = Matrix6::Zero();  // of the handle alone
   Vector6 handle_load = Vector6::Zero();  // [N], [N m] its weight, and the force that supports the tool
   Vector6 force = Vector6::Zero();        // [N], [N m] of tissue and contacts on the handle, from the soft step
+  double fed = 0.0;                       // [J] to all bodies since the beginning: by drives, SoftTally::fed
   Vector6 passed_on = Vector6::Zero();    // [N], [N m] less the handle's inertia; with handle_load: on the device
   LinearModel linear;
   CondensedContacts contacts;
@@ -122,6 +126,7 @@ struct ToolInput {
   RigidMotion handle;   // the 1 kHz handle's centre
   std::uint32_t set_backs = 0;  // number of requests by the touch clock to set the tool back to the device
   std::uint32_t seen = 0;       // HandleModel::set_backs of the model in use
+  double grip = 0.0;            // [1] of its device
   ProbeHold hold;               // of a probe
   double max_force = 0.0;       // [N] of its device: upper bound of a pull
   // [N s], [N m s] Impulse of tissue and contacts on the handle, summed over all ticks so far.

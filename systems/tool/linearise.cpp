@@ -51,6 +51,9 @@ void rebase(HandleModel& model, const CondensedState& state, const Vector6& w0) 
       c.frequency2.head(modes).cwiseProduct(state.q.head(modes)) + c.modal_stiffness.topRows(modes) * state.d;
   c.rate.head(modes) = state.rate.head(modes);
   c.force.head(rows) = state.problem.impulse.head(rows) / c.tick;
+  for (int i = 0; i < c.count; ++i)
+    if (c.most[static_cast<std::size_t>(i)] < HUGE_VAL)
+      c.unbounded[static_cast<std::size_t>(i)] = state.spring[3 * i] / c.flexibility(3 * i, 3 * i);
   c.gap.head(c.count) = state.gap.head(c.count);
   std::copy_n(state.slip.begin(), c.count, c.slip.begin());
   std::copy_n(state.reach.begin(), c.count, c.reach.begin());
@@ -203,6 +206,7 @@ void take_inputs(World& world, double T) {
     if (!body) continue;
     if (soft.part == 0) tool->input.acquire();
     const ToolInput& input = tool->input.read();
+    soft.joints.set_grip(tool->entity, input.grip);
     const double left = T * (soft.parts - soft.part);  // [s] of the whole step
     Pose before = input.device.pose;
     before.position -= left * linear(input.device.velocity);
@@ -236,6 +240,7 @@ void linearise(World& world, double T) {
       describe_tool(step, index, tick, tool->pending);
     else
       reduce_tool(step, index, tick, tool->pending);
+    tool->pending.fed = soft.joints.fed() + soft.tally.fed;
     tool->pending.soft_step = std::max(soft.step, tick);  // time until the next one is used
     ++tool->pending.step;
   }

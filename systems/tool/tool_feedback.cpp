@@ -255,6 +255,7 @@ void send_to_soft_clock(const World& world, ToolTouchState& tool, Tick tick) {
   input.placed = leads;
   input.handle = tool.handle;
   input.impulse = tool.impulse;
+  input.grip = world.registry.get<HapticDevice>(tool.device).grip;
   input.set_backs = tool.set_backs;
   input.seen = tool.models_set_back;
   if (tool.is_probe) {

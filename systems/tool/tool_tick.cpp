@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 #include "systems/soft/linear/add_three.h"
 
@@ -75,6 +76,7 @@ void fill_bias(const CondensedContacts& model, const CondensedState& state, cons
              state.free_rate.data(), bias.data());
   bias.head(rows).noalias() += model.reduced_handle.topRows(rows) * w;
   bias.head(rows) -= state.spring.head(rows) / (tick + model.flexibility_lag);
+  bias.head(rows) += model.drift.head(rows);
   for (int i = 0; i < model.count; ++i) {
     const double rate = state.gap[i] / tick;
     const dvec3 normal = state.problem.own[static_cast<std::size_t>(i)][0];
@@ -111,14 +113,18 @@ void advance(const CondensedContacts& model, CondensedState& state, const TickHa
   auto with_modes = state.moved.head(rows);
   rows_times(model.from_modes.data(), model.from_modes.outerStride(), static_cast<int>(rows), static_cast<int>(modes),
              state.rate.data(), with_modes.data());
-  moved += with_modes;
+  moved += with_modes + model.drift.head(rows);
   moved.noalias() += model.from_handle.topRows(rows).lazyProduct(handle.velocity);
   for (int i = 0; i < model.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const dvec3 u = (dvec3(moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]) + state.shift[k]) * state.problem.own[k];
     state.slip[k] += tick * dvec2(u.y, u.z);
     const double before = state.gap[i], after = before + tick * u.x;
-    if (model.held[k] != 0) continue;
+    if (model.held[k] != 0) {
+      // A bounded drive follows its bodies: `moved` has its spring's part, which its force does not say at the bound.
+      if (model.most[k] < HUGE_VAL) state.spring[3 * i] -= tick * u.x;
+      continue;
+    }
     state.gap[i] = before >= 0.0 ? std::max(after, 0.0) : after;  // a gap closed up to rounding is closed
     if (lambda[3 * i] > 0.0) state.reach[k] = kAnywhere;
     if (state.gap[i] > 0.0 && length(state.slip[k]) > state.reach[k]) state.gap[i] = kGone;
@@ -153,6 +159,7 @@ void CondensedState::resize(int most_contacts, int most_modes) {
   problem.resize_vectors(most_contacts);
   problem.own.assign(static_cast<std::size_t>(most_contacts), dmat3(1.0));
   problem.held.assign(static_cast<std::size_t>(most_contacts), 0);
+  problem.most.assign(static_cast<std::size_t>(most_contacts), HUGE_VAL);
   problem.count = 0;
   key.assign(static_cast<std::size_t>(most_contacts), 0);
   last.setZero(rows);
@@ -168,6 +175,9 @@ void CondensedState::start(const CondensedContacts& model) {
   spring.head(rows).setZero();
   add_columns(spring.data(), model.flexibility.data(), model.flexibility.outerStride(), static_cast<int>(rows),
               model.force.data(), static_cast<int>(rows));
+  for (int i = 0; i < model.count; ++i)  // beyond its bound a drive stretches on
+    if (const auto c = static_cast<std::size_t>(i); model.most[c] < HUGE_VAL)
+      spring[3 * i] += model.flexibility(3 * i, 3 * i) * (model.unbounded[c] - model.force[3 * i]);
   gap.head(model.count) = model.gap.head(model.count);
   std::copy_n(model.slip.begin(), model.count, slip.begin());
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.count); ++i) {
@@ -191,6 +201,7 @@ void CondensedState::start(const CondensedContacts& model) {
   std::copy_n(model.mu_sliding.begin(), model.count, problem.mu_sliding.begin());
   std::copy_n(model.sliding.begin(), model.count, problem.sliding.begin());
   std::copy_n(model.held.begin(), model.count, problem.held.begin());
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.count); ++i) problem.most[i] = model.tick * model.most[i];
 }
 
 Vector6 condensed_tick(const CondensedContacts& model, CondensedState& state, const SweepLimits& limits,

@@ -123,6 +123,7 @@ struct ToolTouchState {
   std::uint32_t models_set_back = 0;        // HandleModel::set_backs of the model in use
   Vector6 device_wrench = Vector6::Zero();  // [N], [N m] wanted, on the device at its origin
   SafetyState force_safety, torque_safety;
+  double fed = 0.0;  // [J] HandleModel::fed that their account has
   dvec3 weight{0};   // [N] of the whole tool without weight compensation, else 0; constant
   dvec3 balance{0};  // [m] its centre of mass at rest, in the object frame
   dvec3 turned{0};   // [rad] sum of the device's small rotations

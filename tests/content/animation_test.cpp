@@ -206,10 +206,15 @@ TEST(Animation, KeysOfPliantMotionChooseSlowAndStopIt) {
   EXPECT_THAT(spawn_refusal(level), HasSubstr("`trun`, which does not move this node"));
 }
 
-TEST(Animation, SoftAndRigidBodiesAreNotCarried) {
+TEST(Animation, OfBodiesAFixedRigidOneAloneIsCarried) {
   Level level = loaded(turning());
   level.nodes[0].rigid_body.emplace().fixed = true;
+  EXPECT_TRUE(spawn(level).ok());
+  level.nodes[0].rigid_body->fixed = false;
   EXPECT_THAT(spawn_refusal(level), HasSubstr("node `thing`"));
+  EXPECT_THAT(spawn_refusal(level), HasSubstr("set `fixed`"));
+  level.nodes[0].rigid_body.reset();
+  level.nodes[0].soft_body.emplace();
   EXPECT_THAT(spawn_refusal(level), HasSubstr("not supported"));
 }
 

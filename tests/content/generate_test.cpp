@@ -142,11 +142,11 @@ TEST(Generate, ShippedFilesAreWhatTheGeneratorMakes) {
                            "effects_b.csv",         "effects_c.csv",         "effects_d.csv",
                            "effects_e.csv",         "effects_f.csv",         "fields_finger.csv",
                            "fields_rail.csv",       "layers_needle.csv",     "layers_finger.csv",
-                           "palpation.csv"})
+                           "palpation.csv",          "grasp.csv"})
     EXPECT_EQ(bytes_of(folder.path / "levels" / name), bytes_of(kShipped / "levels" / name)) << name;
   for (const char* name : {"three_probes.glb", "inclusion.glb", "glass_heart.glb", "chrome_cushion.glb",
                            "turning_ball.glb", "hand.glb", "hand_crowd.glb", "hand_squeeze.glb", "stack.glb",
-                           "instrument.glb", "effects.glb", "fields.glb", "layers.glb", "palpation.glb"}) {
+                           "instrument.glb", "effects.glb", "fields.glb", "layers.glb", "palpation.glb", "grasp.glb"}) {
     const Result<Level> made = load_level(folder.path / "levels" / name),
                         shipped = load_level(kShipped / "levels" / name);
     ASSERT_TRUE(made.ok()) << made.error().message();

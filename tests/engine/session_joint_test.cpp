@@ -36,6 +36,25 @@ TEST(SessionJoint, HoldsWhatWouldFall) {
   EXPECT_NEAR(high, 0.0f, 1e-6f);
 }
 
+TEST(SessionJoint, AnAnimationMovesTheRestOfASlider) {
+  Scene scene = hung({.kind = JointKind::kSlider, .a = "bob", .stiffness = 1e4, .damping = 10.0});
+  Level& level = scene.level();
+  LevelNode& node = level.nodes.back();
+  ASSERT_TRUE(node.joint);
+  node.motion.emplace().repeat = false;
+  LevelChannel channel{static_cast<std::int32_t>(level.nodes.size() - 1), NodeProperty::kKey, {}, "rest"};
+  channel.track.times = {0.0, 0.5}, channel.track.length = 0.5;
+  channel.track.values = {{0.0, 0, 0, 0}, {0.05, 0, 0, 0}};
+  level.animations.push_back({"lift", 0.5, {channel}, -1});
+  Session session = opened(scene);
+  ASSERT_TRUE(session.step(1000));
+  std::vector<vec3> now;
+  ASSERT_TRUE(session.vertices("bob", now));
+  double mean = 0.0;
+  for (const vec3& x : now) mean += double{x.y} / double(now.size());
+  EXPECT_NEAR(mean, -0.02 + 0.05, 1e-4);  // less m g / K
+}
+
 TEST(SessionJoint, WhatIsWrongIsOneSentence) {
   EXPECT_THAT(said({.kind = JointKind::kBall}), HasSubstr("holds no body"));
   EXPECT_THAT(said({.kind = JointKind::kBall, .a = "bobb"}), HasSubstr("did you mean bob"));
@@ -44,6 +63,9 @@ TEST(SessionJoint, WhatIsWrongIsOneSentence) {
   EXPECT_THAT(said({.kind = JointKind::kHinge, .a = "bob", .limits = {0.5, 1.0}}), HasSubstr("outside of its limits"));
   EXPECT_THAT(said({.kind = JointKind::kHinge, .a = "bob", .stiffness = -1.0}), HasSubstr("must be in the range"));
   EXPECT_EQ(said({.kind = JointKind::kHinge, .a = "bob", .limits = {-0.5, 1.0}, .stiffness = 1.0}), "");
+  EXPECT_THAT(said({.kind = JointKind::kHinge, .a = "bob", .stiffness = 1.0, .grip = "bobs"}),
+              HasSubstr("no tool or probe"));
+  EXPECT_THAT(said({.kind = JointKind::kHinge, .a = "bob", .grip = "bob"}), HasSubstr("without `stiffness`"));
 }
 
 TEST(SessionJoint, KeysThatAKindDoesNotReadAreNamed) {

@@ -47,13 +47,15 @@ class AnimationReader {
   void say_other() {
     if (other_pointers_ == 0) return;
     std::vector<std::string> keys;
-    for (const VaryingKey& each : varying_keys()) keys.emplace_back(each.key);
+    for (const VaryingKey& each : varying_keys())
+      if (!each.of_joint()) keys.emplace_back(each.key);
     const std::string more = other_pointers_ == 1 ? ""
                                                   : fmt::format(" and {} more pointer{}", other_pointers_ - 1,
                                                                 other_pointers_ == 2 ? "" : "s");
     level_.notes.push_back(
-        fmt::format("the animation pointer {}{} not played; a pointer may vary {} of PLIANT_deformable", other_,
-                    more + (other_pointers_ == 1 ? " is" : " are"), listed(keys)));
+        fmt::format("the animation pointer {}{} not played; a pointer may vary {} of PLIANT_deformable, and rest of "
+                    "PLIANT_joint",
+                    other_, more + (other_pointers_ == 1 ? " is" : " are"), listed(keys)));
   }
 
  private:

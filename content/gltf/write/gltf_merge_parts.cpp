@@ -175,7 +175,7 @@ bool follow(Json& target, Merge& merge) {
     pointer = pointer_now(pointer.get<std::string>(), merge);
     const KeyPointer key = key_pointer(pointer.get<std::string>());
     for (std::size_t n = 0; n < merge.level.nodes.size() && key.node >= 0; ++n)
-      if (merge.number[n] == key.node) return merge.level.nodes[n].deformable.has_value();
+      if (merge.number[n] == key.node) return has_extension(merge.level.nodes[n], key.key);
     return pointer != "";
   }
   if (!target.contains("node")) return true;

@@ -194,6 +194,8 @@ class Body {
   // their levers: beyond 2 I/T^2 it counts as inertia, without which that step would be unstable.
   // Returns whether that grew much.
   virtual bool stiffen_turning(const dmat3& stiffness, double T) { return (void)stiffness, (void)T, false; }
+  // Its motion is prescribed, and it moves.
+  virtual bool prescribed() const { return false; }
   // [m/s] J v of a point, by the current velocity().
   virtual dvec3 velocity_of(const SurfacePoint& point) const;
   // Fills the object's part of a snapshot. Sizes are set by the first call, before the clocks start.

@@ -52,7 +52,7 @@ class RigidState : public Body {
   dmat3 inverse_inertia(const dquat& rotation) const;  // world
   dvec3 free_turn(double T) const;                     // [rad/s] mean angular velocity of the step without contacts
   RigidPath path_of(const Vector& v) const { return {centre_, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}}; }
-  void turn_stiffly();                                 // sets the step's spin without contacts, by stiffened_
+  void turn_stiffly();  // sets the step's spin without contacts, by stiffened_
   void refresh_surface();
 
   RigidMass mass_;
@@ -83,6 +83,7 @@ class FixedBody : public ImmovableBody {
   void place(const Pose& pose) override;
   std::optional<Pose> pose_after(double T) const override;
   dvec3 velocity_of(const SurfacePoint& point) const override;
+  bool prescribed() const override { return linear_ != dvec3(0) || angular_ != dvec3(0); }
   void show(SoftObjectSnapshot& out) const override;
   const Pose& pose() const { return pose_; }
 

@@ -83,6 +83,7 @@ struct Admm {
   // The allowed impulse nearest to `v`.
   Eigen::Vector3d allowed(int i, Eigen::Vector3d v) const {
     if (!sweeps.held(i)) return onto_cone(v, sweeps.mu(i));
+    v[0] = sweeps.bounded(i, v[0]);
     for (int k = 0; k < 3; ++k) v[k] *= sweeps.holds(i, k);
     return v;
   }

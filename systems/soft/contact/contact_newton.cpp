@@ -123,7 +123,9 @@ bool ContactNewton::choose_unknowns() {
       m_.right[unknowns_++] = right;
     };
     if (s_.held(i) && s_.movable(i)) {
-      for (int k = 0; k < 3; ++k)
+      const bool bound = s_.at_bound(i, l.x, u.x);
+      if (bound) base.x = std::copysign(s_.most(i), s_.block(i)[0][0] * l.x - u.x);
+      for (int k = bound ? 1 : 0; k < 3; ++k)
         if (s_.holds(i, k)) add(dmat3(1.0)[k], dmat3(1.0)[k], 0.0, 0.0);
     } else if (!s_.movable(i) || l.x <= 0.0 || m_.dropped[i]) {
       base = dvec3(0.0);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -17,6 +18,7 @@ struct JointHold {
   dvec3 off{0};             // [m] at the step's beginning
   dvec3 rate{0};            // [1/s]
   dvec3 softness{0};        // [1/kg]
+  double most = HUGE_VAL;   // [N s] bound of its impulse along the first axis
 };
 
 struct ContactPoint {
@@ -40,8 +42,8 @@ struct ContactPoint {
   double dented = 0.0;                       // [m] of a split contact: depth of its local dent, of the last solve
   double relaxed = 0.0;                      // [N] of a DentLaw that relaxes: the part of its force that has
   bool sliding = false;
-  double slipped = 0.0;      // [m] at the static limit, since it last stuck
-  bool joined = false;       // added although thinning dropped it: without it the bodies sink in
+  double slipped = 0.0;  // [m] at the static limit, since it last stuck
+  bool joined = false;   // added although thinning dropped it: without it the bodies sink in
   JointHold hold;
   std::uint32_t source = 0;  // an index of Proximity, in this step
 };

@@ -79,6 +79,7 @@ void hand_out(const ContactProblem& whole, ContactProblem& part) {
   part.patch.resize(whole.patch.empty() ? 0 : part.members.size());
   part.loose.resize(part.patch.size()), part.slipped.resize(part.patch.size());
   part.held.resize(whole.held.empty() ? 0 : part.members.size());
+  part.most.resize(whole.most.empty() ? 0 : part.members.size());
   for (std::size_t k = 0; k < part.members.size(); ++k) {
     const auto i = static_cast<std::size_t>(part.members[k]);
     const auto to = static_cast<Eigen::Index>(3 * k), from = static_cast<Eigen::Index>(3 * i);
@@ -89,6 +90,7 @@ void hand_out(const ContactProblem& whole, ContactProblem& part) {
     part.sliding[k] = whole.sliding[i];
     if (!whole.own.empty()) part.own[k] = whole.own[i];
     if (!whole.held.empty()) part.held[k] = whole.held[i];
+    if (!whole.most.empty()) part.most[k] = whole.most[i];
     if (whole.patch.empty()) continue;
     part.patch[k] = whole.place[static_cast<std::size_t>(whole.patch[i])].second;
     part.loose[k] = whole.loose[i], part.slipped[k] = whole.slipped[i];

@@ -55,6 +55,8 @@ struct ContactProblem {
   // Of each contact: bits of the axes along which it is a joint, u = 0 with any impulse, and none along the others; 0:
   // a contact. Empty: no joints.
   std::vector<std::uint8_t> held;
+  // [N s] of each contact that holds its first axis: |lambda| <= most there. Empty: no bounds.
+  std::vector<double> most;
   std::vector<std::uint8_t> sliding;  // in: in the last solve; out: on the cone's border
   Vector velocity;                    // [m/s] out: u
   // Contacts of one pair of bodies: the index of its first one. They break loose together, when nearly all of the load

@@ -159,7 +159,7 @@ void ContactSweeps::project() {
   for (int i = 0; i < p_.count; ++i) {
     dvec3 l = impulse(i);
     if (held(i))
-      for (int k = 0; k < 3; ++k) l[k] *= holds(i, k);
+      l = dvec3(holds(i, 0) ? bounded(i, l.x) : 0.0, holds(i, 1) ? l.y : 0.0, holds(i, 2) ? l.z : 0.0);
     else if (l.x > 0.0)
       clamp_to_disc(l.y, l.z, mu(i) * l.x);
     else
@@ -233,7 +233,8 @@ dvec3 ContactSweeps::hold(int i, dvec3 c) {
   }
   dmat3& inverse = p_.inverses[i];
   if (std::isnan(inverse[0][0])) inverse = glm::inverse(w);
-  return -(inverse * c);
+  const dvec3 found = -(inverse * c);
+  return {bounded(i, found.x), found.y, found.z};
 }
 
 // Twice: without a lever it stays short.
@@ -265,7 +266,11 @@ double ContactSweeps::residual_of(int i) const {
   if (held(i)) {
     double worst = 0.0;
     for (int k = 0; k < 3; ++k)
-      if (holds(i, k)) worst = std::max(worst, std::abs(u[k]));
+      if (holds(i, k) && (k > 0 || !at_bound(i, l.x, u.x))) worst = std::max(worst, std::abs(u[k]));
+    if (holds(i, 0) && at_bound(i, l.x, u.x)) {
+      const double w = block(i)[0][0];
+      worst = std::max(worst, w * std::abs(l.x - bounded(i, l.x - u.x / w)));
+    }
     return worst;
   }
   const dmat3& w = block(i);

@@ -2,7 +2,9 @@
 // residual. Vectors of a contact are in its axes: normal, two tangents.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "systems/soft/contact/contact_problem.h"
 
@@ -36,6 +38,15 @@ class ContactSweeps {
   // Bits of the axes along which it is a joint; 0: a contact.
   std::uint8_t held(int i) const { return p_.held.empty() ? 0 : p_.held[i]; }
   bool holds(int i, int axis) const { return (held(i) >> axis & 1) != 0; }
+  // [N s] of its impulse along the first axis.
+  double most(int i) const { return p_.most.empty() ? HUGE_VAL : p_.most[i]; }
+  // The impulse within that bound nearest to `l`.
+  double bounded(int i, double l) const { return std::clamp(l, -most(i), most(i)); }
+  // A bounded joint that would push beyond its bound.
+  bool at_bound(int i, double l, double u) const {
+    const double w = block(i)[0][0];
+    return most(i) < HUGE_VAL && std::abs(w * l - u) >= w * most(i);
+  }
   bool movable(int i) const { return p_.blocks[i][0][0] > 0.0; }
   const dmat3& block(int i) const { return p_.blocks[i]; }
   dvec3 impulse(int i) const { return to_own(i, &p_.impulse[3 * i]); }

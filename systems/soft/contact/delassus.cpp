@@ -287,9 +287,12 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
 
   find_bias(bodies, contacts, T, beta, delassus, problem);
   const auto is_held = [](const ContactPoint& c) { return c.hold.axes != 0; };
+  const auto is_bounded = [](const ContactPoint& c) { return c.hold.most < HUGE_VAL; };
   problem.held.assign(std::any_of(contacts.begin(), contacts.end(), is_held) ? contacts.size() : 0, 0);
+  problem.most.assign(std::any_of(contacts.begin(), contacts.end(), is_bounded) ? contacts.size() : 0, HUGE_VAL);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactPoint& c = contacts[i];
+    if (!problem.most.empty()) problem.most[i] = c.hold.most;
     if (c.hold.axes != 0) problem.held[i] = c.hold.axes;
     for (int k = 0; k < 3; ++k) problem.impulse[3 * static_cast<Eigen::Index>(i) + k] = c.impulse[k];
     problem.mu_static[i] = c.mu_static;

@@ -11,8 +11,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kArm = 0.25;       // [1] of the smaller body's diagonal
-constexpr double kCorrected = 0.2;  // [1] of a rigid row's gap that an earlier step left: more adds energy
+constexpr double kArm = 0.25;            // [1] of the smaller body's diagonal
+constexpr double kCorrected = 0.2;       // [1] of a rigid row's gap that an earlier step left: more adds energy
+constexpr double kAtBound = 1.0 - 1e-9;  // [1] of a spring's bound
 constexpr std::uint64_t kJointKey = std::uint64_t{1} << 63;
 constexpr std::uint8_t kAll = 7, kFirst = 1, kAcross = 6;  // axes that a row holds
 
@@ -113,7 +114,8 @@ void Joints::add_free_axis(const JointState& state, const Pose& a, const Pose& b
   }
   if (!has_spring(joint)) return;
   row.stiffness = joint.stiffness / (arm * arm), row.damping = joint.damping / (arm * arm);
-  push(at - joint.rest, 1.0, kFirst);
+  if (joint.max_force > 0.0) row.most = joint.max_force / arm;
+  push(at - state.target, 1.0, kFirst);
 }
 
 void Joints::find_rows(const std::vector<std::unique_ptr<Body>>& bodies, const JointState& state, double T,
@@ -150,7 +152,8 @@ Status Joints::prepare(const World& world, std::vector<std::unique_ptr<Body>>& b
 Status Joints::add(const World& world, Entity entity, const Joint& joint, std::vector<std::unique_ptr<Body>>& bodies) {
   const Name* const name = world.registry.find<Name>(entity);
   JointState state;
-  state.joint = joint, state.name = name ? name->value : fmt::format("entity {}", entity.index);
+  state.joint = joint, state.target = rest_at(joint, 0.0, 0.0),
+  state.name = name ? name->value : fmt::format("entity {}", entity.index);
   const std::string where = "joint `" + state.name + "`";
   const auto body_of = [&](Entity of) {
     const auto found = std::find_if(bodies.begin(), bodies.end(), [&](const auto& b) { return b->entity == of; });
@@ -219,7 +222,8 @@ void Joints::take_out(std::vector<ContactPoint>& contacts) {
   std::erase_if(contacts, [](const ContactPoint& c) { return c.hold.joint >= 0; });
 }
 
-void Joints::place(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::vector<ContactPoint>& contacts) {
+void Joints::place(const std::vector<std::unique_ptr<Body>>& bodies, Tick tick, std::vector<ContactPoint>& contacts) {
+  const double T = tick.dt;
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     JointState& state = joints_[j];
     Body &a = *bodies[state.a.body], &b = *bodies[state.b.body];
@@ -230,6 +234,7 @@ void Joints::place(const std::vector<std::unique_ptr<Body>>& bodies, double T, s
     if (a.taken_out || b.taken_out || !a.solvable() || !b.solvable()) continue;
     if (state.joint.kind == JointKind::kHinge && state.a.rigid && state.b.rigid)
       state.turned = angle_of(frame_of(bodies, state.a, 0.0), frame_of(bodies, state.b, 0.0), state.turned);
+    drive(bodies, state, tick);
     find_rows(bodies, state, 0.0, rows_);
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       const Row& row = rows_[r];
@@ -250,6 +255,7 @@ void Joints::place(const std::vector<std::unique_ptr<Body>>& bodies, double T, s
         const double both = row.damping + T * row.stiffness;
         c.hold.rate.x = row.stiffness / both;
         c.hold.softness.x = 1.0 / (T * both);
+        c.hold.most = T * row.most;
       }
       if (row.held == 0) c.gap = row.off.x;
       for (int k = 0; k < 3; ++k)
@@ -338,11 +344,22 @@ bool Joints::stiffen(const std::vector<std::unique_ptr<Body>>& bodies, const std
   return grew;
 }
 
-void Joints::measure(const std::vector<ContactPoint>& contacts, Tick tick) {
+void Joints::measure(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
+                     Tick tick) {
   if (joints_.empty()) return;
   std::vector<dvec3> impulse(joints_.size(), dvec3(0.0));
-  for (const ContactPoint& c : contacts)
-    if (c.hold.joint >= 0) impulse[static_cast<std::size_t>(c.hold.joint)] += c.axes * c.impulse;
+  for (const ContactPoint& c : contacts) {
+    if (c.hold.joint < 0) continue;
+    const auto j = static_cast<std::size_t>(c.hold.joint);
+    impulse[j] += c.axes * c.impulse;
+    if (c.hold.axes != kFirst || !(c.hold.softness.x > 0.0)) continue;
+    JointReport& report = joints_[j].report;
+    const double arm = joints_[j].joint.kind == JointKind::kHinge ? joints_[j].arm : 1.0;
+    report.push = arm * c.impulse.x / tick.dt;
+    report.work +=
+        c.impulse.x * dot(c.axes[0], bodies[c.body_a]->velocity_of(c.a) - bodies[c.body_b]->velocity_of(c.b));
+    if (std::abs(c.impulse.x) >= kAtBound * c.hold.most) report.limited_for += tick.dt;
+  }
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     JointReport& report = joints_[j].report;
     report.force = length(impulse[j]) / tick.dt;

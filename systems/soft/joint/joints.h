@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +24,11 @@ struct JointReport {
   double largest = 0.0;    // [N] of all steps
   double apart = 0.0;      // [m] largest gap at a step's beginning
   double broke_at = -1.0;  // [s] world; < 0: whole
+  // Of its spring:
+  double push = 0.0;         // [N m], [N] of the last step
+  double fed = 0.0;          // [J] by the motion of where it is at rest
+  double work = 0.0;         // [J] done on the bodies: at most `fed` and what it held at the beginning
+  double limited_for = 0.0;  // [s] during which it was at its bound
 };
 
 class Joints {
@@ -33,8 +39,10 @@ class Joints {
 
   // Removes the joints' points from the contacts of the last step and keeps their impulses.
   void take_out(std::vector<ContactPoint>& contacts);
-  // Adds them, as they are at the beginning of a step of T [s].
-  void place(const std::vector<std::unique_ptr<Body>>& bodies, double T, std::vector<ContactPoint>& contacts);
+  // Adds them, as they are at the beginning of a step.
+  void place(const std::vector<std::unique_ptr<Body>>& bodies, Tick tick, std::vector<ContactPoint>& contacts);
+  // [1] The grip of a tool or probe, 0 to 1, from now on.
+  void set_grip(Entity hand, double grip);
   // Corrects their laws by the gap to which the current velocities lead over the step. Returns the largest correction
   // [m].
   double look_again(const std::vector<std::unique_ptr<Body>>& bodies, double T,
@@ -49,12 +57,14 @@ class Joints {
   bool stiffen(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
                const Vector& impulses, double T) const;
   // After the step's solution: their forces; those beyond their strength break.
-  void measure(const std::vector<ContactPoint>& contacts, Tick tick);
+  void measure(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts, Tick tick);
 
   std::size_t size() const { return joints_.size(); }
   const std::string& name(std::size_t joint) const { return joints_[joint].name; }
   double arm(std::size_t joint) const { return joints_[joint].arm; }  // [m] of its size
   const JointReport& report(std::size_t joint) const { return joints_[joint].report; }
+  const Joint& joint(std::size_t joint) const { return joints_[joint].joint; }
+  double fed() const;  // [J] by all of them
 
  private:
   static constexpr std::size_t kMostRows = 6;
@@ -74,6 +84,8 @@ class Joints {
     Side a, b;
     double arm = 0.1;                        // [m] from the joint's point to those that hold its directions
     double turned = 0.0;                     // [rad] of a hinge, at the last step's beginning
+    double grip = 0.0;                       // [1]
+    double target = 0.0;                     // [rad], [m] where its spring is at rest, at the step's end
     std::array<dvec3, kMostPoints> apart{};  // [m] between the points of two tissues at the beginning
     std::array<dvec3, kMostRows> impulse{};  // [N s] of the last step
     JointReport report;
@@ -86,6 +98,7 @@ class Joints {
     dvec3 off{0};            // [m]
     double stiffness = 0.0;  // [N/m], [N s/m] along the first axis; both 0: rigid
     double damping = 0.0;
+    double most = HUGE_VAL;  // [N]
   };
   using Rows = std::vector<Row>;
 
@@ -95,6 +108,10 @@ class Joints {
   static SurfacePoint point_of(const std::vector<std::unique_ptr<Body>>& bodies, const Side& side, std::size_t i,
                                double T);
   static Pose frame_of(const std::vector<std::unique_ptr<Body>>& bodies, const Side& side, double T);
+  // [rad], [m] Where its spring is at rest.
+  static double rest_at(const Joint& joint, double grip, double time);
+  // Moves that to where it is at the step's end.
+  void drive(const std::vector<std::unique_ptr<Body>>& bodies, JointState& state, Tick tick) const;
   static void add_frames(const JointState& state, const Pose& a, const Pose& b, Rows& out);
   static void add_free_axis(const JointState& state, const Pose& a, const Pose& b, Rows& out);
 

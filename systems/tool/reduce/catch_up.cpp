@@ -7,10 +7,10 @@ namespace {
 
 constexpr SweepLimits kAgain{100, 1e-4, 0};
 
-// Solves the compliant contacts again, with the handle moving `extra` [m/s], [rad/s] faster over the step. Updates
-// impulses and velocities of all contacts.
-void solve_again(const CondensedContacts& model, const Eigen::MatrixXd& W, const Vector6& extra, Vector& impulse,
-                 Vector& velocity, std::vector<std::uint8_t>& sliding) {
+// Solves the compliant contacts again, with the handle moving `extra` [m/s], [rad/s] faster over the step T [s].
+// Updates impulses and velocities of all contacts.
+void solve_again(const CondensedContacts& model, const Eigen::MatrixXd& W, const Vector6& extra, double T,
+                 Vector& impulse, Vector& velocity, std::vector<std::uint8_t>& sliding) {
   std::vector<int> soft;
   for (int i = 0; i < model.count; ++i)
     if (!model.stiff[static_cast<std::size_t>(i)]) soft.push_back(i);
@@ -31,6 +31,7 @@ void solve_again(const CondensedContacts& model, const Eigen::MatrixXd& W, const
     problem.sliding[a] = sliding[at];
     problem.own.push_back(leaning_axes(model.lean[at]));
     problem.held.push_back(model.held[at]);
+    problem.most.push_back(T * model.most[at]);
   }
   const Eigen::Index rows = 3 * static_cast<Eigen::Index>(soft.size());
   const Vector before = problem.impulse.head(rows);
@@ -72,7 +73,7 @@ void catch_up(const ToolContacts& contacts, const Vector6& left, const Eigen::Ma
   for (int i = 0; i < c.count; ++i)
     velocity.segment<3>(3 * i) = step.problem.velocity.segment<3>(3 * static_cast<Eigen::Index>(contacts.in_step(i)));
   const Vector before = impulse;
-  solve_again(c, W, left / T, impulse, velocity, c.sliding);
+  solve_again(c, W, left / T, T, impulse, velocity, c.sliding);
   const Vector change = impulse - before;
   move_along(left, change, T, model);
   for (int i = 0; i < c.count; ++i) {

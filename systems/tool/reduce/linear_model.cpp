@@ -1,12 +1,15 @@
 #include "systems/tool/reduce/linear_model.h"
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "systems/tool/reduce/passive.h"
 #include "systems/tool/reduce/stiff_contacts.h"
 
 namespace pliant {
 namespace {
+
+constexpr double kAtBound = 1.0 - 1e-9;  // [1] of a joint's bound: it pushes as it does, whatever the handle does
 
 // The active constraints: every touching contact along its right rows R (sticking: all three; sliding: the normal),
 // with forces along its left columns D (sliding: on the cone).
@@ -25,7 +28,7 @@ ActiveSet active_set(const CondensedContacts& c) {
     const auto at = static_cast<std::size_t>(i);
     if (c.held[at] != 0) {
       for (int k = 0; k < 3; ++k) {
-        if ((c.held[at] >> k & 1) == 0) continue;
+        if ((c.held[at] >> k & 1) == 0 || (k == 0 && std::abs(f[0]) >= kAtBound * c.most[at])) continue;
         out.D(3 * i + k, out.size()) = 1.0;
         out.rows.push_back(3 * i + k);
       }

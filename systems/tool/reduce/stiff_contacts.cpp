@@ -25,7 +25,8 @@ void mark_stiff(const Eigen::MatrixXd& W, CondensedContacts& out) {
     double most = 0.0;
     for (int k = 0; k < 3; ++k)
       if (out.held[at] == 0 ? k == 0 : (out.held[at] >> k & 1) != 0) most = std::max(most, share.row(3 * i + k).norm());
-    out.stiff[at] = most > kStiffShare;
+    const bool spring = out.held[at] != 0 && out.flexibility(3 * i, 3 * i) > 0.0;  // its stretch is its force
+    out.stiff[at] = most > kStiffShare && !spring;
   }
 }
 

@@ -148,6 +148,15 @@ void describe_contacts(const ToolContacts& contacts, CondensedContacts& out) {
     out.mu_sliding[static_cast<std::size_t>(i)] = p.mu_sliding;
     out.sliding[static_cast<std::size_t>(i)] = p.sliding;
     out.held[static_cast<std::size_t>(i)] = p.hold.axes;
+    out.most[static_cast<std::size_t>(i)] = p.hold.most / step.T;
+    out.unbounded[static_cast<std::size_t>(i)] =
+        p.hold.most < HUGE_VAL ? (p.impulse.x - u[0] / p.hold.softness.x) / step.T : 0.0;
+    const auto prescribed = [&](std::uint32_t b, const SurfacePoint& at) {
+      const Body& body = *step.bodies[b];
+      return body.prescribed() ? body.velocity_of(at) * p.axes : dvec3(0.0);
+    };
+    const dvec3 drift = prescribed(p.body_a, p.a) - prescribed(p.body_b, p.b);
+    for (int k = 0; k < 3; ++k) out.drift[3 * i + k] = drift[k];
     out.lean[static_cast<std::size_t>(i)] = p.lean;
     out.turning[static_cast<std::size_t>(i)] = p.turning;
     out.slip[static_cast<std::size_t>(i)] = dvec2(0.0);
