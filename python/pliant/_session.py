@@ -225,6 +225,7 @@ class Felt:
     touching: NDArray[np.bool_]
     object: NDArray[np.int32]
     time: NDArray[np.float64]
+    lost: int = 0
 
     def __init__(self, name: str, time: NDArray[np.float64], arrays: dict[str, Any]) -> None:
         self.name = name
@@ -393,6 +394,11 @@ class Session(_pliant.Session):
     def bounds_of(self, name: str | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Least and greatest corner, (3,) [m] each, of an object or of all."""
         return self._bounds(name, False)
+
+    def readings(self, name: str) -> Felt:
+        """Every tick of a probe or tool since the last call, after keep_readings(); ``lost`` did not fit."""
+        raw = _pliant._take(self, name)
+        return Felt(name, raw.pop("time"), raw)
 
     def events(self) -> list[_pliant.Event]:
         """The events since the last call, oldest first: layers that broke, yielding, detents. run() takes its own."""

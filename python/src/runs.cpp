@@ -110,6 +110,22 @@ py::dict run(HeldSession& held, const py::dict& tracks, const py::object& ticks)
   return result_of(plan);
 }
 
+// The readings that were kept since the last call.
+py::dict take(HeldSession& held, const std::string& name) {
+  std::vector<pliant::Reading> readings;
+  const std::uint64_t lost = held.with([&](pliant::Session& s) { return check(s.take_readings(name, readings)); });
+  Felt felt(readings.size(), held.is_tool(name));
+  py::array_t<double> time(static_cast<py::ssize_t>(readings.size()));
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    felt.keep(i, readings[i]);
+    time.mutable_data()[i] = readings[i].time;
+  }
+  py::dict out = felt.arrays();
+  out["time"] = time;
+  out["lost"] = lost;
+  return out;
+}
+
 // The next path goes to the next free thread, which has a session of its own. Every path begins at time 0.
 struct Batch {
   const pliant::Scene& scene;
@@ -215,6 +231,7 @@ py::dict Felt::arrays() const {
 
 void bind_runs(py::module_& module) {
   module.def("_run", &run, py::arg("session"), py::arg("tracks"), py::arg("ticks"));
+  module.def("_take", &take, py::arg("session"), py::arg("name"));
   module.def("_batch", &batch, py::arg("sample"), py::arg("scene"), py::arg("paths"), py::arg("threads"));
 }
 

@@ -123,6 +123,8 @@ def test_verbs_of_the_command_give_arrays(tmp_path, session):
     swept = pl.sweep(plan, out=tmp_path / "sweep").tables["results"]
     assert list(swept["sheet.deformable.stiffness"]) == [200, 400]
     assert swept["tip.max_force_N"][1] == pytest.approx(2 * swept["tip.max_force_N"][0], rel=0.05)
+    subprocess.run([COMMAND, "run", "minimal", "--headless", "--seconds", "0.2", "--frames", "0", "--out", tmp_path / "run"], check=True)
+    assert any(file.suffix == ".png" for file in pl.plot(tmp_path / "run", out=tmp_path / "plot").pictures)
     with pytest.raises(pl.UnknownName, match="did you mean 'walls'"):
         pl.study("wals")
     with pytest.raises(pl.Error):

@@ -336,7 +336,7 @@ def test_ctrl_c_ends_a_long_call():
     code = ("import pliant as pl, numpy as np, sys; s = pl.Session('minimal'); print('ready', flush=True)\n"
             "try: s.step(10**9)\n"
             "except KeyboardInterrupt: print('first', flush=True)\n"
-            "try: pl.batch('minimal', [np.zeros((20_000_000, 3))] * 2, threads=2)\n"
+            "try: pl.batch('minimal', [np.zeros((8_000_000, 3))] * 2, threads=2)\n"
             "except KeyboardInterrupt: print('second', s.tick(0, -0.001, 0)[1])")
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
     assert child.stdout.readline() == "ready\n"
