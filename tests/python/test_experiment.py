@@ -43,6 +43,14 @@ def test_a_fit_has_the_likelihood_of_a_dense_search():
     assert fit.log_likelihood >= best - 1e-3
 
 
+def test_a_fit_says_what_its_answers_do_not_bound():
+    x = np.repeat([1.0, 2, 3, 4], 10)
+    assert "both sides" in psychometric(x, x < 0, bootstrap=0).note
+    assert "slope" in psychometric(x, x > 2.5, lapse=0, bootstrap=0).note
+    assert "slope" in repr(psychometric(x, x > 2.5, lapse=0, bootstrap=0))
+    assert not psychometric(x, np.tile([1, 0, 0, 0, 0] * 2, 4).astype(bool) | (x > 2.5), bootstrap=0, lapse=0.0).note
+
+
 def test_a_staircase_ends_around_71_percent():
     found = []
     for seed in range(30):
