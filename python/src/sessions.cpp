@@ -134,7 +134,8 @@ void bind_time(Class& c) {
   c.def("tick", &tick, py::arg("x"), py::arg("y"), py::arg("z"),
         "tick(x, y, z) -> (fx, fy, fz): moves the only probe there [m], runs one tick, returns the force on it [N].\n"
         "tick(x, y, z, qw, qx, qy, qz) -> (fx, fy, fz, tx, ty, tz): of a tool, with the torque [N m].\n"
-        "tick({name: pose, ...}) -> {name: force, ...}: of several probes and tools. World frame.")
+        "tick({name: pose, ...}) -> {name: force, ...}: of several probes and tools. World frame.\n"
+        "A probe is felt once it comes from outside: one whose first pose is below a surface feels nothing of it.")
       .def("tick", &tick_pose, py::arg("x"), py::arg("y"), py::arg("z"), py::arg("qw"), py::arg("qx"), py::arg("qy"),
            py::arg("qz"))
       .def("tick", &tick_all, py::arg("poses"))
