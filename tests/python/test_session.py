@@ -66,6 +66,18 @@ def test_a_batch_has_the_bits_of_the_loop(level, threads):
         assert np.array_equal(a.time, b[name].time[60:])
 
 
+def test_a_batch_sets_parameters():
+    stiff = [None, 200, 500, None, 900]
+    runs = pl.batch("minimal", [press()] * 5, threads=2, settings=[{"sheet.stiffness": k} if k else {} for k in stiff])
+    assert [run.force[-1, 1] for run in runs] == pytest.approx([0.002 * (k or 300) for k in stiff])
+    for wrong, words in (({"shet.stiffness": 1}, "did you mean 'sheet'"), ({"sheet.stifness": 1}, "did you mean stiffness"),
+                         ({"sheet.stiffness": "x"}, "must be a number"), ({"sheet": 1}, "unknown name")):
+        with pytest.raises(pl.Error, match=words):
+            pl.batch("minimal", [press()], settings=[wrong])
+    with pytest.raises(pl.ArgumentError, match="one for each"):
+        pl.batch("minimal", [press()], settings=[{}, {}])
+
+
 def test_a_state_comes_back_bit_for_bit(session):
     session.run(press(0.002, 100))
     state = session.save()
