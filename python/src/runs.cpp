@@ -85,6 +85,7 @@ bool carry_out(pliant::Session& session, Plan& plan, const std::string& where, c
                        std::make_move_iterator(events.end()));
     if (const auto now = Clock::now(); now - looked > kLook) {
       looked = now;
+      check_end();
       if (stop()) return false;
     }
   }

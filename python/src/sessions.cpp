@@ -104,6 +104,7 @@ void step(HeldSession& held, std::int64_t ticks) {
       const auto now = std::chrono::steady_clock::now();
       if (now - looked < std::chrono::milliseconds(50)) continue;
       looked = now;
+      check_end();
       if (interrupted()) return false;
     }
     return true;

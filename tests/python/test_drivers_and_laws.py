@@ -124,6 +124,8 @@ def test_a_program_may_end_while_its_clocks_run():
             "    def write(self, f, t): pass\n"
             "s = pl.Session('minimal'); s.connect('tip', D()); s.start(); time.sleep(0.1)\n"
             "t = pl.Session('minimal'); t.connect('tip', 'simulated:touch'); t.start(); view = s.bodies['sheet'].positions\n"
+            "import threading\n"
+            "u = pl.Session('minimal'); threading.Thread(target=u.step, args=(10**12,), daemon=True).start()\n"
             "time.sleep(0.1)")
     assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 0
 
