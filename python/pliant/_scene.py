@@ -32,7 +32,7 @@ def _content() -> list[Path]:
     command = command_or_none()
     if command is not None:
         folders.append(command.resolve().parent.parent / "share/pliant/content/levels")
-    for prefix in (here.parents[1], here.parents[3]):  # of a build tree; of lib/python3/dist-packages/pliant
+    for prefix in list(here.parents)[1:4:2]:  # of a build tree; of lib/python3/dist-packages/pliant
         folders.append(prefix / "share/pliant/content/levels")
     return [folder for folder in folders if folder.is_dir()]
 
