@@ -365,6 +365,8 @@ class Experiment:
 
         if file is not None and os.path.exists(file):
             raise argument(str(file), "exists already", "choose another name: no data is replaced")
+        if file is not None and not os.path.isdir(os.path.dirname(os.path.abspath(file))):
+            raise argument(str(file), "its folder is not there", "make it first")
         self.participant, self.file = participant, file
         self.rows: list[dict[str, Any]] = []
         self.marks: list[tuple[float, str]] = []

@@ -99,6 +99,8 @@ def test_trials_are_a_tidy_csv(tmp_path):
     assert [int(row["trial"]) for row in rows] == list(range(1, 13))
     with pytest.raises(pl.ArgumentError, match="exists"):
         Experiment("s01", file)
+    with pytest.raises(pl.ArgumentError, match="folder"):
+        Experiment("s01", tmp_path / "none/s01.csv")
 
 
 def test_palpation_finds_its_lump():
@@ -142,11 +144,11 @@ def test_verbs_of_the_command_give_arrays(tmp_path, session):
 
 
 def test_the_example_finds_the_hands_threshold(tmp_path):
-    ran = subprocess.run([sys.executable, SOURCE / "examples/python/discrimination.py", tmp_path], capture_output=True, text=True)
+    ran = subprocess.run([sys.executable, SOURCE / "examples/python/discrimination.py", tmp_path / "new"], capture_output=True, text=True)
     assert ran.returncode == 0, ran.stderr
     threshold, jnd = (float(re.search(rf"{word} ([0-9.]+)", ran.stdout)[1]) for word in ("threshold", "JND"))
     assert abs(threshold - 300) < 20 and abs(jnd - 300 * 0.08 * math.sqrt(2) * 0.6745) < 8
-    assert len((tmp_path / "trials.csv").read_text().splitlines()) == 181
+    assert len((tmp_path / "new/trials.csv").read_text().splitlines()) == 181
 
 
 def test_every_snippet_of_the_document_runs(tmp_path, monkeypatch):
