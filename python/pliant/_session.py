@@ -171,6 +171,9 @@ class Names(Mapping[str, N], Generic[N]):
     def __len__(self) -> int:
         return len(self._kinds)
 
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self._kinds)
+
     def __repr__(self) -> str:
         return "{" + ", ".join(f"'{name}': {self[name]!r}" for name in self) + "}"
 
@@ -208,6 +211,11 @@ class Contacts(list["_pliant.Contact"]):
     @property
     def b(self) -> list[str]:
         return [c.b for c in self]
+
+
+def event_of(*parts: Any) -> _pliant.Event:
+    """Of a pickle."""
+    return _pliant._event(*parts)
 
 
 class Felt:

@@ -216,6 +216,22 @@ def test_contacts_have_names_and_arrays(session):
     assert session.closest_point([0, 1, 0], within=0.1) is None
 
 
+def test_events_of_layers_and_pickled_runs():
+    script = np.loadtxt(SOURCE / "content/levels/layers_needle.csv", delimiter=",", skiprows=2)
+    with pl.Session("layers") as s:
+        assert len(s.effectors) > 1
+        with pytest.raises(pl.ArgumentError, match="several probes"):
+            s.tick(0, 0, 0)
+        s.follow("needle", script[:, 0], script[:, 1:4])
+        run = s.run(4000)
+        with pytest.raises(pl.ArgumentError, match="say which"):
+            run.force
+    assert [e.layer for e in run.events if e.kind == "broke" and e.probe == "needle"] == ["skin", "ligament"]
+    assert [e.kind for e in run.events if e.probe == "finger"] == ["yielded"]  # on its level's script
+    again = pickle.loads(pickle.dumps(run))
+    assert repr(again.events) == repr(run.events) and np.array_equal(again["needle"].force, run["needle"].force)
+
+
 def test_rigid_bodies_and_forces():
     scene = pl.Scene("table", soft_step=0.005)
     scene.add_rigid_body("table", *box(0.1), fixed=True, position=(0, -0.1, 0))
