@@ -10,6 +10,7 @@ import pliant as pl
 from pliant.experiment import Constant, Experiment, psychometric
 
 out = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+out.mkdir(parents=True, exist_ok=True)
 random = np.random.default_rng(7)
 session = pl.Session("minimal")                                     # a sheet, and the probe `tip`
 down = np.column_stack([np.zeros(80), np.linspace(0.001, -0.003, 80), np.zeros(80)])  # [m] a press, a row a tick

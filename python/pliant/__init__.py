@@ -2,6 +2,7 @@
 
     import pliant as pl
     s = pl.Session("minimal")
+    s.tick(0, 0.001, 0)                     # a probe comes from outside
     fx, fy, fz = s.tick(0, -0.002, 0)
 
 SI units, right-handed, Y up, world frame. docs/python.md has the tour.
@@ -11,8 +12,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ._errors import ArgumentError, Error, UnknownName
-from ._pliant import (Contact, DeviceInfo, Event, Hit, Note, Reading, __version__, devices, driver_names,
-                      register_spring)
+
+try:
+    from ._pliant import (Contact, DeviceInfo, Event, Hit, Note, Reading, __version__, devices, driver_names,
+                          register_spring)
+except ImportError as error:
+    raise ImportError(f"the compiled part of pliant does not load: {error}; build it for this interpreter: pip install . "
+                      "(or ./dev python), or install the library that it names") from error
 from ._scene import Scene, level_file, levels
 from ._session import Body, Contacts, Felt, Hand, Named, Names, Run, Session, batch
 

@@ -23,9 +23,7 @@ if TYPE_CHECKING:
 
 def _content() -> list[Path]:
     """Folders with shipped levels: $PLIANT_CONTENT, the package's own, those of an installed or built command."""
-    import sys
-
-    here = Path(__file__).parent
+    here = Path(__file__).absolute().parent
     folders = [here / "content/levels"]
     if "PLIANT_CONTENT" in os.environ:
         folders.insert(0, Path(os.environ["PLIANT_CONTENT"]) / "levels")
@@ -34,8 +32,8 @@ def _content() -> list[Path]:
     command = command_or_none()
     if command is not None:
         folders.append(command.resolve().parent.parent / "share/pliant/content/levels")
-    folders.append(Path(sys.prefix) / "share/pliant/content/levels")
-    folders.append(here.parent.parent / "share/pliant/content/levels")  # in a build tree
+    for prefix in list(here.parents)[1:4:2]:  # of a build tree; of lib/python3/dist-packages/pliant
+        folders.append(prefix / "share/pliant/content/levels")
     return [folder for folder in folders if folder.is_dir()]
 
 

@@ -171,6 +171,9 @@ class Names(Mapping[str, N], Generic[N]):
     def __len__(self) -> int:
         return len(self._kinds)
 
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self._kinds)
+
     def __repr__(self) -> str:
         return "{" + ", ".join(f"'{name}': {self[name]!r}" for name in self) + "}"
 
@@ -210,6 +213,11 @@ class Contacts(list["_pliant.Contact"]):
         return [c.b for c in self]
 
 
+def event_of(*parts: Any) -> _pliant.Event:
+    """Of a pickle."""
+    return _pliant._event(*parts)
+
+
 class Felt:
     """What one probe or tool felt, a row a tick. World frame.
 
@@ -225,6 +233,7 @@ class Felt:
     touching: NDArray[np.bool_]
     object: NDArray[np.int32]
     time: NDArray[np.float64]
+    lost: int = 0
 
     def __init__(self, name: str, time: NDArray[np.float64], arrays: dict[str, Any]) -> None:
         self.name = name
@@ -394,6 +403,11 @@ class Session(_pliant.Session):
         """Least and greatest corner, (3,) [m] each, of an object or of all."""
         return self._bounds(name, False)
 
+    def readings(self, name: str) -> Felt:
+        """Every tick of a probe or tool since the last call, after keep_readings(); ``lost`` did not fit."""
+        raw = _pliant._take(self, name)
+        return Felt(name, raw.pop("time"), raw)
+
     def events(self) -> list[_pliant.Event]:
         """The events since the last call, oldest first: layers that broke, yielding, detents. run() takes its own."""
         return self._events()[0]
@@ -423,11 +437,13 @@ class Session(_pliant.Session):
     __deepcopy__ = __copy__
 
 
-def batch(source: Source | Scene, paths: Sequence[Paths], threads: int | None = None, *, max_force: float = 10.0,
+def batch(source: Source | Scene, paths: Sequence[Paths], threads: int | None = None, *,
+          settings: Sequence[Mapping[str, float]] | None = None, max_force: float = 10.0,
           probe_radius: float = 0.0, format: str | None = None) -> list[Run]:
     """Runs each path from time 0 on threads of C++; the same bits as ``[Session(source).run(p) for p in paths]``.
 
-    paths: as Session.run takes them. threads: at most this many; default: one per core. Ctrl-C ends it.
+    paths: as Session.run takes them. threads: at most this many; default: one per core. settings: for each path live
+    parameters by 'NAME.KEY', as {'sheet.stiffness': 400}. Ctrl-C ends it.
     """
     if threads is None:
         threads = os.cpu_count() or 1
@@ -435,6 +451,25 @@ def batch(source: Source | Scene, paths: Sequence[Paths], threads: int | None = 
         raise argument("threads", f"must be a whole number from 1 to 4096; got {threads!r}")
     if isinstance(paths, Mapping):
         raise argument("paths", "must be a list of paths", "for one path of several probes, give [paths]")
-    with Session(_scene(source, max_force, format), probe_radius=probe_radius) as sample:
+    if settings is not None and len(settings) != len(paths):
+        raise argument("settings", f"must be one for each of the {len(paths)} paths; got {len(settings)}")
+    with Session(source if isinstance(source, Scene) else _scene(source, max_force, format), probe_radius=probe_radius) as sample:
         tracks = [_tracks(sample, path, f"paths[{i}]") for i, path in enumerate(paths)]
-        return [Run(raw) for raw in _pliant._batch(sample, sample._source, tracks, int(threads))]
+        sets = [_settings(sample, each, f"settings[{i}]") for i, each in enumerate(settings or [])]
+        return [Run(raw) for raw in _pliant._batch(sample, sample._source, tracks, sets, int(threads))]
+
+
+def _settings(session: Session, settings: Mapping[str, float], where: str) -> list[tuple[str, str, float]]:
+    """'NAME.KEY' split: a name may have dots, and so may a key."""
+    found = []
+    for path, value in settings.items():
+        dots = [i for i, letter in enumerate(path) if letter == "."]
+        names = [path[:i] for i in dots if path[:i] in session.objects or path[:i] in session.effectors]
+        if not names:
+            raise unknown(path.split(".")[0], f"name in {where}", [*session.objects, *session.effectors])
+        name = max(names, key=len)
+        try:
+            found.append((name, path[len(name) + 1:], float(value)))
+        except (TypeError, ValueError):
+            raise argument(f"{where}['{path}']", f"must be a number; got {value!r}") from None
+    return found

@@ -180,7 +180,7 @@ class Quest(Procedure):
         t, s, m = np.meshgrid(at, wide, np.asarray(lapses, dtype=float), indexing="ij")
         self._t, self._s, self._m = t.ravel(), s.ravel(), m.ravel()
         z = (self._grid[:, None] - self._t) / self._s
-        self._p = guess + (1.0 - guess - self._m) * _shape(shape)(z)  # (levels, parameters)
+        self._p = np.clip(guess + (1.0 - guess - self._m) * _shape(shape)(z), 1e-9, 1 - 1e-9)  # (levels, parameters)
         self._belief = np.full(len(self._t), 1.0 / len(self._t))
         self._trials = trials
 
@@ -219,7 +219,7 @@ class Fit:
     """A psychometric function P(True) = guess + (1 - guess - lapse) F((level - threshold) / slope).
 
     threshold, slope, lapse: of greatest likelihood; ..._interval: by bootstrap; pse: the threshold; jnd: half of the
-    distance between 25 and 75 % of F.
+    distance between 25 and 75 % of F; note: a sentence where the answers do not bound them, else empty.
     """
 
     def __init__(self, threshold: float, slope: float, lapse: float, guess: float, shape: str, log_likelihood: float,
@@ -232,6 +232,13 @@ class Fit:
         ends = np.percentile(samples, [edge, 100.0 - edge], axis=0) if len(samples) else np.full((2, 2), np.nan)
         self.threshold_interval: tuple[float, float] = (float(ends[0, 0]), float(ends[1, 0]))
         self.slope_interval: tuple[float, float] = (float(ends[0, 1]), float(ends[1, 1]))
+        span = float(np.ptp(levels))
+        low, high = float(levels.min()), float(levels.max())
+        self.note = ""
+        if not low <= threshold <= high:
+            self.note = "the threshold is outside of the levels: give levels on both sides of it"
+        elif not span / 80 < slope < 2.5 * span:
+            self.note = "the answers do not bound the slope: give more levels beside the threshold"
 
     @property
     def pse(self) -> float:
@@ -272,7 +279,8 @@ class Fit:
     def __repr__(self) -> str:
         low, high = self.threshold_interval
         return (f"<psychometric {self.shape}: threshold {self.threshold:.6g} ({low:.6g} to {high:.6g}), "
-                f"slope {self.slope:.4g}, JND {self.jnd:.4g}, {len(self.answers)} answers>")
+                f"slope {self.slope:.4g}, JND {self.jnd:.4g}, {len(self.answers)} answers"
+                f"{'; ' + self.note if self.note else ''}>")
 
 
 def psychometric(levels: ArrayLike, answers: ArrayLike, *, shape: str = "normal", guess: float = 0.0,
@@ -357,6 +365,8 @@ class Experiment:
 
         if file is not None and os.path.exists(file):
             raise argument(str(file), "exists already", "choose another name: no data is replaced")
+        if file is not None and not os.path.isdir(os.path.dirname(os.path.abspath(file))):
+            raise argument(str(file), "its folder is not there", "make it first")
         self.participant, self.file = participant, file
         self.rows: list[dict[str, Any]] = []
         self.marks: list[tuple[float, str]] = []

@@ -1,5 +1,6 @@
 #include "python/src/failure.h"
 
+#include <string_view>
 #include <utility>
 
 namespace pliant_python {
@@ -10,8 +11,16 @@ Failure::Kind kind_of(const pliant::Error& error) {
   return error.code == "arguments" || error.code == "key.value" ? Failure::Kind::kArgument : Failure::Kind::kError;
 }
 
-// Text of files may hold bytes that are not UTF-8.
-py::object text(const std::string& words) {
+// Names of C++ as they are in Python. Text of files may hold bytes that are not UTF-8.
+py::object text(std::string words) {
+  constexpr std::pair<const char*, const char*> kNames[] = {{"Session::save_state", "Session.save"},
+                                                            {"Session::restore_state", "Session.restore"},
+                                                            {"Session::take_readings", "Session.readings"},
+                                                            {"Session::", "Session."},
+                                                            {"Scene::", "Scene."}};
+  for (const auto& [name, here] : kNames)
+    for (std::size_t at = words.find(name); at != std::string::npos; at = words.find(name, at))
+      words.replace(at, std::string_view(name).size(), here);
   return py::reinterpret_steal<py::object>(
       PyUnicode_DecodeUTF8(words.data(), static_cast<Py_ssize_t>(words.size()), "replace"));
 }

@@ -11,6 +11,8 @@ namespace {
 std::atomic<unsigned> g_process{0};  // number of forks behind this process
 const int g_counts_forks = pthread_atfork(nullptr, nullptr, [] { ++g_process; });
 
+std::atomic<bool> g_ends{false};
+
 std::mutex g_mutex;  // guards the list
 std::vector<std::weak_ptr<HeldSession>>& all_sessions() {
   static auto* const sessions = new std::vector<std::weak_ptr<HeldSession>>;  // sessions may end after statics
@@ -18,6 +20,10 @@ std::vector<std::weak_ptr<HeldSession>>& all_sessions() {
 }
 
 }  // namespace
+
+void check_end() {
+  if (g_ends) throw Failure(pliant::Error{"Session", "is closed: the program ends", "", "session.closed"});
+}
 
 bool interrupted() {
   const py::gil_scoped_acquire gil;
@@ -179,6 +185,7 @@ pliant::PictureView HeldSession::view() {
 }
 
 void close_all_sessions() {
+  g_ends = true;
   std::vector<std::shared_ptr<HeldSession>> open;
   {
     const std::lock_guard lock(g_mutex);

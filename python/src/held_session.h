@@ -135,6 +135,8 @@ class HeldSession {
 
 // Closes every session: clocks and Python drivers end before the interpreter does.
 void close_all_sessions();
+// Throws once the program ends, so that a call on a thread of its own does not keep it.
+void check_end();
 // True if a signal handler raised: Ctrl-C. With the GIL taken for the moment; its exception is then set.
 bool interrupted();
 

@@ -109,7 +109,20 @@ void bind_results(py::module_& module) {
       .def_property_readonly(
           "position", [](const FeltEvent& e) { return array_of(e.position); }, "[m] (3,)")
       .def_readonly("value", &FeltEvent::value, "[N] normal force then; of detents 0")
+      .def("__reduce__",
+           [](const FeltEvent& e) {
+             return py::make_tuple(py::module_::import("pliant._session").attr("event_of"),
+                                   py::make_tuple(static_cast<int>(e.kind), e.tick, e.time, e.probe, e.object, e.index,
+                                                  e.layer, array_of(e.position), e.value));
+           })
       .def("__repr__", [](const FeltEvent& e) { return "<Event " + e.sentence() + ">"; });
+  module.def("_event",
+             [](int kind, std::uint64_t tick, double time, const std::string& probe, const std::string& object,
+                std::int32_t index, const std::string& layer, const py::object& position, double value) {
+               if (kind < 0 || kind > 2) wrong_argument("_event", "has no such kind", "");
+               return FeltEvent{static_cast<pliant::FeltKind>(kind), tick, time, probe, object, index, layer,
+                                to_vec3(position, "position"),       value};
+             });
   py::class_<pliant::Note>(module, "Note", only_made_here(), "A deviation from the force law, and its remedy.")
       .def_readonly("what", &pliant::Note::what)
       .def_readonly("cure", &pliant::Note::cure)

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <thread>
+#include <tuple>
 
 #include "python/src/scenes.h"
 
@@ -20,7 +21,8 @@ constexpr auto kLook = std::chrono::milliseconds(50);  // between two looks for 
 struct Plan {
   std::vector<Track> tracks;
   std::vector<std::string> effectors;
-  std::vector<Felt> felt;  // of each effector
+  std::vector<Felt> felt;                                              // of each effector
+  std::vector<std::tuple<std::string, std::string, double>> settings;  // name, key, value: before its first tick
   std::size_t ticks = 0;
   py::array_t<double> time;
   double* time_at = nullptr;
@@ -83,6 +85,7 @@ bool carry_out(pliant::Session& session, Plan& plan, const std::string& where, c
                        std::make_move_iterator(events.end()));
     if (const auto now = Clock::now(); now - looked > kLook) {
       looked = now;
+      check_end();
       if (stop()) return false;
     }
   }
@@ -110,6 +113,22 @@ py::dict run(HeldSession& held, const py::dict& tracks, const py::object& ticks)
   return result_of(plan);
 }
 
+// The readings that were kept since the last call.
+py::dict take(HeldSession& held, const std::string& name) {
+  std::vector<pliant::Reading> readings;
+  const std::uint64_t lost = held.with([&](pliant::Session& s) { return check(s.take_readings(name, readings)); });
+  Felt felt(readings.size(), held.is_tool(name));
+  py::array_t<double> time(static_cast<py::ssize_t>(readings.size()));
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    felt.keep(i, readings[i]);
+    time.mutable_data()[i] = readings[i].time;
+  }
+  py::dict out = felt.arrays();
+  out["time"] = time;
+  out["lost"] = lost;
+  return out;
+}
+
 // The next path goes to the next free thread, which has a session of its own. Every path begins at time 0.
 struct Batch {
   const pliant::Scene& scene;
@@ -124,12 +143,15 @@ struct Batch {
 
   void work() {
     std::optional<pliant::Session> session;
+    bool session_is_set = false;
     for (std::size_t i = next++; i < plans.size() && !stop; i = next++) {
       try {
-        if (session)
+        if (session && plans[i].settings.empty() && !session_is_set)
           check(session->restart());
         else
           session.emplace(check(pliant::Session::open(scene)));
+        session_is_set = !plans[i].settings.empty();  // restart() would keep them
+        for (const auto& [name, key, value] : plans[i].settings) check(session->set(name, key, value));
         carry_out(*session, plans[i], "paths[" + std::to_string(i) + "]", [this] { return stop.load(); });
         check_laws();
       } catch (...) {
@@ -144,13 +166,16 @@ struct Batch {
   }
 };
 
-py::list batch(HeldSession& sample, const HeldScene& scene, const py::list& paths, unsigned threads) {
+py::list batch(HeldSession& sample, const HeldScene& scene, const py::list& paths, const py::list& settings,
+               unsigned threads) {
   std::vector<bool> tools;
   for (const std::string& name : sample.effectors()) tools.push_back(sample.is_tool(name));
   std::vector<Plan> plans;
-  for (std::size_t i = 0; i < paths.size(); ++i)
+  for (std::size_t i = 0; i < paths.size(); ++i) {
     plans.push_back(
         plan_of(paths[i].cast<py::dict>(), py::none(), sample.effectors(), tools, "paths[" + std::to_string(i) + "]"));
+    if (i < settings.size()) plans.back().settings = settings[i].cast<decltype(Plan::settings)>();
+  }
   bool stopped = false;
   std::exception_ptr failed;
   {
@@ -215,7 +240,9 @@ py::dict Felt::arrays() const {
 
 void bind_runs(py::module_& module) {
   module.def("_run", &run, py::arg("session"), py::arg("tracks"), py::arg("ticks"));
-  module.def("_batch", &batch, py::arg("sample"), py::arg("scene"), py::arg("paths"), py::arg("threads"));
+  module.def("_take", &take, py::arg("session"), py::arg("name"));
+  module.def("_batch", &batch, py::arg("sample"), py::arg("scene"), py::arg("paths"), py::arg("settings"),
+             py::arg("threads"));
 }
 
 }  // namespace pliant_python

@@ -104,6 +104,7 @@ void step(HeldSession& held, std::int64_t ticks) {
       const auto now = std::chrono::steady_clock::now();
       if (now - looked < std::chrono::milliseconds(50)) continue;
       looked = now;
+      check_end();
       if (interrupted()) return false;
     }
     return true;
@@ -134,7 +135,8 @@ void bind_time(Class& c) {
   c.def("tick", &tick, py::arg("x"), py::arg("y"), py::arg("z"),
         "tick(x, y, z) -> (fx, fy, fz): moves the only probe there [m], runs one tick, returns the force on it [N].\n"
         "tick(x, y, z, qw, qx, qy, qz) -> (fx, fy, fz, tx, ty, tz): of a tool, with the torque [N m].\n"
-        "tick({name: pose, ...}) -> {name: force, ...}: of several probes and tools. World frame.")
+        "tick({name: pose, ...}) -> {name: force, ...}: of several probes and tools. World frame.\n"
+        "A probe is felt once it comes from outside: one whose first pose is below a surface feels nothing of it.")
       .def("tick", &tick_pose, py::arg("x"), py::arg("y"), py::arg("z"), py::arg("qw"), py::arg("qx"), py::arg("qy"),
            py::arg("qz"))
       .def("tick", &tick_all, py::arg("poses"))
@@ -165,6 +167,26 @@ void bind_time(Class& c) {
           "True while the clocks run in real time.")
       .def_property_readonly(
           "time", [](HeldSession& h) { return h.with([](Session& s) { return s.time(); }); }, "[s]");
+}
+
+py::dict device_state(HeldSession& held, const std::string& name) {
+  const pliant::DeviceReport report = held.with([&](Session& s) { return check(s.device_state(name)); });
+  py::dict out;
+  out["state"] = pliant::name_of(report.state), out["cause"] = pliant::describe(report.cause);
+  out["force"] = report.force, out["max_force"] = report.max_force;
+  out["position"] = array_of(report.sample.position), out["rotation"] = array_of(report.sample.rotation);
+  out["buttons"] = report.sample.buttons, out["grip"] = report.sample.grip;
+  out["battery"] = report.sample.battery, out["age"] = report.sample_age;
+  return out;
+}
+
+void guard(HeldSession& held, const std::string& name, bool by_hand, double max_force, std::uint32_t dead_man,
+           double ramp) {
+  const pliant::GuardParameters parameters{.arming = by_hand ? pliant::Arming::kByHand : pliant::Arming::kAutomatic,
+                                           .dead_man = dead_man,
+                                           .max_force = max_force,
+                                           .ramp = ramp};
+  held.with([&](Session& s) { check(s.guard(name, parameters)); });
 }
 
 void bind_sources(Class& c) {
@@ -213,6 +235,19 @@ void bind_sources(Class& c) {
       .def(
           "emergency_stop", [](HeldSession& h) { h.with([](Session& s) { s.emergency_stop(); }); },
           "Disarms every device.")
+      .def("device_state", &device_state, py::arg("name"),
+           "The device of a probe or tool: state, cause, force written last [N], max_force [N], and of its newest "
+           "sample\n"
+           "position [m], rotation, buttons (a bit each), grip [0 to 1], battery, age [s].")
+      .def("guard", &guard, py::arg("name"), py::arg("by_hand") = false, py::arg("max_force") = 0.0,
+           py::arg("dead_man") = 0, py::arg("ramp") = 0.2,
+           "Safety of the next device that is connected there: armed by arm() alone, at most max_force [N] (0: its "
+           "own),\n"
+           "force only while one of these buttons is pressed, fade-in over ramp [s] (docs/devices/safety.md).")
+      .def(
+          "keep_readings",
+          [](HeldSession& h, std::size_t ticks) { h.with([&](Session& s) { check(s.keep_readings(ticks)); }); },
+          py::arg("ticks"), "Keeps the last `ticks` readings of each probe and tool for readings(), also in real time.")
       .def("_reading",
            [](HeldSession& h, const std::string& name) {
              return h.with([&](Session& s) { return check(s.reading(name)); });

@@ -94,6 +94,7 @@ def test_real_time_with_a_python_driver():
     s = pl.Session("minimal")
     hand = Hand()
     s.connect("tip", hand)
+    s.keep_readings(5000)
     s.start()
     with pytest.raises(pl.Error):
         s.tick(0, 0, 0)
@@ -103,6 +104,9 @@ def test_real_time_with_a_python_driver():
     assert s.running and s.bodies["sheet"].positions.shape[1] == 3
     s.stop()
     assert not s.running and hand.forces[-1] == 0 and len(hand.forces) >= 200
+    felt = s.readings("tip")
+    assert len(felt) >= 200 and felt.lost == 0 and (np.diff(felt.time) > 0).all() and felt.force.shape == (len(felt), 3)
+    assert s.device_state("tip")["position"].shape == (3,)
     hand.fails_at = hand.reads + 5
     s.restart()
     s.start()
@@ -120,6 +124,8 @@ def test_a_program_may_end_while_its_clocks_run():
             "    def write(self, f, t): pass\n"
             "s = pl.Session('minimal'); s.connect('tip', D()); s.start(); time.sleep(0.1)\n"
             "t = pl.Session('minimal'); t.connect('tip', 'simulated:touch'); t.start(); view = s.bodies['sheet'].positions\n"
+            "import threading\n"
+            "u = pl.Session('minimal'); threading.Thread(target=u.step, args=(10**12,), daemon=True).start()\n"
             "time.sleep(0.1)")
     assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 0
 

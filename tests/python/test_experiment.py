@@ -43,6 +43,14 @@ def test_a_fit_has_the_likelihood_of_a_dense_search():
     assert fit.log_likelihood >= best - 1e-3
 
 
+def test_a_fit_says_what_its_answers_do_not_bound():
+    x = np.repeat([1.0, 2, 3, 4], 10)
+    assert "both sides" in psychometric(x, x < 0, bootstrap=0).note
+    assert "slope" in psychometric(x, x > 2.5, lapse=0, bootstrap=0).note
+    assert "slope" in repr(psychometric(x, x > 2.5, lapse=0, bootstrap=0))
+    assert not psychometric(x, np.tile([1, 0, 0, 0, 0] * 2, 4).astype(bool) | (x > 2.5), bootstrap=0, lapse=0.0).note
+
+
 def test_a_staircase_ends_around_71_percent():
     found = []
     for seed in range(30):
@@ -91,6 +99,8 @@ def test_trials_are_a_tidy_csv(tmp_path):
     assert [int(row["trial"]) for row in rows] == list(range(1, 13))
     with pytest.raises(pl.ArgumentError, match="exists"):
         Experiment("s01", file)
+    with pytest.raises(pl.ArgumentError, match="folder"):
+        Experiment("s01", tmp_path / "none/s01.csv")
 
 
 def test_palpation_finds_its_lump():
@@ -123,6 +133,8 @@ def test_verbs_of_the_command_give_arrays(tmp_path, session):
     swept = pl.sweep(plan, out=tmp_path / "sweep").tables["results"]
     assert list(swept["sheet.deformable.stiffness"]) == [200, 400]
     assert swept["tip.max_force_N"][1] == pytest.approx(2 * swept["tip.max_force_N"][0], rel=0.05)
+    subprocess.run([COMMAND, "run", "minimal", "--headless", "--seconds", "0.2", "--frames", "0", "--out", tmp_path / "run"], check=True)
+    assert any(file.suffix == ".png" for file in pl.plot(tmp_path / "run", out=tmp_path / "plot").pictures)
     with pytest.raises(pl.UnknownName, match="did you mean 'walls'"):
         pl.study("wals")
     with pytest.raises(pl.Error):
@@ -132,11 +144,11 @@ def test_verbs_of_the_command_give_arrays(tmp_path, session):
 
 
 def test_the_example_finds_the_hands_threshold(tmp_path):
-    ran = subprocess.run([sys.executable, SOURCE / "examples/python/discrimination.py", tmp_path], capture_output=True, text=True)
+    ran = subprocess.run([sys.executable, SOURCE / "examples/python/discrimination.py", tmp_path / "new"], capture_output=True, text=True)
     assert ran.returncode == 0, ran.stderr
     threshold, jnd = (float(re.search(rf"{word} ([0-9.]+)", ran.stdout)[1]) for word in ("threshold", "JND"))
     assert abs(threshold - 300) < 20 and abs(jnd - 300 * 0.08 * math.sqrt(2) * 0.6745) < 8
-    assert len((tmp_path / "trials.csv").read_text().splitlines()) == 181
+    assert len((tmp_path / "new/trials.csv").read_text().splitlines()) == 181
 
 
 def test_every_snippet_of_the_document_runs(tmp_path, monkeypatch):

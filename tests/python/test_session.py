@@ -54,12 +54,28 @@ def test_a_batch_has_the_bits_of_the_loop(level, threads):
     alone = []
     for path in paths:
         with pl.Session(level) as s:
-            alone.append(s.run(path)[name])
+            views = [body.positions for body in s.bodies.values()]  # to look changes nothing
+            forces = [s.tick({name: p})[name] for p in path[name][:60]]
+            alone.append(s.run({name: path[name][60:]})[name])
+            alone[-1].force = np.concatenate([[f[:3] for f in forces], alone[-1].force])
+            assert all(np.isfinite(view).all() for view in views)
     together = pl.batch(level, paths, threads=threads)
     assert any(each.force.any() for each in alone)
     for a, b in zip(alone, together):
-        assert np.array_equal(a.force, b[name].force) and np.array_equal(a.depth, b[name].depth)
-        assert np.array_equal(a.time, b[name].time)
+        assert np.array_equal(a.force, b[name].force) and np.array_equal(a.depth, b[name].depth[60:])
+        assert np.array_equal(a.time, b[name].time[60:])
+
+
+def test_a_batch_sets_parameters():
+    stiff = [None, 200, 500, None, 900]
+    runs = pl.batch("minimal", [press()] * 5, threads=2, settings=[{"sheet.stiffness": k} if k else {} for k in stiff])
+    assert [run.force[-1, 1] for run in runs] == pytest.approx([0.002 * (k or 300) for k in stiff])
+    for wrong, words in (({"shet.stiffness": 1}, "did you mean 'sheet'"), ({"sheet.stifness": 1}, "did you mean stiffness"),
+                         ({"sheet.stiffness": "x"}, "must be a number"), ({"sheet": 1}, "unknown name")):
+        with pytest.raises(pl.Error, match=words):
+            pl.batch("minimal", [press()], settings=[wrong])
+    with pytest.raises(pl.ArgumentError, match="one for each"):
+        pl.batch("minimal", [press()], settings=[{}, {}])
 
 
 def test_a_state_comes_back_bit_for_bit(session):
@@ -200,6 +216,22 @@ def test_contacts_have_names_and_arrays(session):
     assert session.closest_point([0, 1, 0], within=0.1) is None
 
 
+def test_events_of_layers_and_pickled_runs():
+    script = np.loadtxt(SOURCE / "content/levels/layers_needle.csv", delimiter=",", skiprows=2)
+    with pl.Session("layers") as s:
+        assert len(s.effectors) > 1
+        with pytest.raises(pl.ArgumentError, match="several probes"):
+            s.tick(0, 0, 0)
+        s.follow("needle", script[:, 0], script[:, 1:4])
+        run = s.run(4000)
+        with pytest.raises(pl.ArgumentError, match="say which"):
+            run.force
+    assert [e.layer for e in run.events if e.kind == "broke" and e.probe == "needle"] == ["skin", "ligament"]
+    assert [e.kind for e in run.events if e.probe == "finger"] == ["yielded"]  # on its level's script
+    again = pickle.loads(pickle.dumps(run))
+    assert repr(again.events) == repr(run.events) and np.array_equal(again["needle"].force, run["needle"].force)
+
+
 def test_rigid_bodies_and_forces():
     scene = pl.Scene("table", soft_step=0.005)
     scene.add_rigid_body("table", *box(0.1), fixed=True, position=(0, -0.1, 0))
@@ -336,7 +368,7 @@ def test_ctrl_c_ends_a_long_call():
     code = ("import pliant as pl, numpy as np, sys; s = pl.Session('minimal'); print('ready', flush=True)\n"
             "try: s.step(10**9)\n"
             "except KeyboardInterrupt: print('first', flush=True)\n"
-            "try: pl.batch('minimal', [np.zeros((20_000_000, 3))] * 2, threads=2)\n"
+            "try: pl.batch('minimal', [np.zeros((8_000_000, 3))] * 2, threads=2)\n"
             "except KeyboardInterrupt: print('second', s.tick(0, -0.001, 0)[1])")
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
     assert child.stdout.readline() == "ready\n"
