@@ -299,7 +299,8 @@ Path press_path(const Level& level, std::int32_t tool, std::int32_t object, doub
   const Chord through = chord(world_triangles(level, object), lowest, up);
   const double thick = through.valid ? through.top - through.bottom : diagonal;
   const double gap = through.valid ? std::max(0.0, -through.top) : kClearance * diagonal;
-  if (depth <= 0.0) depth = std::min(diagonal / 20.0, thick > 0.0 ? thick / 3.0 : diagonal / 20.0);
+  // A sheet has no thickness but that of rounding.
+  if (depth <= 0.0) depth = thick > 1e-4 * diagonal ? std::min(diagonal / 20.0, thick / 3.0) : diagonal / 20.0;
   constexpr double kRate = 100.0, kSeconds = 6.0;
   Path path;
   for (int row = 0; row <= static_cast<int>(std::lround(kSeconds * kRate)); ++row) {

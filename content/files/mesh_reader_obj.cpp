@@ -86,7 +86,7 @@ class ObjReader {
       if (key == "vt") out.uv.emplace_back(value(1), line_.words.size() > 2 ? value(2) : 0.0f);
       if (key == "vn") out.normal.emplace_back(value(1), value(2), value(3));
       if (key == "f") status = face();
-      if (key == "o" && line_.words.size() > 1) object(std::string(line_.words[1]));
+      if (key == "o" && line_.words.size() > 1) object(line_.rest());
       if (key == "g") group(line_.rest());
       if (key == "usemtl" && line_.words.size() > 1) use(line_.rest());
       if (key == "mtllib" && line_.words.size() > 1) read_materials(line_.rest());

@@ -741,6 +741,10 @@ std::optional<Note> settle_joint(void* owner) {
     return Note{"has a least limit above its largest", "exchange them", "key.value", "limits"};
   if (it.limits[0] < it.limits[1] && (it.limits[0] > 0.0 || it.limits[1] < 0.0))
     return Note{"begins outside of its limits", "let them enclose 0, where it begins", "key.value", "limits"};
+  if (it.kind == JointKind::kRope && it.stiffness == 0.0 && it.length > 0.0 &&
+      it.length < (1.0 - 1e-6) * length(it.end))
+    return Note{"is a rope that is shorter than the distance at which its ends begin",
+                "lengthen it, or give it `stiffness`", "key.value", "length"};
   if (!it.grip.empty() && it.stiffness == 0.0)
     return Note{"is driven by a grip without `stiffness`, so nothing moves it", "give one", "key.missing", "stiffness"};
   return std::nullopt;

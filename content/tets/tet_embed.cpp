@@ -14,6 +14,7 @@ constexpr std::uint32_t kNoTet = 0xffffffffu;
 // Among tetrahedra at similar distance, the one with the least extrapolation is used: a flat one would amplify its
 // motion.
 constexpr double kAboutEqual = 1.5;
+constexpr double kInside = -1e-12;  // [1] least weight of a point that an element contains
 
 // An implicit tree of boxes over tetrahedra in Hilbert order.
 class Tree {
@@ -83,18 +84,18 @@ class Embedder {
       : nodes_(nodes), tets_(tets), tree_(nodes, tets) {}
 
   Embedding find(dvec3 p, dvec3 outward) const {
-    Embedding found = best_near(p, 0.0, nullptr);
+    Embedding found = best_near(p, 0.0, kInside, nullptr);
     if (found.tet == kNoTet) {
       // Prefer tissue behind the vertex's tangent plane; tissue in front may belong to another finger.
       double distance = nearest(p, &outward);
       const bool own = distance < std::numeric_limits<double>::max();
       if (!own) distance = nearest(p, nullptr);
-      found = best_near(p, kAboutEqual * distance, own ? &outward : nullptr);
+      found = best_near(p, kAboutEqual * distance, std::numeric_limits<double>::lowest(), own ? &outward : nullptr);
     }
     ASSERT(found.tet != kNoTet);
     return found;
   }
-  bool holds(dvec3 p) const { return best_near(p, 0.0, nullptr).tet != kNoTet; }
+  bool holds(dvec3 p) const { return best_near(p, 0.0, kInside, nullptr).tet != kNoTet; }
 
  private:
   // Weights by Cramer's rule; the first is 1 minus the others, so that they sum to 1. False: the element is flat.
@@ -132,11 +133,9 @@ class Embedder {
     return reach;
   }
 
-  // Of the elements whose box is within `reach`, the one whose smallest weight is largest. With reach 0, only one that
-  // contains p.
-  Embedding best_near(dvec3 p, double reach, const dvec3* outward) const {
+  // Of the elements whose box is within `reach`, the one whose smallest weight is largest, if it is above `smallest`.
+  Embedding best_near(dvec3 p, double reach, double smallest, const dvec3* outward) const {
     Embedding best{kNoTet, {}};
-    double smallest = reach > 0.0 ? std::numeric_limits<double>::lowest() : -1e-12;
     tree_.visit_near(p, reach, [&](std::uint32_t tet) {
       std::array<double, 4> w;
       if (!weights(tets_[tet], p, w) || !behind(tets_[tet], p, outward)) return;

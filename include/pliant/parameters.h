@@ -258,7 +258,7 @@ struct SoftBodyParameters {
   double error = 0.0;  // [1] error budget from which unset model parameters are chosen; 0: none
   UnderGravity under_gravity = UnderGravity::kFalls;
   Carries carries = Carries::kNothing;
-  SoftContact contact = SoftContact::kLattice;
+  SoftContact contact = SoftContact::kAuto;
   StepMethod integrator = StepMethod::kEuler;
   dvec3 velocity{0, 0, 0};  // [m/s] world, at the beginning; not of a tool
 };

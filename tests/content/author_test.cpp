@@ -204,6 +204,24 @@ TEST(Author, AProbeStandsOverTheObjectAndItsPathPressesIt) {
   EXPECT_TRUE(prepared(level).ok());
 }
 
+TEST(Author, AnOpenDomeIsPressed) {
+  Primitive dome = test::globe(24, 16);  // a vertex on top
+  std::vector<std::uint32_t> upper;
+  for (std::size_t i = 0; i < dome.index.size(); i += 3)
+    if (dome.position[dome.index[i]].y > 0 && dome.position[dome.index[i + 1]].y > 0 &&
+        dome.position[dome.index[i + 2]].y > 0)
+      upper.insert(upper.end(), dome.index.begin() + static_cast<std::ptrdiff_t>(i),
+                   dome.index.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+  dome.index = upper;
+  Level level = test::level_of(dome);
+  ASSERT_TRUE(make_touchable_surface(level, 0).ok());
+  const Result<std::int32_t> probe = add_probe(level, 0, 0.05);
+  ASSERT_TRUE(probe.ok());
+  double lowest = 1e9;
+  for (const PathRow& row : press_path(level, *probe, *probe == 0 ? 1 : 0).rows) lowest = std::min(lowest, row.position.y);
+  EXPECT_LT(lowest, 1.0 + 0.05 - 0.05) << "a twentieth of its diagonal deep";
+}
+
 TEST(Author, AProbeStandsBesideATool) {
   for (const dvec3 gravity : {dvec3(0, -9.81, 0), dvec3(0, 0, -9.81)}) {
     Level level = ball();

@@ -226,8 +226,8 @@ TEST(MeshReader, MaterialsGroupsAndObjectsOfAnObjAreKept) {
       if (!faces.sizes.empty())
         objects.back() += fmt::format(" {}x{}", faces.sizes.size(), content->materials[faces.material].name);
   }
-  EXPECT_EQ(objects, (std::vector<std::string>{"defaultobject: 1xDefaultMaterial", "one: 1xred 1xblue 1xnew",
-                                               "a  b: 1xblue 1xnew", "empty:"}));
+  EXPECT_EQ(objects, (std::vector<std::string>{"defaultobject: 1xDefaultMaterial", "one two: 1xred 1xblue",
+                                               "a  b: 1xblue 1xnew", "one: 1xnew", "empty:"}));
   ASSERT_EQ(content->materials.size(), 4u);
   EXPECT_EQ(content->materials[1].base_color, vec4(1, 0, 0, 0.5f));
   EXPECT_EQ(content->materials[1].alpha, Material::Alpha::kBlend);

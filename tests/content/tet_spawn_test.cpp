@@ -33,6 +33,20 @@ Level ball(const LocalTransform& local = {}) {
   return level;
 }
 
+// Vertices that lie on faces of elements, where rounding puts them in none and at no distance from any.
+TEST(TetSpawn, ACornerOnTheLatticeIsEmbedded) {
+  for (const float edge : {0.05f, 0.1f, 0.2f}) {
+    Primitive corner;
+    corner.position = {{0, 0, 0}, {edge, 0, 0}, {0, edge, 0}, {0, 0, edge}};
+    corner.index = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    Level level = level_of(corner);
+    level.nodes[0].deformable.reset();
+    level.nodes[0].soft_body = SoftBody{};
+    const Result<World> world = spawn(level);
+    EXPECT_TRUE(world.ok()) << world.error().message();
+  }
+}
+
 World spawned_tets(const Level& level) {
   Result<World> world = spawn(level);
   EXPECT_TRUE(world.ok()) << world.error().message();

@@ -170,7 +170,7 @@ Late judge(const Sent& in_time, const Sent& late, std::uint64_t missed) {
       worst.over = std::max(worst.over, size - most);
       if (last) worst.step = std::max(worst.step, size - length(*last) - rise);
       if (here < 1e-3) ++worst.in_air, worst.air = std::max(worst.air, size);
-      worst.touching += size > 0.1;
+      worst.touching += size > 0.02;
       last = late[d][i];
     }
   }

@@ -62,6 +62,8 @@ TEST(SessionJoint, WhatIsWrongIsOneSentence) {
   EXPECT_THAT(said({.kind = JointKind::kHinge, .a = "bob", .limits = {0.5, 0.1}}), HasSubstr("exchange them"));
   EXPECT_THAT(said({.kind = JointKind::kHinge, .a = "bob", .limits = {0.5, 1.0}}), HasSubstr("outside of its limits"));
   EXPECT_THAT(said({.kind = JointKind::kHinge, .a = "bob", .stiffness = -1.0}), HasSubstr("must be in the range"));
+  EXPECT_THAT(said({.kind = JointKind::kRope, .a = "bob", .end = dvec3(0, 0.1, 0), .length = 0.09}),
+              HasSubstr("shorter than the distance"));
   EXPECT_EQ(said({.kind = JointKind::kHinge, .a = "bob", .limits = {-0.5, 1.0}, .stiffness = 1.0}), "");
   EXPECT_THAT(said({.kind = JointKind::kHinge, .a = "bob", .stiffness = 1.0, .grip = "bobs"}),
               HasSubstr("no tool or probe"));

@@ -187,7 +187,7 @@ TEST(RandomPressCorpus, AFingerIsHeldByEveryMesh) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Levels, RandomPress, testing::Values("hand", "hand_crowd", "hand_squeeze"),
+INSTANTIATE_TEST_SUITE_P(Levels, RandomPress, testing::Values("hand", "hand_crowd", "hand_squeeze", "instrument"),
                          [](const auto& level) { return std::string(level.param); });
 
 }  // namespace
