@@ -1,6 +1,8 @@
 // Sessions: open, names, time, sources, recordings, states, devices.
 #include "c/session.h"
 
+#include <cmath>
+
 #include "c/scene.h"
 
 using namespace pliant::c;
@@ -31,6 +33,12 @@ void name_at(const std::deque<std::string>& names, uint32_t index, const char** 
   needed(out, "out");
   throw_unless_below(index, names.size(), "");
   *out = names[index].c_str();
+}
+
+bool is_sound(const pliant_pose& pose) {
+  const pliant::dvec3 at = of_c(pose.position);
+  const pliant::dquat turn = of_c(pose.rotation);
+  return std::isfinite(dot(at, at)) && std::abs(dot(turn, turn) - 1.0) < 1e-6;
 }
 
 }  // namespace
@@ -99,8 +107,12 @@ pliant_status pliant_session_tick(pliant_session* session, const pliant_pose* po
       throw Misuse{"`count` is " + std::to_string(count) + "; the session has " + std::to_string(of.effectors.size()) +
                        " effectors",
                    "pass a pose for each", "call.count"};
-    for (std::size_t i = 0; i < count; ++i)
+    const auto move = [&](std::size_t i) {
       check(of.session.move(of.effectors[i], of_c(poses[i].position), of_c(poses[i].rotation)));
+    };
+    for (std::size_t i = 0; i < count; ++i)
+      if (!is_sound(poses[i])) move(i);  // which fails, before another one moves
+    for (std::size_t i = 0; i < count; ++i) move(i);
     check(of.session.step(1));
     if (!felt) return;
     for (std::size_t i = 0; i < count; ++i) {

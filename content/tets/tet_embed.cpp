@@ -14,7 +14,7 @@ constexpr std::uint32_t kNoTet = 0xffffffffu;
 // Among tetrahedra at similar distance, the one with the least extrapolation is used: a flat one would amplify its
 // motion.
 constexpr double kAboutEqual = 1.5;
-constexpr double kInside = -1e-12;  // [1] least weight of a point that an element contains
+constexpr double kHeldInside = -1e-12;  // [1] least weight of a point that an element contains
 
 // An implicit tree of boxes over tetrahedra in Hilbert order.
 class Tree {
@@ -84,7 +84,7 @@ class Embedder {
       : nodes_(nodes), tets_(tets), tree_(nodes, tets) {}
 
   Embedding find(dvec3 p, dvec3 outward) const {
-    Embedding found = best_near(p, 0.0, kInside, nullptr);
+    Embedding found = best_near(p, 0.0, kHeldInside, nullptr);
     if (found.tet == kNoTet) {
       // Prefer tissue behind the vertex's tangent plane; tissue in front may belong to another finger.
       double distance = nearest(p, &outward);
@@ -95,7 +95,7 @@ class Embedder {
     ASSERT(found.tet != kNoTet);
     return found;
   }
-  bool holds(dvec3 p) const { return best_near(p, 0.0, kInside, nullptr).tet != kNoTet; }
+  bool holds(dvec3 p) const { return best_near(p, 0.0, kHeldInside, nullptr).tet != kNoTet; }
 
  private:
   // Weights by Cramer's rule; the first is 1 minus the others, so that they sum to 1. False: the element is flat.

@@ -169,6 +169,7 @@ void SessionRun::go_on(const SavedState& state, std::vector<EffectorSource>& sou
                   effector.source == EffectorSource::kLevel)) {
       effector.source = EffectorSource::kPose;  // the next poses that are set continue from here
       device.driver = DriverKind::kExternal;
+      device.path = {};
     }
     const bool same_kind = static_cast<std::uint8_t>(effector.source) == was.kind;
     if (posed && same_kind) {

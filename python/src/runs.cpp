@@ -64,15 +64,20 @@ template <class Stop>
 bool carry_out(pliant::Session& session, Plan& plan, const std::string& where, const Stop& stop) {
   auto looked = Clock::now();
   std::vector<pliant::FeltEvent> events;
+  const auto pose_of = [](const Track& track, std::size_t row) {
+    const double* p = track.at + row * track.columns;
+    return track.columns == 3 ? Pose{{p[0], p[1], p[2]}} : Pose{{p[0], p[1], p[2]}, {p[3], p[4], p[5], p[6]}};
+  };
+  const auto move = [&](const Track& track, std::size_t row) {
+    const Pose pose = pose_of(track, row);
+    if (const pliant::Status moved = session.move(track.effector, pose.position, pose.rotation); !moved)
+      throw Failure(moved.error().at(where + ", row " + std::to_string(row) + ", `" + track.effector + "`"));
+  };
+  for (const Track& track : plan.tracks)  // a path that is refused has not begun
+    for (std::size_t row = 0; row < plan.ticks; ++row)
+      if (!is_sound(pose_of(track, row))) move(track, row);
   for (std::size_t row = 0; row < plan.ticks; ++row) {
-    for (const Track& track : plan.tracks) {
-      const double* p = track.at + row * track.columns;
-      const pliant::Status moved = track.columns == 3
-                                       ? session.move(track.effector, {p[0], p[1], p[2]})
-                                       : session.move(track.effector, {p[0], p[1], p[2]}, {p[3], p[4], p[5], p[6]});
-      if (!moved)
-        throw Failure(moved.error().at(where + ", row " + std::to_string(row) + ", `" + track.effector + "`"));
-    }
+    for (const Track& track : plan.tracks) move(track, row);
     check(session.step());
     for (std::size_t i = 0; i < plan.effectors.size(); ++i) {
       const pliant::Reading reading = check(session.reading(plan.effectors[i]));

@@ -80,6 +80,10 @@ py::dict tick_all(HeldSession& held, const py::dict& poses) {
     wanted.emplace_back(key, to_pose(pose, "tick `" + key + "`"));
   }
   const auto felt = held.advance([&](Session& session) {
+    for (const auto& [name, pose] : wanted) {  // a refused call moves none of them
+      check(session.reading(name));
+      if (!is_sound(pose)) check(session.move(name, pose.position, pose.rotation));
+    }
     for (const auto& [name, pose] : wanted) check(session.move(name, pose.position, pose.rotation));
     check(session.step());
     std::vector<pliant::Reading> readings;

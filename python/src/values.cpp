@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "python/src/failure.h"
 
@@ -48,6 +49,10 @@ pliant::dquat to_quat(const py::handle& value, const std::string& what) {
   if (q.ndim() != 1 || q.size() != 4)
     wrong_argument(what, "must be four numbers (w, x, y, z); its shape is " + shape_of(q), "");
   return {q.data()[0], q.data()[1], q.data()[2], q.data()[3]};
+}
+
+bool is_sound(const Pose& pose) {
+  return std::isfinite(dot(pose.position, pose.position)) && std::abs(dot(pose.rotation, pose.rotation) - 1.0) < 1e-6;
 }
 
 Pose to_pose(const py::handle& value, const std::string& what) {

@@ -27,6 +27,8 @@ struct Pose {
   pliant::dquat rotation{1, 0, 0, 0};
 };
 Pose to_pose(const py::handle& value, const std::string& what);
+// False: Session::move may refuse it.
+bool is_sound(const Pose& pose);
 
 py::array_t<double> array_of(pliant::dvec3 v);
 py::array_t<double> array_of(pliant::dquat q);  // (w, x, y, z)

@@ -82,14 +82,14 @@ TEST(SessionState, GoesOnInASessionWhoseProbeStillHasTheLevelsSource) {
   for (LevelNode& node : scene.level().nodes)
     if (node.device) node.device->driver = DriverKind::kOrbit;
   Session session = opened(scene), other = opened(scene);
-  play(session, 0, 170, 0.002);
+  play(session, 0, 100, 0.002);
   const auto state = session.save_state();
   ASSERT_TRUE(state) << state.error().message();
   ASSERT_GT(length(session.reading("finger")->force), 0.2) << "it is restored in contact";
-  const StateFelt once = play(session, 170, 100, 0.002);
+  const StateFelt once = play(session, 100, 100, 0.002);
   ASSERT_TRUE(other.restore_state(*state));
   EXPECT_EQ(*other.save_state(), *state);
-  EXPECT_TRUE(play(other, 170, 100, 0.002) == once);
+  EXPECT_TRUE(play(other, 100, 100, 0.002) == once);
 }
 
 TEST(SessionState, WithoutAnotherPoseTheLastOneHoldsAndPathsGoOn) {

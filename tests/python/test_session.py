@@ -404,3 +404,31 @@ def test_a_fork_has_no_session_of_its_parent(session):
 def test_the_import_is_quick():
     code = ("import numpy, time; t = time.process_time(); import pliant; print(time.process_time() - t)")
     assert min(float(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout) for _ in range(3)) < 0.1
+
+
+def test_a_refused_call_changes_nothing():
+    s = pl.Session("three_probes")
+    before = {name: s.probes[name].position for name in s.probes}
+    with pytest.raises(pl.Error):
+        s.tick({"probe_a": (0.5, 0.5, 0.5), "probe_b": (np.nan, 0, 0)})
+    with pytest.raises(pl.UnknownName):
+        s.tick({"probe_a": (0.5, 0.5, 0.5), "probe_x": (0, 0, 0)})
+    path = np.tile([0.0, 0.2, 0.0], (5, 1))
+    path[3, 1] = np.inf
+    with pytest.raises(pl.Error, match="row 3"):
+        s.run({"probe_a": path})
+    assert s.time == 0
+    assert all(np.array_equal(s.probes[name].position, at) for name, at in before.items())
+
+
+def test_a_state_goes_on_in_a_fresh_session():
+    s, q = pl.Session("minimal"), pl.Session("minimal")
+    down = np.column_stack([np.zeros(60), np.linspace(0.002, -0.001, 60), np.zeros(60)])
+    s.run(down)
+    state = s.save()
+    q.restore(state)
+    assert q.save() == state
+    held = np.tile([0, -0.001, 0], (50, 1))
+    once, again = s.run(held), q.run(held)
+    assert once.force[-1, 1] > 0.2
+    assert np.array_equal(once.force, again.force)
