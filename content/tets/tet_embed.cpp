@@ -36,6 +36,8 @@ class Tree {
     }
   }
 
+  double extent() const { return length(levels_.back().front().high - levels_.back().front().low); }  // [m]
+
   // Calls visit(tet) for every tetrahedron whose box is within `reach` [m] of p; visit may lower `reach`.
   template <class Visit>
   void visit_near(dvec3 p, const double& reach, Visit visit) const {
@@ -90,7 +92,8 @@ class Embedder {
       double distance = nearest(p, &outward);
       const bool own = distance < std::numeric_limits<double>::max();
       if (!own) distance = nearest(p, nullptr);
-      found = best_near(p, kAboutEqual * distance, std::numeric_limits<double>::lowest(), own ? &outward : nullptr);
+      found = best_near(p, kAboutEqual * distance + 1e-12 * tree_.extent(), std::numeric_limits<double>::lowest(),
+                        own ? &outward : nullptr);
     }
     ASSERT(found.tet != kNoTet);
     return found;

@@ -1,4 +1,4 @@
-// Numbers from and to Python: vectors, poses, arrays. Whatever cannot be one is an ArgumentError that names it.
+// Numbers from and to Python: vectors, poses, arrays. A value that cannot be one is an ArgumentError that names it.
 #pragma once
 
 #include <pliant/math.h>
