@@ -86,11 +86,6 @@ double fed_since(ToolTouchState& tool) {
   return std::isfinite(tool.fed - before) ? tool.force_safety.share * (tool.fed - before) : 0.0;
 }
 
-// Until the contacts of its first model act whole.
-bool is_unknown(const ToolTouchState& tool) {
-  return !tool.aside && (tool.state == HandleState::kNew || tool.settling > 0 || tool.fade_left > 0.0);
-}
-
 void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   HapticDevice& device = world.registry.get<HapticDevice>(tool.device);
   const Handle6& handle = world.registry.get<Handle6>(tool.entity);
@@ -102,7 +97,7 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   turning.touched = tool.force_safety.share * handle.rotation[0];
   limits.ease = turning.ease = ease_of_tool(tick.skipped);
   limits.stiffened = fed_since(tool);
-  limits.unknown = turning.unknown = is_unknown(tool);
+  limits.unknown = turning.unknown = tick.time < tool.known_at;
   limits.weight = tool.force_safety.share * tool.weight;
   turning.weight = cross(tool.sensed.pose.rotation * tool.balance, limits.weight);
   const dvec3 push =
@@ -132,7 +127,7 @@ void write_probe(World& world, ProbeState& state, Tick tick) {
   turning.weight = beside.torque;
   const ToolTouchState* const among_bodies = find_tool(world, state.entity);
   if (among_bodies) limits.ease = turning.ease = ease_of_tool(tick.skipped);
-  limits.unknown = turning.unknown = among_bodies && is_unknown(*among_bodies);
+  limits.unknown = turning.unknown = among_bodies && !among_bodies->aside && tick.time < among_bodies->known_at;
   const dvec3 pressed = with_own(
       state.safety, limits,
       state.safety.share * (probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0))), tick.dt);
