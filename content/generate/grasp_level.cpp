@@ -63,6 +63,7 @@ void add_finger(Level& level, int number, const LevelNode& palm, std::int32_t ma
   LevelNode& node = add_shape(level, name, grasp_finger(), box, 0.0034, material);
   node.local = {hinge, quat(around)};
   add_hand_part(node);
+  node.rigid_body->density = 300.0;  // hollow: the hand moves its own weight alone
   LevelNode& joint = add_node(level, "joint_" + std::string(1, "abc"[number]));
   joint.local = {hinge, quat(around * glm::angleAxis(glm::radians(90.0), dvec3(1, 0, 0)))};
   joint.joint = Joint{};
@@ -82,12 +83,18 @@ struct GraspMoment {
   double grip;    // [1]
 };
 
-// Down over the ball, closes, up by 20 cm, over and back, down, opens, up.
+// A little up, so that the hand has lifted what then comes down with it; over the ball, closes, up by 20 cm, over and
+// back, down, opens, up.
 std::vector<GraspMoment> grasp_moments() {
   const dvec3 low(0, kGraspBall, 0), high(0, kGraspBall + 0.20, 0), above(0, kGraspBall + 0.06, 0);
-  return {{0.0, above, 0, 0},  {0.7, low, 0, 0},    {0.9, low, 0, 0},   {1.5, low, 0, 1},  {2.7, high, 0, 1},
-          {4.0, high, 180, 1}, {4.6, high, 180, 1}, {5.9, high, 0, 1},  {7.1, low, 0, 1},  {7.3, low, 0, 1},
-          {7.8, low, 0, 0},    {8.0, low, 0, 0},    {8.8, above, 0, 0}, {9.0, above, 0, 0}};
+  return {{0.0, above, 0, 0},  {0.2, above + dvec3(0, 0.008, 0), 0, 0},
+          {0.7, low, 0, 0},    {0.9, low, 0, 0},
+          {1.5, low, 0, 1},    {2.7, high, 0, 1},
+          {4.0, high, 180, 1}, {4.6, high, 180, 1},
+          {5.9, high, 0, 1},   {7.1, low, 0, 1},
+          {7.3, low, 0, 1},    {7.8, low, 0, 0},
+          {8.0, low, 0, 0},    {8.8, above, 0, 0},
+          {9.0, above, 0, 0}};
 }
 
 Path grasp_path() {

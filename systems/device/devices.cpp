@@ -97,7 +97,6 @@ void write_tool(World& world, ToolTouchState& tool, Tick tick) {
   turning.touched = tool.force_safety.share * handle.rotation[0];
   limits.ease = turning.ease = ease_of_tool(tick.skipped);
   limits.stiffened = fed_since(tool);
-  limits.unknown = turning.unknown = tick.time < tool.known_at;
   limits.weight = tool.force_safety.share * tool.weight;
   turning.weight = cross(tool.sensed.pose.rotation * tool.balance, limits.weight);
   const dvec3 push =
@@ -127,7 +126,6 @@ void write_probe(World& world, ProbeState& state, Tick tick) {
   turning.weight = beside.torque;
   const ToolTouchState* const among_bodies = find_tool(world, state.entity);
   if (among_bodies) limits.ease = turning.ease = ease_of_tool(tick.skipped);
-  limits.unknown = turning.unknown = among_bodies && !among_bodies->aside && tick.time < among_bodies->known_at;
   const dvec3 pressed = with_own(
       state.safety, limits,
       state.safety.share * (probe.force + (among_bodies ? linear(among_bodies->device_wrench) : dvec3(0))), tick.dt);

@@ -191,7 +191,7 @@ void let_go(SafetyState& state) {
 Share engage(SafetyState& state, const SafetyLimits& limits, dvec3 wanted, bool jumped, double dt) {
   const bool gated = !state.engaged;
   const double before = gated ? 0.0 : state.most, most_now = limit_now(state, limits, dt);
-  if (gated && !jumped && !limits.unknown) {
+  if (gated && !jumped) {
     state.hidden = length(wanted - limits.weight) < length(wanted) ? 1.0 : 0.0;
     state.engaged = length(wanted - state.hidden * limits.weight) < kEngageForce;
   }

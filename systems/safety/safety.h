@@ -138,7 +138,6 @@ struct SafetyLimits {
   dvec3 carried{0};               // [m] world; displacement of the touched surface in this tick
   double fastest = kFastestHand;  // [m/s]
   bool jumped = false;            // the device is elsewhere, regardless of `position`
-  bool unknown = false;           // the first soft step has not said what is touched: a closed gate stays closed
   double fall = kLeastFall;       // [N/s] rate of fall of force that is no longer wanted, if `slew` is lower
   double scale = 1.0;             // [1] world metres per metre of the hand
   double stiffened = 0.0;         // [J] of the hand: what is touched has gained as its stiffness changed, by no hand

@@ -310,10 +310,7 @@ void feel(World& world, ToolTouchState& tool, Tick tick) {
   const RigidMotion before = tool.sensed;
   double missed = 0.0;
   const bool sensing = sense(tool, world.registry.get<HapticDevice>(tool.device), tick, missed);
-  if (tool.model.acquire()) {
-    adopt(tool, tool.model.read());
-    tool.known_at = std::min(tool.known_at, tick.time + world.simulation.soft_step + 4.0 * tick.dt);
-  }
+  if (tool.model.acquire()) adopt(tool, tool.model.read());
   const HandleModel& model = tool.model.read();
   if (tool.is_probe && sensing && tool.set_backs == 0) tool.set_backs = 1;  // moves its shell to its device
   if (stands_aside(world, tool)) {

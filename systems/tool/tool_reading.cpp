@@ -18,13 +18,26 @@ dvec3 pushed_by(const CondensedContacts& contacts, const CondensedState& state) 
   return sum;
 }
 
-// Contact, normal and depth of a tool; false if no force of at least `least` [N] pushes it.
+// [N] The contacts of bodies that are joined to the handle, which do not push it themselves.
+double pushed_through_joints(const CondensedContacts& contacts) {
+  bool joined = false;
+  double sum = 0.0;
+  for (int i = 0; i < contacts.count; ++i) {
+    const bool joint = contacts.held[static_cast<std::size_t>(i)] != 0;
+    joined = joined || joint;
+    if (!joint) sum += contacts.force[3 * i];
+  }
+  return joined ? sum : 0.0;
+}
+
+// Contact, normal and depth of a tool; false if no force of at least `least` [N] pushes it, nor what is joined to it.
 bool read_contact(const ToolTouchState& tool, double least, ProbeReading& out) {
   const HandleModel& model = tool.model.read();
   const dvec3 push = pushed_by(model.contacts, tool.contacts);
-  if (!tool.placed() || !(length(push) > least)) return false;
+  const bool pushed = length(push) > least;
+  if (!tool.placed() || !(pushed || pushed_through_joints(model.contacts) > least)) return false;
   out.in_contact = true;
-  out.normal = normalize(push);
+  out.normal = pushed ? normalize(push) : length(out.force) > 0.0 ? normalize(out.force) : dvec3(0);
   out.depth = tool.sensing ? length(tool.sensed.at(model.centre).pose.position - tool.handle.pose.position) : 0.0;
   return true;
 }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -99,7 +98,6 @@ struct ToolTouchState {
   SweepLimits limits;                       // of a tick; in lockstep budget_ns is 0: no wall time, always the same bits
 
   HandleState state = HandleState::kNew;
-  double known_at = std::numeric_limits<double>::infinity();  // [s] when the contacts of its first model act whole
   bool placed() const { return state == HandleState::kFollows; }
 
   // Valid while placed.

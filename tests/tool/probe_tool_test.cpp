@@ -91,25 +91,6 @@ TEST(ProbeTool, AFirstPoseInsideABodyIsRecorded) {
   }
 }
 
-// Before the first soft step the force is unknown, not zero: the gate stays closed.
-TEST(ProbeTool, WhereItBeginsInABodyItFeelsNothingUntilItHasLeft) {
-  for (const double depth : {1e-3, 3e-3, 1e-2}) {
-    ToolStage stage(kSoftStep);
-    add_fixed(stage, dvec3(0.2, 0.04, 0.2), dvec3(0, -0.02, 0));
-    const Entity probe = add_probe(stage, {0.003, 4e-3 - depth, 0.002}, 0.004);
-    stage.prepare();
-    double most = 0.0;
-    stage.lead(probe, dvec3(0.003, 4e-3 - depth, 0.002), 0.3,
-               [&] { most = std::max(most, length(stage.device(probe).force_sent)); });
-    EXPECT_EQ(most, 0.0) << depth;
-    stage.lead(probe, dvec3(0.003, 0.03, 0.002), 0.4);
-    stage.lead(probe, dvec3(0.003, 0.03, 0.002), 0.2);
-    stage.lead(probe, dvec3(0.003, 2e-3, 0.002), 0.3);
-    stage.lead(probe, dvec3(0.003, 2e-3, 0.002), 0.3);
-    EXPECT_NEAR(stage.device(probe).force_sent.y, law(stage, probe, 2e-3), 0.05 * law(stage, probe, 2e-3)) << depth;
-  }
-}
-
 SoftBody tissue() {
   SoftBody body;
   body.young = 1e4;
