@@ -122,8 +122,13 @@ void judge(Judged& judged, const fs::path& file, bool sound, bool bodies) {
   }
   const bool surface = std::any_of(level.nodes.begin(), level.nodes.end(),
                                    [](const LevelNode& node) { return node.deformable && !node.soft_body; });
-  for (LevelNode& node : level.nodes)  // a probe orbits over a surface; without one it follows its script
-    if (node.device && (surface || !node.probe)) node.device->driver = DriverKind::kOrbit;
+  const auto grips = [&](const LevelNode& hand) {
+    return std::any_of(level.nodes.begin(), level.nodes.end(),
+                       [&](const LevelNode& node) { return node.joint && node.joint->grip == hand.name; });
+  };
+  // A probe orbits over a surface; without one it follows its script, as does a hand that grips by it.
+  for (LevelNode& node : level.nodes)
+    if (node.device && !grips(node) && (surface || !node.probe)) node.device->driver = DriverKind::kOrbit;
   ++judged.files;
   orbit(judged, level, name);
   without_friction(level);
