@@ -135,7 +135,7 @@ constexpr std::array<TissuePreset, 7> kPresets{{
      0.6f},
 }};
 
-// Whether a material has no look of its own: none, plain grey without pictures, or the look of a preset.
+// Whether a preset may replace a material: none, plain grey without pictures, or the look of a preset.
 bool is_plain(const Level& level, std::int32_t material) {
   if (material < 0 || static_cast<std::size_t>(material) >= level.materials.size()) return true;
   const Material& m = level.materials[static_cast<std::size_t>(material)];

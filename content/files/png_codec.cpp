@@ -47,7 +47,7 @@ bool png_read(PngFile& file, ImageSize& size, png_bytepp rows) {
     return false;
   }
   png_set_read_fn(png, &file, png_read_bytes);
-  png_set_user_limits(png, 0x7fffffff, 0x7fffffff);  // the caller has limits of its own, with a sentence
+  png_set_user_limits(png, 0x7fffffff, 0x7fffffff);  // the caller limits it, with a sentence
   png_read_info(png, info);
   size = {png_get_image_width(png, info), png_get_image_height(png, info)};
   if (rows) {
