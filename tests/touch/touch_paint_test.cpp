@@ -91,6 +91,43 @@ TEST(TouchPaint, ASmoothLumpIsFeltWithoutStairs) {
     }
 }
 
+// The heights of a dome follow those of the lump, and the foot halts on an edge for a moment.
+TEST(TouchPaint, ASmoothLumpOnADomeIsFeltWithoutStairs) {
+  constexpr double kRadius = 0.03, kSigma = 0.006;
+  for (const SpringLaw law : {SpringLaw::kLinear, SpringLaw::kStandardLinearSolid}) {
+    for (const double turn : {0.3, 1.1, 2.0}) {
+      Primitive ball = scenes::sphere(12, kRadius);
+      for (vec3& p : ball.position) {
+        const double away = kRadius * std::acos(std::min(1.0, double{p.y} / kRadius));
+        ball.stiffness.push_back(static_cast<float>(1 + 5 * std::exp(-away * away / (2 * kSigma * kSigma))));
+      }
+      Stage stage;
+      Deformable d = frictionless(law);
+      d.relaxation_time = 0.05;
+      stage.add(ball, d);
+      const auto at = [&](double angle, double radius) {
+        const dvec3 along(std::cos(turn), 0, std::sin(turn)), aside(-std::sin(turn), 0, std::cos(turn));
+        return radius * normalize(std::cos(angle) * dvec3(0, 1, 0) + std::sin(angle) * along + 0.03 * aside);
+      };
+      const Entity probe = stage.add_probe(at(-0.6, kRadius + 0.001));
+      stage.prepare();
+      stage.move(probe, at(-0.6, kRadius - kDeep), 0.2);
+      double largest = 0.0, step = 0.0;
+      dvec3 last = raw_force(stage, probe);
+      for (double angle = -0.6; angle < 0.6; angle += 0.0005) {
+        stage.place(probe, at(angle, kRadius - kDeep));
+        stage.tick();
+        const dvec3 f = raw_force(stage, probe), n = normalize(at(angle, 1.0));
+        largest = std::max(largest, length(f - dot(f, n) * n));
+        if (angle > -0.59) step = std::max(step, length(f - last));
+        last = f;
+      }
+      EXPECT_GT(largest, 0.8) << "N sideways";
+      EXPECT_LT(step, 0.025 * largest) << int(law) << ' ' << turn;
+    }
+  }
+}
+
 TEST(TouchPaint, AStepIsFeltTheSameOnEveryMesh) {
   const auto step = [](double x, double) { return x < 0.0003 ? 1.0 : 6.0; };
   std::vector<double> peaks;

@@ -14,6 +14,9 @@ constexpr int kMostPatches = 512;    // on the way downhill
 constexpr double kOnEdge = 1e-12;    // [1] a barycentric below this is zero
 constexpr double kBetter = 1e-13;    // [1] relative decrease of the distance squared required for the foot to move on
 constexpr double kFree = 5e-7;       // [1] x - p deviates less than this from the normal: no constraint at the foot. Above sqrt(kBetter)
+// Patches that meet at less than this angle are one smooth surface: a foot that halts on their edge for a moment has the
+// derivatives of a foot inside. Otherwise the force of painted and of relaxing tissue would click there. [rad]
+constexpr double kSmooth = 0.005;
 constexpr double kMostMoves = 20.0;  // [1] most of dp/dx
 constexpr double kOnSurface = 1e-9;  // [1] of the triangle's edge: closer than this, x is on the surface
 
@@ -192,6 +195,21 @@ void bound_motion(Foot& foot) {
   for (dvec3& shift : foot.shifts) shift *= kMostMoves / size;
 }
 
+// Derivatives of a foot inside its patch.
+void move_inside(Foot& foot, const CurvedPatch::Point& at, dvec3 r) {
+  const Hessian H = hessian(at, -r, true);
+  const double det = H.det();
+  if (!(det > 0)) return;
+  const dvec3 du = (H.vv * at.pu - H.uv * at.pv) / det, dv = (H.uu * at.pv - H.uv * at.pu) / det;
+  foot.shifts = {-du - dv, du, dv};
+  foot.moves = glm::outerProduct(at.pu, du) + glm::outerProduct(at.pv, dv);
+  const double size = length(cross(at.pu, at.pv));
+  const auto tangent = [&](dvec3 a) { return (a - dot(a, foot.normal) * foot.normal) / size; };
+  const dvec3 nu = tangent(cross(at.puu, at.pv) + cross(at.pu, at.puv)),
+              nv = tangent(cross(at.puv, at.pv) + cross(at.pu, at.pvv));
+  foot.turns = glm::outerProduct(nu, du) + glm::outerProduct(nv, dv);
+}
+
 // The corner of its triangle that a place on an edge is at, or -1.
 int corner_at(Place at) {
   const unsigned on = zeros(at);
@@ -249,23 +267,13 @@ Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, Sides sides_
   const unsigned on = zeros(local.at);
   const dvec3 r = x - at.p;
   const double far = length(r), scale = length(at.pu) + length(at.pv);
-  // If the edge or corner is not an active constraint, the foot is treated as inside the patch.
   const dvec3 steepest(dot(r, at.pu) / length(at.pu), dot(r, at.pv) / length(at.pv), 0.0);
-  if (on == 0 || length(steepest) <= kFree * far) {
+  const double aside = on == 0 ? 0.0 : length(steepest);
+  // If the edge or corner is not an active constraint, the foot is treated as inside the patch.
+  if (aside <= kFree * far) {
     foot.normal = patch_normal(at);
     foot.height = dot(r, foot.normal);
-    const Hessian H = hessian(at, -r, true);
-    const double det = H.det();
-    if (det > 0) {
-      const dvec3 du = (H.vv * at.pu - H.uv * at.pv) / det, dv = (H.uu * at.pv - H.uv * at.pu) / det;
-      foot.shifts = {-du - dv, du, dv};
-      foot.moves = glm::outerProduct(at.pu, du) + glm::outerProduct(at.pv, dv);
-      const double size = length(cross(at.pu, at.pv));
-      const auto tangent = [&](dvec3 a) { return (a - dot(a, foot.normal) * foot.normal) / size; };
-      const dvec3 nu = tangent(cross(at.puu, at.pv) + cross(at.pu, at.puv)),
-                  nv = tangent(cross(at.puv, at.pv) + cross(at.pu, at.pvv));
-      foot.turns = glm::outerProduct(nu, du) + glm::outerProduct(nv, dv);
-    }
+    move_inside(foot, at, r);
     bound_motion(foot);
     return foot;
   }
@@ -275,9 +283,14 @@ Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, Sides sides_
   const double side = dot(r, mean) < 0 ? -1.0 : 1.0;
   foot.normal = on_surface ? mean : side * r / far;
   foot.height = on_surface ? 0.0 : side * far;
+  const int zero = on == 1 ? 0 : on == 2 ? 1 : 2;
+  if (foot.place == FootPlace::kEdge) foot.edge = static_cast<std::uint8_t>((zero + 1) % 3);
+  if (aside <= kSmooth * far) {
+    move_inside(foot, at, r);
+    bound_motion(foot);
+    return foot;
+  }
   if (foot.place == FootPlace::kEdge) {
-    const int zero = on == 1 ? 0 : on == 2 ? 1 : 2;
-    foot.edge = static_cast<std::uint8_t>((zero + 1) % 3);
     const auto [eu, ev] = kAlong[zero];
     const dvec3 along = eu * at.pu + ev * at.pv;
     const Hessian H = hessian(at, -r, true);

@@ -6,6 +6,7 @@
 
 #include "systems/touch/collide/around_vertex.h"
 #include "systems/touch/collide/box_tree.h"
+#include "systems/touch/collide/seams.h"
 
 namespace pliant {
 namespace {
@@ -30,6 +31,9 @@ VertexPaint vertex_paint(const Mesh& mesh, const std::vector<float>& factor, std
                          std::uint32_t triangle) {
   const double value = factor[vertex];
   const dvec3 p(mesh.position(vertex));
+  dvec3 normal(0);
+  around_vertex(mesh, vertex, triangle, [&](std::uint32_t t) { normal += facet_normal(mesh, t); });
+  normal = length(normal) > 0 ? normalize(normal) : dvec3(0);
   double low = value, high = value;
   dmat3 moments(0.0);
   dvec3 right(0);
@@ -37,13 +41,14 @@ VertexPaint vertex_paint(const Mesh& mesh, const std::vector<float>& factor, std
     const double other = factor[v];
     low = std::min(low, other);
     high = std::max(high, other);
-    const dvec3 e = dvec3(mesh.position(v)) - p;
+    // Along the surface only: on a dome the heights of the ring follow a peak of the paint.
+    const dvec3 way = dvec3(mesh.position(v)) - p, e = way - dot(way, normal) * normal;
     const double weight = 1 / std::max(dot(e, e), 1e-300);
     moments += weight * glm::outerProduct(e, e);
     right += weight * (other - value) * e;
   });
   if (low == high) return {value, dvec3(0)};
-  // A flat ring says nothing across it: the least gradient.
+  // The ring says nothing across it: the least gradient.
   moments += 1e-9 * (moments[0][0] + moments[1][1] + moments[2][2]) * dmat3(1.0);
   const dvec3 gradient = glm::inverse(moments) * right;
   double share = 1.0;
