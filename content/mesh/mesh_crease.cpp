@@ -11,6 +11,9 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kCreaseGrain = 1 << 13;
+// [rad] Triangles around a vertex, one of which is turned by more than this from their mean normal, meet in a point.
+// A patch through the mean normal would bulge between its edges, so that a cone would be felt fluted.
+constexpr double kPoint = 0.785;
 
 dvec3 face_normal(const Mesh& mesh, std::uint32_t triangle) {
   const uvec3 t = mesh.triangles[triangle];
@@ -91,10 +94,13 @@ class Fans {
   std::vector<std::uint32_t> root_;
 };
 
-bool at_crease(const Mesh& mesh, const Corners& corners, std::uint32_t vertex) {
+bool at_crease_or_point(const Mesh& mesh, const Corners& corners, std::uint32_t vertex) {
+  const dvec3 mean(mesh.normal(vertex));
   for (std::uint32_t c = corners.first[vertex]; c < corners.first[vertex + 1]; ++c) {
-    const std::uint32_t i = corners.corner[c] % 3;
-    if (mesh.crease[corners.corner[c] / 3] & (1u << i | 1u << (i + 2) % 3)) return true;
+    const std::uint32_t t = corners.corner[c] / 3;
+    const int i = static_cast<int>(corners.corner[c] % 3);
+    if (mesh.is_crease(t, i) || mesh.is_crease(t, (i + 2) % 3) || turn(face_normal(mesh, t), mean) > kPoint)
+      return true;
   }
   return false;
 }
@@ -141,31 +147,37 @@ void find_creases(std::span<const Primitive> primitives, const mat4& to_object, 
 }
 
 void split_at_creases(const Corners& corners, Mesh& mesh) {
-  if (mesh.crease.empty()) return;
-  std::vector<std::uint8_t> creased(mesh.vertex_count, 0);
+  std::vector<std::uint8_t> split(mesh.vertex_count, 0);
   parallel_for(mesh.vertex_count, kCreaseGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) creased[v] = at_crease(mesh, corners, static_cast<std::uint32_t>(v));
+    for (std::size_t v = begin; v < end; ++v)
+      split[v] = at_crease_or_point(mesh, corners, static_cast<std::uint32_t>(v));
   });
 
   // Each triangle at such a vertex gets an entry, filled with the normals of its vertices.
   mesh.split_normals.assign(mesh.triangles.size(), kNotSplit);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const uvec3 corner = mesh.triangles[t];
-    if (!creased[corner.x] && !creased[corner.y] && !creased[corner.z]) continue;
+    if (!split[corner.x] && !split[corner.y] && !split[corner.z]) continue;
     mesh.split_normals[t] = static_cast<std::uint32_t>(mesh.corner_normal.size());
     for (int i = 0; i < 3; ++i) mesh.corner_normal.push_back(mesh.normal(corner[i]));
   }
   parallel_for(mesh.vertex_count, kCreaseGrain, [&](std::size_t begin, std::size_t end) {
     Fans fans;
     std::vector<NormalSum> sums;
+    std::vector<std::uint8_t> point;
     for (std::size_t v = begin; v < end; ++v) {
-      if (!creased[v]) continue;
+      if (!split[v]) continue;
       fans.find(mesh, corners, static_cast<std::uint32_t>(v));
       sums.assign(fans.count(), {});
       for (std::uint32_t c = 0; c < fans.count(); ++c) sums[fans.fan(c)].add(mesh, fans.corner(c));
+      point.assign(fans.count(), 0);
+      for (std::uint32_t c = 0; c < fans.count(); ++c)
+        if (turn(face_normal(mesh, fans.corner(c) / 3), dvec3(sums[fans.fan(c)].normal())) > kPoint)
+          point[fans.fan(c)] = 1;
       for (std::uint32_t c = 0; c < fans.count(); ++c) {
-        const std::uint32_t corner = fans.corner(c);
-        mesh.corner_normal[mesh.split_normals[corner / 3] + corner % 3] = sums[fans.fan(c)].normal();
+        const std::uint32_t corner = fans.corner(c), fan = fans.fan(c);
+        mesh.corner_normal[mesh.split_normals[corner / 3] + corner % 3] =
+            point[fan] ? vec3(normalize(face_normal(mesh, corner / 3))) : sums[fan].normal();
       }
     }
   });

@@ -21,7 +21,7 @@ void find_creases(std::span<const Primitive> primitives, const mat4& to_object, 
                   const Welded& welded, double crease_angle, Mesh& mesh);
 
 // Fills Mesh::split_normals and corner_normal: around every vertex at a crease, the normal of each fan of triangles
-// between creases.
+// between creases; around the point of a cone, each triangle's own.
 void split_at_creases(const Corners& corners, Mesh& mesh);
 
 // Removes entries of triangles whose corner normals all equal their vertex normals.

@@ -9,13 +9,14 @@
 namespace pliant {
 namespace {
 
-constexpr int kMostSteps = 40;       // of Newton on one patch
-constexpr int kMostPatches = 512;    // on the way downhill
-constexpr double kOnEdge = 1e-12;    // [1] a barycentric below this is zero
-constexpr double kBetter = 1e-13;    // [1] relative decrease of the distance squared required for the foot to move on
-constexpr double kFree = 5e-7;       // [1] x - p deviates less than this from the normal: no constraint at the foot. Above sqrt(kBetter)
-// Patches that meet at less than this angle are one smooth surface: a foot that halts on their edge for a moment has the
-// derivatives of a foot inside. Otherwise the force of painted and of relaxing tissue would click there. [rad]
+constexpr int kMostSteps = 40;     // of Newton on one patch
+constexpr int kMostPatches = 512;  // on the way downhill
+constexpr double kOnEdge = 1e-12;  // [1] a barycentric below this is zero
+constexpr double kBetter = 1e-13;  // [1] relative decrease of the distance squared required for the foot to move on
+constexpr double kFree =
+    5e-7;  // [1] x - p deviates less than this from the normal: no constraint at the foot. Above sqrt(kBetter)
+// Patches that meet at less than this angle are one smooth surface: a foot that halts on their edge for a moment has
+// the derivatives of a foot inside. Otherwise the force of painted and of relaxing tissue would click there. [rad]
 constexpr double kSmooth = 0.005;
 constexpr double kMostMoves = 20.0;  // [1] most of dp/dx
 constexpr double kOnSurface = 1e-9;  // [1] of the triangle's edge: closer than this, x is on the surface
