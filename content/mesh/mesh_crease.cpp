@@ -11,7 +11,7 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kCreaseGrain = 1 << 13;
-// [rad] Triangles around a vertex, one of which is turned by more than this from their mean normal, meet in a point.
+// [rad] Triangles around a vertex, all of which are turned by more than this from their mean normal, meet in a point.
 // A patch through the mean normal would bulge between its edges, so that a cone would be felt fluted.
 constexpr double kPoint = 0.785;
 
@@ -96,13 +96,14 @@ class Fans {
 
 bool at_crease_or_point(const Mesh& mesh, const Corners& corners, std::uint32_t vertex) {
   const dvec3 mean(mesh.normal(vertex));
+  bool point = true;
   for (std::uint32_t c = corners.first[vertex]; c < corners.first[vertex + 1]; ++c) {
     const std::uint32_t t = corners.corner[c] / 3;
     const int i = static_cast<int>(corners.corner[c] % 3);
-    if (mesh.is_crease(t, i) || mesh.is_crease(t, (i + 2) % 3) || turn(face_normal(mesh, t), mean) > kPoint)
-      return true;
+    if (mesh.is_crease(t, i) || mesh.is_crease(t, (i + 2) % 3)) return true;
+    point = point && turn(face_normal(mesh, t), mean) > kPoint;
   }
-  return false;
+  return point;
 }
 
 }  // namespace
@@ -170,10 +171,10 @@ void split_at_creases(const Corners& corners, Mesh& mesh) {
       fans.find(mesh, corners, static_cast<std::uint32_t>(v));
       sums.assign(fans.count(), {});
       for (std::uint32_t c = 0; c < fans.count(); ++c) sums[fans.fan(c)].add(mesh, fans.corner(c));
-      point.assign(fans.count(), 0);
+      point.assign(fans.count(), 1);
       for (std::uint32_t c = 0; c < fans.count(); ++c)
-        if (turn(face_normal(mesh, fans.corner(c) / 3), dvec3(sums[fans.fan(c)].normal())) > kPoint)
-          point[fans.fan(c)] = 1;
+        if (turn(face_normal(mesh, fans.corner(c) / 3), dvec3(sums[fans.fan(c)].normal())) <= kPoint)
+          point[fans.fan(c)] = 0;
       for (std::uint32_t c = 0; c < fans.count(); ++c) {
         const std::uint32_t corner = fans.corner(c), fan = fans.fan(c);
         mesh.corner_normal[mesh.split_normals[corner / 3] + corner % 3] =
