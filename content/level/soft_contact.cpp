@@ -36,8 +36,6 @@ std::string why_plain(const Level& level, const LevelNode& node) {
                   [](const LevelNode& n) { return n.in_scene && n.soft_body && n.handle; }))
     return "the tissue of a tool has many contacts, and split ones would take twice the time of a step";
   if (body.law != TissueLaw::kCorotational) return "`law` is for large strain, and their dents are for small";
-  if (!(body.friction_sliding > 0.0))
-    return "it has no friction, and a stroke to where the tissue is stiffer then gives some 1e-6 J";
   if (body.prony.count > 0) return "their dents do not relax, and the tissue does (`prony`)";
   if (body.fibres.young > 0.0) return "their dents have no fibres";
   if (body.poisson > kMostPoissonOfSplit)
