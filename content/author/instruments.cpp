@@ -69,7 +69,7 @@ Chord chord(const std::vector<std::array<dvec3, 3>>& triangles, dvec3 p, dvec3 u
 
 // The point to touch: on top of the object, as near to the middle of its box as it is half as thick as at its thickest.
 // Thickness is measured along kColumns x kColumns lines, if possible of those that pass `taken` at least `apart` [m]
-// away.
+// away, and best where the top does not rise by half the way to the next line.
 dvec3 touch_point(const Level& level, std::int32_t object, const Box& taken = {}, double apart = 0.0) {
   constexpr int kColumns = 15, kHalf = kColumns / 2;
   const Box box = world_box(level, object);
@@ -97,10 +97,18 @@ dvec3 touch_point(const Level& level, std::int32_t object, const Box& taken = {}
     const vec3 p(column.top), way = p - glm::clamp(p, taken.min, taken.max);
     return taken.empty() || length(dvec3(way) - dot(dvec3(way), up) * up) >= apart;
   };
-  for (const bool anywhere : {false, true}) {
+  const auto is_level = [&](const Column& column) {
+    return std::none_of(columns.begin(), columns.end(), [&](const Column& other) {
+      const dvec3 way = other.top - column.top;
+      const double rise = dot(way, up), run = length(way - rise * up);
+      return 2 * rise > run && run < 1.5 * std::max(reach[0], reach[1]);
+    });
+  };
+  for (const auto& [anywhere, steep] : {std::pair{false, false}, {false, true}, {true, false}, {true, true}}) {
     const Column* best = nullptr;
     for (const Column& column : columns)
-      if (column.thick >= 0.5 * thickest && (!best || column.away < best->away) && (anywhere || is_free(column)))
+      if (column.thick >= 0.5 * thickest && (!best || column.away < best->away) && (anywhere || is_free(column)) &&
+          (steep || is_level(column)))
         best = &column;
     if (best) return best->top;
   }
@@ -109,6 +117,21 @@ dvec3 touch_point(const Level& level, std::int32_t object, const Box& taken = {}
     for (const dvec3& at : triangle)
       if (dot(at, up) > dot(highest, up)) highest = at;
   return highest;
+}
+
+// The same beside the tools that are there already, if one is less than `apart` [m] aside.
+dvec3 free_touch_point(const Level& level, std::int32_t object, double apart) {
+  const dvec3 up = up_of(level), point = touch_point(level, object);
+  Box tools;
+  for (std::size_t n = 0; n < level.nodes.size(); ++n) {
+    if (!level.nodes[n].in_scene || !level.nodes[n].handle || level.nodes[n].mesh < 0) continue;
+    const Box box = world_box(level, static_cast<std::int32_t>(n));
+    const dvec3 way = point - dvec3(glm::clamp(vec3(point), box.min, box.max));
+    if (length(way - dot(way, up) * up) >= apart) continue;
+    tools.add(box.min);
+    tools.add(box.max);
+  }
+  return tools.empty() ? point : touch_point(level, object, tools, apart);
 }
 
 // A rod along -Y, its origin a third of the way down. [m]
@@ -238,7 +261,7 @@ Result<std::int32_t> add_instrument(Level& level, InstrumentKind kind, std::int3
   if (const Status status = check_object(level, object); !status) return status.error();
   const Instrument& instrument = kInstruments[static_cast<std::size_t>(kind)];
   const double diagonal = static_cast<double>(world_box(level, object).diagonal());
-  const dvec3 up = up_of(level), target = touch_point(level, object) + kClearance * diagonal * up;
+  const dvec3 up = up_of(level);
   LevelNode node;
   node.name = free_name(level, instrument.word);
   if (kind == InstrumentKind::kHand)
@@ -250,8 +273,12 @@ Result<std::int32_t> add_instrument(Level& level, InstrumentKind kind, std::int3
   const dquat turn =
       cosine < -0.999999 ? dquat(0, 1, 0, 0) : glm::normalize(dquat(1.0 + cosine, cross(dvec3(0, 1, 0), up)));
   dvec3 lowest(0);
-  for (const vec3& p : level.meshes[static_cast<std::size_t>(node.mesh)].primitives[0].position)
+  double wide = 0.0;
+  for (const vec3& p : level.meshes[static_cast<std::size_t>(node.mesh)].primitives[0].position) {
     if (static_cast<double>(p.y) < lowest.y) lowest = dvec3(p);
+    wide = std::max(wide, double{length(vec2(p.x, p.z))});
+  }
+  const dvec3 target = free_touch_point(level, object, wide + kClearance * diagonal) + kClearance * diagonal * up;
   node.local.rotation = quat(turn);
   node.local.translation = vec3(target - turn * lowest);
   return add_node(level, std::move(node));
@@ -267,18 +294,8 @@ Result<std::int32_t> add_probe(Level& level, std::int32_t object, double radius)
   node.probe_device = node.name;
   node.device = device_of(3.3);
   const dvec3 up = up_of(level);
-  const double size = node.probe->radius, apart = size + kClearance * diagonal;
-  dvec3 place = touch_point(level, object) + apart * up;
-  Box tools;  // that stand there already
-  for (std::size_t n = 0; n < level.nodes.size(); ++n) {
-    if (!level.nodes[n].in_scene || !level.nodes[n].handle || level.nodes[n].mesh < 0) continue;
-    const Box box = world_box(level, static_cast<std::int32_t>(n));
-    if (length(place - dvec3(glm::clamp(vec3(place), box.min, box.max))) >= size) continue;
-    tools.add(box.min);
-    tools.add(box.max);
-  }
-  if (!tools.empty()) place = touch_point(level, object, tools, apart) + apart * up;
-  node.local.translation = vec3(place);
+  const double apart = node.probe->radius + kClearance * diagonal;
+  node.local.translation = vec3(free_touch_point(level, object, apart) + apart * up);
   return add_node(level, std::move(node));
 }
 

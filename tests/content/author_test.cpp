@@ -266,6 +266,22 @@ TEST(Author, WhereTheMiddleIsThinWhatIsThickIsPressed) {
   EXPECT_LT(lowest, 0.05 + 0.004 - 0.005);
 }
 
+TEST(Author, ARingIsPressedOnItsCrownAndASecondToolStandsBesideTheFirst) {
+  constexpr double kRing = 0.05, kThick = 0.015;
+  const solids::Solid solid = [](dvec3 p) { return std::hypot(std::hypot(p.x, p.z) - kRing, p.y) - kThick; };
+  Level level = ball();
+  level.meshes[0].primitives = {solids::to_primitive(
+      solids::cover_by_net(solid, {vec3(-0.07f, -0.02f, -0.07f), vec3(0.07f, 0.02f, 0.07f)}, 0.004), solid)};
+  dvec3 place[2];
+  for (dvec3& each : place) {
+    const Result<std::int32_t> tool = add_instrument(level, InstrumentKind::kRod, named(level, "ball"));
+    ASSERT_TRUE(tool.ok()) << tool.error().sentence();
+    each = dvec3(at(level, *tool).local.translation) - dvec3(0.5, 1.0, -2.0);
+    EXPECT_NEAR(std::hypot(each.x, each.z), kRing, 0.5 * kThick);  // 30 degrees of the slope
+  }
+  EXPECT_GT(std::hypot(place[0].x - place[1].x, place[0].z - place[1].z), 0.005);
+}
+
 TEST(Author, AllOfTheObjectIsInTheCamerasPictureWhereverGravityPoints) {
   for (const dvec3 gravity : {dvec3(0, -9.81, 0), dvec3(0, 0, -9.81), dvec3(0), dvec3(1, 0, 0)}) {
     Level level = ball();
