@@ -54,6 +54,16 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${Python_VERSION_MINOR}~), python3 (<< 3.${next}), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "pliant, libegl1, libgl1-mesa-dri")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib")
+# Its compiled files, which Debian's tools make and take away.
+foreach(script postinst=py3compile prerm=py3clean)
+  string(REPLACE "=" ";" script ${script})
+  list(POP_BACK script tool)
+  file(WRITE ${PROJECT_BINARY_DIR}/packaging/python/${script}
+       "#!/bin/sh\nset -e\nif command -v ${tool} >/dev/null 2>&1; then ${tool} -p python3-pliant; fi\n")
+  file(CHMOD ${PROJECT_BINARY_DIR}/packaging/python/${script} PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ
+       GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+  list(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/packaging/python/${script})
+endforeach()
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "Scenes, sessions and batches from Python with numpy arrays, psychophysical
 experiments, drivers and force laws of your own, pictures and a window.")
 install(FILES packaging/lintian-overrides DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides RENAME libpliant0 COMPONENT library)

@@ -1,4 +1,4 @@
-// What the module `_window` gives to `_pliant`: a window on the display with a camera. The two are apart because only
+// The border between the modules `_pliant` and `_window`: a window on the display with a camera. They are apart because only
 // `_window` needs GLFW, which a machine without a display may lack.
 #pragma once
 
