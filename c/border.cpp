@@ -38,7 +38,8 @@ pliant_status status_of_exception(const char* call) noexcept {
   } catch (const Misuse& misuse) {
     keep({call, misuse.what, misuse.cure, misuse.code});
     return PLIANT_MISUSED;
-  } catch (const Error& error) {
+  } catch (Error& error) {
+    if (error.code.empty()) error.code = "call.refused";
     keep(error);
   } catch (const std::bad_alloc&) {
     keep({call, "there is not enough memory", "", "call.memory"});

@@ -58,7 +58,8 @@ Result<const DeviceInfo*> of_kind(const std::string& kind, std::span<const Devic
 Result<DeviceChoice> by_name(const DeviceSpec& request, std::span<const DeviceInfo> there) {
   const std::vector<std::string> names = driver_names();
   if (std::find(names.begin(), names.end(), request.driver) == names.end())
-    return Error{request.driver, "unknown driver", fmt::format("drivers are: {}", fmt::join(names, ", "))};
+    return Error{request.driver, "unknown driver", fmt::format("drivers are: {}", fmt::join(names, ", ")),
+                 "device.driver"};
   const DeviceInfo* missing = nullptr;
   for (const DeviceInfo& device : there) {
     if (device.driver != request.driver || (!request.id.empty() && device.id != request.id)) continue;

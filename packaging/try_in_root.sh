@@ -52,7 +52,20 @@ timed "examples by CMake" inside sh -c 'cmake -S /tmp/examples -B /tmp/built -DC
 inside /tmp/built/hello_touch | tail -1
 inside sh -c '/tmp/built/headless_sweep /usr/share/pliant/content/levels/minimal.gltf | tail -1'
 
-timed "remove them" inside sh -c 'apt-get -qq purge -y pliant libpliant0 libpliant-dev'
+say "Python"
+timed "install python3-pliant" inside sh -c 'apt-get -qq install --no-install-recommends -y /tmp/python3-pliant_*.deb'
+[[ $(inside python3 -c 'import pliant as pl; print(pl.Session("minimal").run([[0, 0.001, 0], [0, -0.001, 0]]).force[1, 1])') == 0.3 ]] ||
+  fail "300 N/m times 1 mm is 0.3 N"
+said=$(inside python3 -c 'import pliant as pl; pl.view(pl.Session("minimal"))' 2>&1 | tail -1 || true)
+[[ $said == *"there is no display"* ]] || fail "a window without a display says: $said"
+# KEEP: a folder for the experiment's trials and its plot, for which matplotlib is installed.
+if [[ -n ${KEEP:-} ]]; then inside apt-get -qq install --no-install-recommends -y python3-matplotlib >/dev/null 2>&1; fi
+timed "the experiment" inside python3 /tmp/examples/python/discrimination.py /tmp/experiment
+grep -a "JND" "$root/tmp/log"
+[[ $(wc -l <"$root/tmp/experiment/trials.csv") -eq 181 ]] || fail "the experiment has 180 trials"
+if [[ -n ${KEEP:-} ]]; then cp -r "$root/tmp/experiment" "$KEEP"; fi
+
+timed "remove them" inside sh -c 'apt-get -qq purge -y pliant libpliant0 libpliant-dev python3-pliant'
 left=$(cd "$root" && find usr -name '*pliant*' | head -3)
 [[ -z $left ]] || fail "what is left: $left"
 say "as it should be"

@@ -62,6 +62,12 @@ def _module(settings: dict[str, str]) -> Path:
     return module
 
 
+def _modules(settings: dict[str, str]) -> list[Path]:
+    module = _module(settings)
+    window = module.with_name(f"_window{SUFFIX}")  # where GLFW is installed
+    return [module, window] if window.is_file() else [module]
+
+
 def _files() -> dict[str, Path]:
     package = ROOT / "python/pliant"
     files = {f"pliant/{f.name}": f for f in sorted(package.iterdir()) if f.suffix in (".py", ".pyi", ".typed")}
@@ -81,16 +87,17 @@ def _write(wheel: zipfile.ZipFile, records: list[str], name: str, data: bytes, m
 
 
 def build_wheel(wheel_directory: str, config_settings: dict[str, str] | None = None, metadata_directory: str | None = None) -> str:
-    module = _module(config_settings or {})
-    stripped = module.with_suffix(".stripped")
-    if subprocess.run(["strip", "--strip-unneeded", "-o", stripped, module]).returncode:
-        stripped = module
+    modules = _modules(config_settings or {})
     name, info = f"pliant-{_version()}-{_tag()}.whl", f"pliant-{_version()}.dist-info"
     records: list[str] = []
     with zipfile.ZipFile(Path(wheel_directory) / name, "w") as wheel:
         for to, file in _files().items():
             _write(wheel, records, to, file.read_bytes())
-        _write(wheel, records, f"pliant/{module.name}", stripped.read_bytes(), 0o755)
+        for module in modules:
+            stripped = module.with_suffix(".stripped")
+            if subprocess.run(["strip", "--strip-unneeded", "-o", stripped, module]).returncode:
+                stripped = module
+            _write(wheel, records, f"pliant/{module.name}", stripped.read_bytes(), 0o755)
         _write(wheel, records, f"{info}/METADATA", _metadata().encode())
         _write(wheel, records, f"{info}/licenses/LICENSE", (ROOT / "LICENSE").read_bytes())
         _write(wheel, records, f"{info}/WHEEL", f"Wheel-Version: 1.0\nGenerator: pliant_build\nRoot-Is-Purelib: false\nTag: {_tag()}\n".encode())

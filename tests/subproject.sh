@@ -19,13 +19,18 @@ TEXT
 cat >"$work/CMakeLists.txt" <<'TEXT'
 cmake_minimum_required(VERSION 3.25)
 project(host LANGUAGES CXX)
-set(BUILD_SHARED_LIBS ON)
+include(FetchContent)
 set(names CMAKE_CXX_STANDARD CMAKE_CXX_EXTENSIONS CMAKE_RUNTIME_OUTPUT_DIRECTORY CMAKE_EXPORT_COMPILE_COMMANDS BUILD_SHARED_LIBS
     BUILD_TESTING CMAKE_CXX_FLAGS CMAKE_POSITION_INDEPENDENT_CODE CMAKE_FIND_PACKAGE_TARGETS_GLOBAL)
 foreach(name IN LISTS names)
   set(was_${name} "${${name}}")
 endforeach()
-add_subdirectory(${SOURCES} pliant EXCLUDE_FROM_ALL)
+if(FETCH)
+  FetchContent_Declare(pliant SOURCE_DIR ${SOURCES})
+  FetchContent_MakeAvailable(pliant)
+else()
+  add_subdirectory(${SOURCES} pliant EXCLUDE_FROM_ALL)
+endif()
 foreach(name IN LISTS names)
   if(NOT "${${name}}" STREQUAL "${was_${name}}")
     message(FATAL_ERROR "${name} has changed to '${${name}}'")
@@ -68,7 +73,7 @@ unneeded=()
 for package in draco TinyGLTF OpenEXR assimp OpenGL X11 CLI11 GTest benchmark PkgConfig; do
   unneeded+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON")
 done
-cmake -S "$work" -B "$work/build" -G Ninja -DSOURCES="$source" -DPLIANT_ENGINE_ONLY=ON "${unneeded[@]}" \
+cmake -S "$work" -B "$work/build" -G Ninja -DSOURCES="$source" -DBUILD_SHARED_LIBS=ON -DPLIANT_ENGINE_ONLY=ON "${unneeded[@]}" \
   >"$work/configure.log" 2>&1 || { cat "$work/configure.log"; exit 1; }
 cmake --build "$work/build" -j 2 --target host_part pliant_runtime >"$work/build.log" 2>&1 || { cat "$work/build.log"; exit 1; }
 
@@ -79,8 +84,9 @@ grep -q 'SONAME.*libpliant_runtime\.so\.0\.' <<<"$dynamic" || { echo "$dynamic";
 grep -q ' T pliant::set_log' <<<"$symbols" || fail "its functions are not seen"
 grep -q 'INSTALL_RPATH\|RPATH_CHANGE' "$work"/build/pliant/cmake_install.cmake 2>/dev/null && fail "it brings install rules"
 
-# The libraries alone, the default of a part, need no window.
-cmake -S "$work" -B "$work/libraries" -G Ninja -DSOURCES="$source" -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON -DCMAKE_DISABLE_FIND_PACKAGE_X11=ON \
+# The libraries alone, the default of a part, need no window. By FetchContent, and static.
+cmake -S "$work" -B "$work/libraries" -G Ninja -DSOURCES="$source" -DFETCH=ON -DBUILD_SHARED_LIBS=OFF -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON -DCMAKE_DISABLE_FIND_PACKAGE_X11=ON \
   -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON -DCMAKE_DISABLE_FIND_PACKAGE_benchmark=ON >"$work/configure.log" 2>&1 ||
   { cat "$work/configure.log"; exit 1; }
+[[ $(cat "$work/libraries/where.txt") == *libpliant_runtime.a ]] || fail "BUILD_SHARED_LIBS=OFF is not obeyed"
 echo "as it should be"

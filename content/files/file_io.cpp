@@ -40,7 +40,7 @@ Result<Bytes> read_file(const fs::path& path, const Limit& limit) {
 Result<Bytes> read_beginning(const fs::path& path, const Limit& limit, std::uint64_t wanted) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (error || !fs::exists(status)) return Error{path.string(), "no such file", "check the path"};
+  if (error || !fs::exists(status)) return Error{path.string(), "no such file", "check the path", "file.missing"};
   if (!fs::is_regular_file(status)) return Error{path.string(), "is not a regular file", "name a file"};
   const std::uint64_t size = std::min<std::uint64_t>(fs::file_size(path, error), wanted);
   if (error) return Error{path.string(), "its size cannot be read: " + error.message(), "check the path"};

@@ -1,10 +1,13 @@
 // Output of a Session (pliant/session.h): readings, deformed vertices, forces on them, the stream.
 #include <algorithm>
+#include <chrono>
 #include <limits>
+#include <thread>
 
 #include "engine/run/limits.h"
 #include "engine/session/session_run.h"
 #include "systems/soft/soft_state.h"
+#include "systems/touch/feed/publish.h"
 #include "systems/touch/feed/touch_events.h"
 
 namespace pliant {
@@ -49,11 +52,21 @@ Result<std::vector<Note>> Session::findings() const {
   return notes;
 }
 
+// The touch clock stops publishing for a reader that does not come (publish_paced): what waits is then old, and its
+// next snapshots are awaited, some 4 ms.
 void SessionRun::look() {
-  if (clock())
+  if (!clock()) return view.take_all(world, {ticks, 1.0 / world.simulation.touch_rate, time});
+  constexpr auto kLongest = std::chrono::milliseconds(50);
+  const std::uint64_t wanted = clock()->now();
+  const auto lag = static_cast<std::uint64_t>(2.0 * world.simulation.touch_rate / kPublishRate) + 1;  // [ticks]
+  view.take(world);
+  if (view.tick() + lag >= wanted) return;
+  const auto begin = std::chrono::steady_clock::now();
+  while ((view.tick() < wanted || !view.complete()) && !clock()->paused() && !clock()->done() &&
+         std::chrono::steady_clock::now() - begin < kLongest) {
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
     view.take(world);
-  else
-    view.take_all(world, {ticks, 1.0 / world.simulation.touch_rate, time});
+  }
 }
 
 Status Session::body_contacts(std::vector<BodyContact>& out) {

@@ -158,8 +158,7 @@ bool is_varied(const SessionRun& p, const std::string& name, const Key& key) {
 }
 
 // `sent` is false if a new world follows, which begins with the value.
-Status set_value(SessionRun& p, const std::string& name, const std::string& key_name, const Json& value,
-                 bool sent = true) {
+Status set_value(SessionRun& p, const std::string& name, const std::string& key_name, Json value, bool sent = true) {
   Result<Named> named = find_named(p, name);
   if (!named) return named.error();
   const Result<Found> found = find_named_key(*named, name, key_name, true);
@@ -167,6 +166,7 @@ Status set_value(SessionRun& p, const std::string& name, const std::string& key_
   const Extension* const extension = found->extension;
   const Key* const key = found->key;
   const std::string where = "`" + name + "`: " + key_name;
+  if (key->type == KeyType::kFlag && (value == "true" || value == "false")) value = value == "true";
   if (const std::optional<Note> fault = check_value(*key, value)) return error_at(where, *fault);
   if (named->node.deformable && is_varied(p, name, *key))
     return Error{where, "is varied by an animation of the scene", "change its keys, or remove the channel"};
@@ -184,6 +184,19 @@ Status set_value(SessionRun& p, const std::string& name, const std::string& key_
   keep(p, name, *extension, named->node);
   note_settings(p, name, *extension, *key, before, named->node);
   return Done{};
+}
+
+// Of a varied key, its value at `time` [s].
+Result<Json> value_of(const SessionRun& p, double time, const std::string& object, const std::string& key) {
+  const Result<Named> named = find_named(p, object);
+  if (!named) return named.error();
+  const Result<Found> found = find_named_key(*named, object, key, false);
+  if (!found) return found.error();
+  LevelNode now = named->node;
+  const auto entity = p.find_object(object);
+  const Varying* const varying = entity ? p.world.registry.find<Varying>(*entity) : nullptr;
+  if (varying && now.deformable) vary(*varying, time, *now.deformable);
+  return found->key->get(&now);
 }
 
 }  // namespace
@@ -276,17 +289,17 @@ Status Session::set(const std::string& object, const std::string& key, const std
 }
 
 Result<double> Session::get(const std::string& object, const std::string& key) const {
-  const Result<Named> named = find_named(*run_, object);
-  if (!named) return named.error();
-  const Result<Found> found = find_named_key(*named, object, key, false);
-  if (!found) return found.error();
-  LevelNode now = named->node;
-  const auto entity = run_->find_object(object);
-  const Varying* const varying = entity ? run_->world.registry.find<Varying>(*entity) : nullptr;
-  if (varying && now.deformable) vary(*varying, time(), *now.deformable);
-  const Json value = found->key->get(&now);
-  if (!value.is_number()) return Error{"`" + object + "`: " + key, "is no single number"};
-  return value.get<double>();
+  const Result<Json> value = value_of(*run_, time(), object, key);
+  if (!value) return value.error();
+  if (!value->is_number())
+    return Error{"`" + object + "`: " + key, "is no single number", "read it by Session::json()", "call.refused"};
+  return value->get<double>();
+}
+
+Result<std::string> Session::json(const std::string& object, const std::string& key) const {
+  const Result<Json> value = value_of(*run_, time(), object, key);
+  if (!value) return value.error();
+  return value->dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 Result<NamedKeys> Session::keys(const std::string& name) const {

@@ -16,6 +16,7 @@ void SessionView::reset(const World& world) {
   seen = {};
   soft_seen = {};
   ++version_;
+  tick_ = 0, complete_ = true;
   for (auto [entity, pose] : world.registry.view<const Pose>()) {
     Shown shown{entity, pose.matrix(), {}, {}};
     if (const Deformable* surface = world.registry.find<Deformable>(entity)) {
@@ -49,6 +50,7 @@ void SessionView::take(World& world) {
   while (world.snapshots->acquire()) {
     ++version_;
     add(world.snapshots->read());
+    tick_ = world.snapshots->read().tick, complete_ = world.snapshots->read().complete;
     if (seen) seen(world.snapshots->read());
   }
   if (!world.soft_snapshots || !world.soft_snapshots->acquire()) return;

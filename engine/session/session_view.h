@@ -26,6 +26,8 @@ class SessionView {
   // For a soft body without a handle: its initial pose in the scene, which is that of its rest shape. Else to_world().
   mat4 rest_to_world(const World& world, Entity object) const;
   std::uint64_t version() const { return version_; }  // changes when something new was taken
+  std::uint64_t tick() const { return tick_; }        // of the surfaces' newest snapshot
+  bool complete() const { return complete_; }         // no changes up to that tick are left for a next snapshot
   const std::vector<ContactMark>& contacts() const { return contacts_; }
   const std::vector<HandleMark>& handles() const { return handles_; }
 
@@ -45,7 +47,8 @@ class SessionView {
   std::vector<SoftObjectSnapshot> soft_;
   std::vector<ContactMark> contacts_;
   std::vector<HandleMark> handles_;
-  std::uint64_t version_ = 1;
+  std::uint64_t version_ = 1, tick_ = 0;
+  bool complete_ = true;
 };
 
 }  // namespace pliant

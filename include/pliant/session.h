@@ -187,11 +187,14 @@ class Session {
 
   // --- Parameters, set between ticks: keys of a surface, body, probe, tool or its device, or of an effect, by the
   // level format's names (docs/embedding.md lists the live ones). The error tells whether the name, the key or the type
-  // of the value is wrong. `word`: for keys with words, such as `shape`; `values`: for keys with pairs.
+  // of the value is wrong. `word`: for keys with words, such as `shape`, and for flags,
+  // "true" or "false"; `values`: for keys with pairs.
   Status set(const std::string& object, const std::string& key, double value);
   Status set(const std::string& object, const std::string& key, const std::string& word);
   Status set(const std::string& object, const std::string& key, const std::vector<double>& values);
   Result<double> get(const std::string& object, const std::string& key) const;
+  // The same of a key of any type, as JSON: "cubic" in quotes, 800.0, [0.1, 0.2].
+  Result<std::string> json(const std::string& object, const std::string& key) const;
   // Of an object, probe, tool or effect.
   Result<NamedKeys> keys(const std::string& name) const;
 

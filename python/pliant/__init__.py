@@ -25,14 +25,16 @@ from ._session import Body, Contacts, Felt, Hand, Named, Names, Run, Session, ba
 if TYPE_CHECKING:
     from . import env, experiment
     from ._command import fit, plot, study, sweep
+    from ._view import View, view
 
 __all__ = [
     "ArgumentError", "Body", "Contact", "Contacts", "DeviceInfo", "Error", "Event", "Felt", "Hand", "Hit", "UnknownName",
-    "Named", "Names", "Note", "Reading", "Run", "Scene", "Session", "__version__", "batch", "devices", "driver_names",
-    "env", "experiment", "fit", "level_file", "levels", "plot", "register_spring", "study", "sweep",
+    "View",    "Named", "Names", "Note", "Reading", "Run", "Scene", "Session", "__version__", "batch", "devices", "driver_names",
+    "env", "experiment", "fit", "level_file", "levels", "plot", "register_spring", "study", "sweep", "view",
 ]
 
-_LATER = {"fit": "_command", "plot": "_command", "study": "_command", "sweep": "_command", "env": "", "experiment": ""}
+_LATER = {"fit": "_command", "plot": "_command", "study": "_command", "sweep": "_command", "env": "", "experiment": "",
+          "View": "_view", "view": "_view"}
 
 
 def __getattr__(name: str) -> Any:

@@ -52,7 +52,12 @@ class Named:
             raise unknown(attribute, f"parameter of {self.kind.replace('_', ' ')} '{self.name}'", list(keys))
         return keys[attribute]
 
-    def __getitem__(self, key: str) -> float:
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The keys that can be set while it runs, with their values now: numbers, words, lists."""
+        return {key: self[key] for key in self.keys()}
+
+    def __getitem__(self, key: str) -> Any:
         return self._session.get(self.name, key)
 
     def __setitem__(self, key: str, value: Any) -> None:

@@ -123,6 +123,9 @@ class Palpation(_Base):  # type: ignore[misc,valid-type]
             raise argument("Palpation.render", "no episode is under way", "call reset() first")
         return self._session.render(320, 240)[:, :, :3]
 
+    def __repr__(self) -> str:
+        return f"<Palpation of at most {self.presses} presses>"
+
     def close(self) -> None:
         """Ends the episode's session."""
         if self._session is not None:

@@ -69,7 +69,9 @@ py::object Raised::take() {
 }
 
 Failure::Failure(pliant::Error e, std::shared_ptr<Raised> by)
-    : error(std::move(e)), kind(kind_of(error)), cause(std::move(by)), sentence(error.message()) {}
+    : error(std::move(e)), kind(kind_of(error)), cause(std::move(by)), sentence(error.message()) {
+  if (error.code.empty()) error.code = "call.refused";
+}
 
 void wrong_argument(const std::string& where, const std::string& what, const std::string& cure) {
   throw Failure(pliant::Error{where, what, cure, "arguments"});

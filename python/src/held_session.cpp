@@ -58,7 +58,8 @@ std::shared_ptr<HeldSession> HeldSession::open(const pliant::Scene& scene) {
 }
 
 HeldSession::~HeldSession() {
-  if (process_ != g_process) {  // its threads are not in this process
+  if (is_of_parent()) {  // its threads are not in this process
+    (void)window_.release();
     (void)session_.release();
     (void)worker_.release();
     if (pictures_) (void)new pliant::Pictures(std::move(*pictures_));
@@ -89,9 +90,13 @@ HeldSession::Lock::~Lock() {
   held.mutex_.unlock();
 }
 
+bool HeldSession::is_of_parent() const {
+  return process_ != g_process;
+}
+
 void HeldSession::may_call() const {
   if (closed_) throw Failure(pliant::Error{"Session", "is closed", "open another one", "session.closed"});
-  if (process_ != g_process)
+  if (is_of_parent())
     throw Failure(pliant::Error{"Session", "was opened before fork(), in another process",
                                 "open it in the process that uses it", "session.forked"});
   if (owner_ == std::this_thread::get_id())
@@ -100,8 +105,10 @@ void HeldSession::may_call() const {
 }
 
 void HeldSession::close() {
-  if (process_ != g_process || owner_ == std::this_thread::get_id()) may_call();
+  if (is_of_parent() || owner_ == std::this_thread::get_id()) may_call();
   const py::gil_scoped_release without_gil;
+  const std::lock_guard window_lock(window_mutex_);
+  if (window_) window_->end();
   const std::lock_guard lock(mutex_);
   if (closed_.exchange(true)) return;
   if (worker_) worker_->run([&] { pictures_.reset(); });
@@ -126,6 +133,12 @@ const std::string& HeldSession::only_effector(const char* call) const {
 }
 
 void HeldSession::refresh() {
+  if (window_ && window_->open() && pictures_stale_) {  // before the clocks can start again
+    try {
+      ensure_pictures();
+    } catch (const Failure&) {  // the next picture fails likewise, and ends the window with that
+    }
+  }
   if (views_.empty() || session_->running()) return;
   for (auto each = views_.begin(); each != views_.end();) {
     const std::shared_ptr<Vertices> view = each->second.lock();
@@ -164,7 +177,9 @@ void HeldSession::ensure_pictures() {
   if (!worker_) worker_ = std::make_unique<Worker>();
   worker_->run([&] {
     if (std::exchange(pictures_stale_, false)) pictures_.reset();
-    if (!pictures_) pictures_.emplace(check(pliant::Pictures::headless(*session_)));
+    if (!pictures_)
+      pictures_.emplace(check(window_ && window_->open() ? pliant::Pictures::in_current_context(*session_)
+                                                         : pliant::Pictures::headless(*session_)));
   });
 }
 

@@ -11,6 +11,7 @@
 #include <pybind11/pybind11.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -24,6 +25,7 @@
 
 #include "python/src/failure.h"
 #include "python/src/laws.h"
+#include "python/src/view_window.h"
 #include "python/src/worker.h"
 
 namespace pliant_python {
@@ -31,6 +33,38 @@ namespace pliant_python {
 // The vertices of one object, float32; arrays in Python point into it, so it is never resized.
 struct Vertices {
   std::vector<pliant::vec3> at;
+};
+
+class HeldSession;
+
+// A window on a session: a thread of its own draws it, and takes the session's lock for each picture. The clocks of
+// real time have no part in that lock. The OpenGL context is on the session's picture thread.
+class SessionWindow {
+ public:
+  SessionWindow(HeldSession& held, std::unique_ptr<ViewWindow> window) : held_(held), window_(std::move(window)) {}
+  ~SessionWindow() { end(); }
+  void begin() {
+    thread_ = std::thread([this] { run(); });
+  }
+  void end();                // waits for its thread, which may wait for the session's lock
+  void show_in_long_call();  // with the session's lock, which its thread waits for: a picture of the state now
+  bool open() const { return open_; }
+  std::uint64_t pictures() const { return pictures_; }
+  pliant::Error why();  // its code is not empty: what ended it
+
+ private:
+  void run();
+  void draw();    // with the session's lock
+  void let_go();  // with the session's lock: closes the window
+  HeldSession& held_;
+  std::unique_ptr<ViewWindow> window_;
+  std::atomic<bool> open_{true}, ends_{false};
+  std::atomic<std::uint64_t> pictures_{0};
+  std::chrono::steady_clock::time_point drawn_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::duration cost_{0};  // of the last picture; long calls spend a fifth of their time on them
+  std::mutex mutex_;                             // protects why_
+  pliant::Error why_;
+  std::thread thread_;
 };
 
 class HeldSession {
@@ -95,6 +129,18 @@ class HeldSession {
   pliant::Picture picture(const std::optional<pliant::PictureView>& view, int width, int height);
   pliant::PictureView view();
 
+  // A window, drawn beside the session until close_window() or its user closes it. One in a process.
+  void open_window(OpenViewWindow open, int width, int height, const std::string& title);
+  void close_window();
+  struct Shown {
+    bool open = false;
+    std::uint64_t pictures = 0;
+  };
+  Shown window();             // throws what ended it, if that was a failure
+  void show_in_long_call() {  // with the lock
+    if (window_) window_->show_in_long_call();
+  }
+
   const std::vector<std::string>& effectors() const { return effectors_; }
   bool is_tool(const std::string& effector) const;
   const std::string& only_effector(const char* call) const;
@@ -104,11 +150,13 @@ class HeldSession {
   const std::shared_ptr<Raised>& raised() const { return raised_; }
 
  private:
+  friend class SessionWindow;
   struct Lock {
     explicit Lock(HeldSession& of);
     ~Lock();
     HeldSession& held;
   };
+  bool is_of_parent() const;  // opened before a fork()
   void may_call() const;
   void refresh();
   void read_names();
@@ -130,6 +178,8 @@ class HeldSession {
   std::shared_ptr<Raised> raised_ = std::make_shared<Raised>();
   std::unique_ptr<Worker> worker_;
   std::optional<pliant::Pictures> pictures_;
+  std::mutex window_mutex_;  // taken before mutex_: one thread opens or closes
+  std::unique_ptr<SessionWindow> window_;
   bool pictures_stale_ = false;
 };
 

@@ -112,8 +112,12 @@ py::dict run(HeldSession& held, const py::dict& tracks, const py::object& ticks)
   std::vector<bool> tools;
   for (const std::string& name : held.effectors()) tools.push_back(held.is_tool(name));
   Plan plan = plan_of(tracks, ticks, held.effectors(), tools, "path");
-  const bool done = held.advance(
-      [&](pliant::Session& session) { return carry_out(session, plan, "path", [] { return interrupted(); }); });
+  const bool done = held.advance([&](pliant::Session& session) {
+    return carry_out(session, plan, "path", [&] {
+      held.show_in_long_call();
+      return interrupted();
+    });
+  });
   if (!done) throw py::error_already_set();
   return result_of(plan);
 }

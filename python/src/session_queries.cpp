@@ -17,12 +17,12 @@ using Class = SessionClass;
 
 void set(HeldSession& held, const std::string& name, const std::string& key, const py::object& value) {
   const std::string what = "`" + name + "`: " + key;
-  if (py::isinstance<py::str>(value)) {
-    const auto word = value.cast<std::string>();
+  const bool flag = py::isinstance<py::bool_>(value);
+  if (flag || py::isinstance<py::str>(value)) {
+    const auto word = flag ? std::string(value.cast<bool>() ? "true" : "false") : value.cast<std::string>();
     held.advance([&](Session& session) { check(session.set(name, key, word)); });
     return;
   }
-  if (py::isinstance<py::bool_>(value)) wrong_argument(what, "must be a number or a word; got a bool", "");
   const Doubles array = doubles(value, what);
   if (array.ndim() == 0) {
     const double number = *array.data();
@@ -70,13 +70,16 @@ std::optional<Hit> hit_of(const Session& session, const pliant::QueryHit& hit) {
 
 void bind_state(Class& c) {
   c.def("set", &set, py::arg("name"), py::arg("key"), py::arg("value"),
-        "Sets a parameter before the next tick, by the level format's names: a number, a word, or a pair.")
+        "Sets a parameter before the next tick, by the level format's names: a number, a word, a flag, or a list.")
       .def(
           "get",
-          [](HeldSession& h, const std::string& name, const std::string& key) {
-            return h.with([&](Session& s) { return check(s.get(name, key)); });
+          [](HeldSession& h, const std::string& name, const std::string& key) -> py::object {
+            const std::string text = h.with([&](Session& s) { return check(s.json(name, key)); });
+            py::object value = py::module_::import("json").attr("loads")(text);
+            const bool whole = py::isinstance<py::int_>(value) && !py::isinstance<py::bool_>(value);
+            return whole ? py::object(py::float_(value)) : value;
           },
-          py::arg("name"), py::arg("key"), "The value of a parameter that is a number.")
+          py::arg("name"), py::arg("key"), "The value of a parameter: a number, a word, or a list.")
       .def(
           "keys",
           [](HeldSession& h, const std::string& name) {

@@ -109,6 +109,7 @@ void step(HeldSession& held, std::int64_t ticks) {
       if (now - looked < std::chrono::milliseconds(50)) continue;
       looked = now;
       check_end();
+      held.show_in_long_call();
       if (interrupted()) return false;
     }
     return true;
@@ -289,6 +290,7 @@ void bind_sessions(py::module_& module) {
   bind_sources(session);
   bind_state(session);
   bind_queries(session);
+  bind_window(session);
 }
 
 }  // namespace pliant_python

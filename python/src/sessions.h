@@ -14,6 +14,7 @@ using SessionClass = py::class_<HeldSession, std::shared_ptr<HeldSession>>;
 void bind_sessions(py::module_& module);
 void bind_state(SessionClass& session);    // parameters, states, forces, places
 void bind_queries(SessionClass& session);  // names, contacts, geometry, pictures
+void bind_window(SessionClass& session);   // pliant.view
 void bind_results(py::module_& module);    // Contact, Reading, FeltEvent, Hit, Note
 
 }  // namespace pliant_python

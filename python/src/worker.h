@@ -1,4 +1,4 @@
-// A thread that runs one call at a time for a waiting caller: a GL context belongs to one thread.
+// A thread that runs one call at a time for its waiting callers: a GL context belongs to one thread.
 #pragma once
 
 #include <condition_variable>
@@ -25,7 +25,6 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  // One caller at a time.
   template <class Call>
   auto run(Call&& call) {
     using T = std::invoke_result_t<Call>;
@@ -55,6 +54,7 @@ class Worker {
 
  private:
   void give(const std::function<void()>& call) {
+    const std::lock_guard one_caller(callers_);
     std::unique_lock lock(mutex_);
     call_ = &call;
     changed_.notify_all();
@@ -71,7 +71,7 @@ class Worker {
     }
   }
 
-  std::mutex mutex_;
+  std::mutex callers_, mutex_;
   std::condition_variable changed_;
   const std::function<void()>* call_ = nullptr;
   bool ends_ = false;

@@ -42,7 +42,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
      {"runtime", "components", "systems", "content", "engine", "devices", "viewer", "scenes", "plot", "lab", "player",
       "editor", "shaders"}},
     {"examples", {}},
-    {"python", {}},
+    {"python", {"viewer"}},
     {"fuzz", {"runtime", "components", "systems", "content", "engine", "devices"}},
 };
 

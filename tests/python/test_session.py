@@ -193,6 +193,11 @@ def test_live_parameters(session):
     assert session.run(press(0.002)).force[-1, 1] == pytest.approx(1.8, rel=1e-6)
     sheet_["damping_ratio"] = 2
     sheet_.shape = "hertz"
+    assert (sheet_.shape, sheet_.spring) == ("hertz", "linear")
+    sheet_.spring, sheet_.cubic = "cubic", 2e6
+    assert sheet_.spring == "cubic" and sheet_.parameters["cubic"] == 2e6 and list(sheet_.parameters) == sheet_.keys()
+    assert session.run(press(0.002)).force[-1, 1] == pytest.approx(900 * 0.002 + 2e6 * 0.002**3, rel=1e-6)
+    assert session.probes["tip"].coupling == [1000, 5]
     assert "stiffness" in dir(sheet_) and "relaxation.time" in sheet_.keys()
     for wrong in (-1, "high", float("nan"), [1, 2], True, None, 1j):
         with pytest.raises(pl.Error, match="stiffness"):
@@ -293,7 +298,7 @@ def test_rigid_bodies_and_forces():
 def test_what_is_wrong_is_said(session, call, kind, words):
     with pytest.raises(kind, match=words) as caught:
         call(session)
-    assert isinstance(caught.value, pl.Error) and "\n" not in str(caught.value)
+    assert isinstance(caught.value, pl.Error) and "\n" not in str(caught.value) and caught.value.code
     again = pickle.loads(pickle.dumps(caught.value))
     assert str(again) == str(caught.value) and again.code == caught.value.code
     assert session.tick(0, 0.01, 0) == (0, 0, 0)  # and all is well
