@@ -18,11 +18,6 @@ constexpr dvec2 kFingerTip{0.045, -0.076};
 constexpr double kOpenBy = 28.0, kPressedBy = 12.0;  // [degree] from there: where it begins; where a closed grip aims
 constexpr double kFingerRoot = 0.0062, kFingerEnd = 0.0054;  // [m] half its width
 
-double tapered(dvec3 p, dvec3 a, dvec3 b, double from, double to) {
-  const double s = std::clamp(dot(p - a, b - a) / dot(b - a, b - a), 0.0, 1.0);
-  return length(p - a - s * (b - a)) - (from + s * (to - from));
-}
-
 // Along +X from the palm's axis, its hinge at the origin, in the pose in which it begins.
 Solid grasp_finger() {
   const auto at = [](dvec2 p) {

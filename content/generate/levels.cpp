@@ -5,6 +5,7 @@
 #include "content/author/presets.h"
 #include "content/generate/effects_level.h"
 #include "content/generate/fields_level.h"
+#include "content/generate/forceps_level.h"
 #include "content/generate/grasp_level.h"
 #include "content/generate/instrument_levels.h"
 #include "content/generate/lattice_sphere.h"
@@ -298,6 +299,7 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   if (Status s = save_strokes(ball_level, ridged_ball(), ball_strokes(), levels); !s) return s;
   if (Status s = write_tool_levels(levels); !s) return s;
   if (Status s = write_grasp_level(levels); !s) return s;
+  if (Status s = write_forceps_level(levels); !s) return s;
   if (Status s = write_instrument_levels(levels); !s) return s;
   if (Status s = write_fields_level(levels); !s) return s;
   if (Status s = write_layers_level(levels); !s) return s;

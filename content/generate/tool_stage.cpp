@@ -51,12 +51,15 @@ Path lead(const std::vector<Waypoint>& waypoints) {
   for (int row = 0; row <= rows; ++row) {
     const double t = row / kScriptRate;
     dvec3 position = waypoints.front().position, turn = waypoints.front().turn;
+    double grip = waypoints.front().grip;
     for (std::size_t i = 1; i < waypoints.size(); ++i) {
       const double s = smooth_step(waypoints[i - 1].time, waypoints[i].time, t);
       position += (waypoints[i].position - waypoints[i - 1].position) * s;
       turn += (waypoints[i].turn - waypoints[i - 1].turn) * s;
+      grip += (waypoints[i].grip - waypoints[i - 1].grip) * s;
     }
-    path.rows.push_back({t, position, glm::normalize(dquat(glm::radians(turn)))});
+    path.grips |= grip > 0.0;
+    path.rows.push_back({t, position, glm::normalize(dquat(glm::radians(turn))), std::clamp(grip, 0.0, 1.0)});
   }
   return path;
 }
@@ -78,6 +81,11 @@ Solid ball(double radius) {
 
 Solid torus(double major, double minor) {
   return [major, minor](dvec3 p) { return length(dvec2(length(dvec2(p.x, p.z)) - major, p.y)) - minor; };
+}
+
+double tapered(dvec3 p, dvec3 a, dvec3 b, double from, double to) {
+  const double s = std::clamp(dot(p - a, b - a) / dot(b - a, b - a), 0.0, 1.0);
+  return length(p - a - s * (b - a)) - (from + s * (to - from));
 }
 
 std::int32_t add_tissue(Level& level, const std::string& preset, float thickness) {

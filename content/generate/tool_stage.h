@@ -17,9 +17,10 @@ inline constexpr vec3 kSkin{0.72f, 0.42f, 0.32f}, kStone{0.42f, 0.44f, 0.47f},
 
 // A device pose at a time; the motion between waypoints is smooth.
 struct Waypoint {
-  double time;     // [s]
-  dvec3 position;  // [m]
-  dvec3 turn;      // [degree] about x, then y, then z
+  double time;        // [s]
+  dvec3 position;     // [m]
+  dvec3 turn;         // [degree] about x, then y, then z
+  double grip = 0.0;  // [1] 0 open to 1 closed
 };
 
 // Samples the path through the waypoints at 100 Hz; velocity and acceleration are continuous.
@@ -29,6 +30,8 @@ Box around(dvec3 half);
 // A box with these half edges [m] and rounded edges and corners, centred at the origin.
 Solid rounded_box(dvec3 half, double radius);
 Solid ball(double radius);
+// Distance to a capsule from a to b whose radius goes from `from` to `to`. [m]
+double tapered(dvec3 p, dvec3 a, dvec3 b, double from, double to);
 // A torus about +Y. [m]
 Solid torus(double major, double minor);
 

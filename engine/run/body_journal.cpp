@@ -76,6 +76,7 @@ BodyJournal::BodyJournal(const World& world, std::size_t steps)
 void BodyJournal::note(std::uint64_t step, double time) {
   note_bodies(step, time);
   note_touch();
+  note_pairs();
 }
 
 void BodyJournal::note_bodies(std::uint64_t step, double time) {
@@ -109,6 +110,37 @@ void BodyJournal::note_touch() {
     tool->count.store(static_cast<std::uint32_t>(std::count(tool->now.begin(), tool->now.end(), 1)),
                       std::memory_order_relaxed);
   }
+}
+
+BodyJournal::Pair& BodyJournal::pair_of(std::uint64_t key) {
+  auto at =
+      std::lower_bound(pairs_.begin(), pairs_.end(), key, [](const Pair& p, std::uint64_t k) { return p.key < k; });
+  if (at == pairs_.end() || at->key != key) at = pairs_.insert(at, Pair{key});
+  return *at;
+}
+
+void BodyJournal::note_pairs() {
+  const double T = soft_.impulse_time;
+  for (const ContactPoint& contact : soft_.contacts) {
+    if (!(contact.impulse.x > 0.0) || contact.hold.joint >= 0) continue;
+    const auto [low, high] = std::minmax(contact.body_a, contact.body_b);
+    pair_of(std::uint64_t{low} << 32 | high).now += contact.impulse.x;
+  }
+  for (Pair& pair : pairs_) {
+    if (!(pair.now > 0.0)) continue;
+    pair.largest = std::max(pair.largest, pair.now / T);
+    pair.time += soft_.step;
+    pair.now = 0.0;
+  }
+}
+
+std::vector<PressedPair> BodyJournal::pressed_pairs() const {
+  std::vector<PressedPair> out;
+  for (const Pair& pair : pairs_) {
+    const Entity a = soft_.bodies[pair.key >> 32]->entity, b = soft_.bodies[pair.key & 0xffffffff]->entity;
+    out.push_back({a, b, pair.largest, pair.time});
+  }
+  return out;
 }
 
 std::uint32_t BodyJournal::touching(Entity tool) const {

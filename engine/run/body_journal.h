@@ -21,6 +21,14 @@ struct BodyRow {
   dquat rotation{1, 0, 0, 0};  // object frame to world; for a soft body without a handle, the best-fit rotation
 };
 
+// Two bodies that press on each other, or a body that presses on itself. Force: sum of the normal forces of their
+// contacts.
+struct PressedPair {
+  Entity a, b;           // the same twice: self-contact
+  double largest = 0.0;  // [N]
+  double time = 0.0;     // [s] pressed
+};
+
 class BodyJournal {
  public:
   // Covers every moving body, tool and probe among bodies of a prepared world with World::soft. Has room for the rows
@@ -38,6 +46,8 @@ class BodyJournal {
   Entity touches_most(Entity tool) const;
   // Everything this tool has pressed on since the start. Valid while the soft clock is stopped.
   std::vector<Entity> touched(Entity tool) const;
+  // Every pair that has pressed since the start. Valid while the soft clock is stopped.
+  std::vector<PressedPair> pressed_pairs() const;
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
@@ -51,6 +61,7 @@ class BodyJournal {
   };
   void note_bodies(std::uint64_t step, double time);
   void note_touch();
+  void note_pairs();
 
   const SoftState& soft_;
   std::vector<Entity> bodies_;
@@ -58,6 +69,14 @@ class BodyJournal {
   std::vector<dquat> rotation_;           // per body: the last rotation, start of the next search
   std::vector<std::vector<dvec3>> rest_;  // [m] object frame, per node from the centre of mass; deformable bodies only
   std::vector<std::unique_ptr<Tool>> tools_;
+  struct Pair {
+    std::uint64_t key = 0;  // both indices into SoftState::bodies, the smaller one first
+    double now = 0.0;       // [N s] of the current step
+    double largest = 0.0;   // [N]
+    double time = 0.0;      // [s]
+  };
+  Pair& pair_of(std::uint64_t key);
+  std::vector<Pair> pairs_;  // ascending by key; grows with the first contact of a pair
   Recorder<BodyRow> recorder_;
 };
 

@@ -57,6 +57,9 @@ class Journal {
   const std::vector<AwakeStats>& awake() const { return awake_; }
   // Everything this probe or tool has pressed on since the start.
   std::vector<Entity> touched(Entity hand) const;
+  std::vector<PressedPair> pressed_pairs() const {
+    return bodies_ ? bodies_->pressed_pairs() : std::vector<PressedPair>();
+  }
   std::uint64_t ticks() const { return ticks_; }
   std::uint64_t lost() const { return recorder_.lost(); }
   std::uint64_t events_lost() const { return events_.lost(); }

@@ -157,8 +157,18 @@ OrderedJson systems(const Schedule<World>& schedule) {
   return list;
 }
 
+OrderedJson pairs(const World& world, const Journal& journal) {
+  OrderedJson list = OrderedJson::array();
+  for (const PressedPair& pair : journal.pressed_pairs()) {
+    const OrderedJson between = names(world, {pair.a, pair.b});
+    list.push_back({{"a", between[0]}, {"b", between[1]}, {"max_force_N", pair.largest}, {"contact_s", pair.time}});
+  }
+  return list;
+}
+
 // Figures of the soft clock.
-OrderedJson soft(const SoftClock& clock, const SoftTally& tally) {
+OrderedJson soft(const SoftClock& clock, const World& world, const Journal& journal) {
+  const SoftTally& tally = world.soft->tally;
   const SoftFigures& figures = clock.figures();
   OrderedJson json;
   json["step_ms"] = percentiles(clock.schedule().total(), 1e-3, false);
@@ -169,6 +179,7 @@ OrderedJson soft(const SoftClock& clock, const SoftTally& tally) {
   json["sweeps"] = mean(figures.sweeps_sum, figures.steps);
   json["residual"] = std::max(figures.residual_max, tally.residual);
   json["unconverged"] = tally.unconverged;
+  json["pairs"] = pairs(world, journal);
   json["contacts_cut"] = tally.contacts_cut;
   json["halted"] = tally.halted;
   json["halted_s"] = tally.halted_for;
@@ -200,7 +211,7 @@ std::string report_json(const RunFigures& figures) {
   json["objects"] = objects(figures);
   json["probes"] = probes(figures);
   if (!figures.devices.devices.empty()) json["devices"] = devices(figures);
-  if (figures.soft) json["soft"] = soft(*figures.soft, figures.world.soft->tally);
+  if (figures.soft) json["soft"] = soft(*figures.soft, figures.world, figures.journal);
   if (figures.keeper.keeps_events()) {
     json["events"] = events(figures.keeper);
     json["events_total"] = figures.keeper.happened();

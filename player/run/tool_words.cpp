@@ -10,6 +10,7 @@ namespace pliant {
 namespace {
 
 constexpr double kSaidLimited = 0.01;   // [s]
+constexpr std::size_t kSaidBroken = 3;  // joints by name
 constexpr double kSaidApart = 0.02;     // [1] of the size of a joint
 constexpr double kSaidResidual = 1e-4;  // [m/s] slower creep is invisible
 constexpr double kSaidLoss = 0.02;      // [1] of the run: a smaller loss occurs while the first step compares solvers
@@ -104,9 +105,10 @@ std::vector<Note> explain_soft_steps(const World& world, const SoftFigures& figu
                     tally.unconverged, count(figures.steps, "soft step"), tally.residual),
         "make soft_step shorter, or give bodies in contact more similar masses and stiffnesses");
   const Joints& joints = world.soft->joints;
+  std::size_t broken = 0;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const JointReport& joint = joints.report(i);
-    if (joint.broke_at >= 0.0)
+    if (joint.broke_at >= 0.0 && ++broken <= kSaidBroken)
       add("joint.broke",
           fmt::format("joint `{}` broke at {:.3f} s, under {:.3g} N", joints.name(i), joint.broke_at, joint.largest),
           "raise its `strength`, or pull less");
@@ -126,6 +128,9 @@ std::vector<Note> explain_soft_steps(const World& world, const SoftFigures& figu
                       joint.apart * 1e3),
           "make soft_step shorter, or the masses of joined bodies more similar");
   }
+  if (broken > kSaidBroken)
+    add("joint.broke", fmt::format("{} more joints broke", broken - kSaidBroken),
+        "raise their `strength`, or pull less");
   for (Note& note : explain_sag(world)) notes.push_back(std::move(note));
   const double kept = static_cast<double>(figures.steps) * world.simulation.soft_step;  // [s] lower bound
   if (figures.time_lost > kSaidLoss * (kept + figures.time_lost))

@@ -240,7 +240,6 @@ void linearise(World& world, double T) {
       describe_tool(step, index, tick, tool->pending);
     else
       reduce_tool(step, index, tick, tool->pending);
-    tool->pending.fed = soft.joints.fed() + soft.tally.fed;
     tool->pending.soft_step = std::max(soft.step, tick);  // time until the next one is used
     ++tool->pending.step;
   }
@@ -250,6 +249,7 @@ void publish_models(World& world) {
   if (!world.tools) return;
   for (const auto& tool : world.tools->tools) {
     if (tool->pending.step == 0) continue;
+    tool->pending.fed = world.soft->joints.fed() + world.soft->tally.fed;  // of this step too
     bring_up_to_date(*tool, tool->pending, tool->replay);
     tool->model.write() = tool->pending;
     tool->model.publish();

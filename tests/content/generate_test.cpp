@@ -132,21 +132,44 @@ TEST(Generate, ShippedFilesAreWhatTheGeneratorMakes) {
   const Status done = generate(folder.path);
   ASSERT_TRUE(done.ok()) << done.error().message();
   // Text and plain binaries are compared by bytes; compressed files (whose libraries may differ) by content.
-  for (const char* name : {"minimal.gltf",          "minimal.bin",           "minimal.csv",
-                           "three_probes_a.csv",    "three_probes_b.csv",    "three_probes_c.csv",
-                           "inclusion_a.csv",       "inclusion_b.csv",       "glass_heart_a.csv",
-                           "glass_heart_b.csv",     "glass_heart_c.csv",     "chrome_cushion_a.csv",
-                           "chrome_cushion_b.csv",  "turning_ball_a.csv",    "hand.csv",
-                           "hand_crowd.csv",        "hand_squeeze.csv",      "stack_stylus.csv",
-                           "instrument_stylus.csv", "instrument_finger.csv", "effects_a.csv",
-                           "effects_b.csv",         "effects_c.csv",         "effects_d.csv",
-                           "effects_e.csv",         "effects_f.csv",         "fields_finger.csv",
-                           "fields_rail.csv",       "layers_needle.csv",     "layers_finger.csv",
-                           "palpation.csv",          "grasp.csv"})
+  for (const char* name : {"minimal.gltf",
+                           "minimal.bin",
+                           "minimal.csv",
+                           "three_probes_a.csv",
+                           "three_probes_b.csv",
+                           "three_probes_c.csv",
+                           "inclusion_a.csv",
+                           "inclusion_b.csv",
+                           "glass_heart_a.csv",
+                           "glass_heart_b.csv",
+                           "glass_heart_c.csv",
+                           "chrome_cushion_a.csv",
+                           "chrome_cushion_b.csv",
+                           "turning_ball_a.csv",
+                           "hand.csv",
+                           "hand_crowd.csv",
+                           "hand_squeeze.csv",
+                           "stack_stylus.csv",
+                           "instrument_stylus.csv",
+                           "instrument_finger.csv",
+                           "effects_a.csv",
+                           "effects_b.csv",
+                           "effects_c.csv",
+                           "effects_d.csv",
+                           "effects_e.csv",
+                           "effects_f.csv",
+                           "fields_finger.csv",
+                           "fields_rail.csv",
+                           "layers_needle.csv",
+                           "layers_finger.csv",
+                           "palpation.csv",
+                           "grasp.csv",
+                           "forceps.csv"})
     EXPECT_EQ(bytes_of(folder.path / "levels" / name), bytes_of(kShipped / "levels" / name)) << name;
-  for (const char* name : {"three_probes.glb", "inclusion.glb", "glass_heart.glb", "chrome_cushion.glb",
-                           "turning_ball.glb", "hand.glb", "hand_crowd.glb", "hand_squeeze.glb", "stack.glb",
-                           "instrument.glb", "effects.glb", "fields.glb", "layers.glb", "palpation.glb", "grasp.glb"}) {
+  for (const char* name :
+       {"three_probes.glb", "inclusion.glb", "glass_heart.glb", "chrome_cushion.glb", "turning_ball.glb", "hand.glb",
+        "hand_crowd.glb", "hand_squeeze.glb", "stack.glb", "instrument.glb", "effects.glb", "fields.glb", "layers.glb",
+        "palpation.glb", "grasp.glb", "forceps.glb"}) {
     const Result<Level> made = load_level(folder.path / "levels" / name),
                         shipped = load_level(kShipped / "levels" / name);
     ASSERT_TRUE(made.ok()) << made.error().message();

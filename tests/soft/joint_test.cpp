@@ -7,6 +7,7 @@
 #include "scenes/tet_shapes.h"
 #include "scenes/tool_stage.h"
 #include "systems/prepare_world.h"
+#include "systems/tool/tool_touch_state.h"
 #include "tests/soft/jointed.h"
 
 namespace pliant::test {
@@ -247,6 +248,22 @@ TEST(Joints, BreakBeyondTheirStrength) {
   }
 }
 
+// What it held falls on as if it had never been there.
+TEST(Joints, ARopeThatBreaksLeavesVelocitiesAsTheyAre) {
+  Jointed scene(1.0 / 60.0);
+  const Entity free = scene.box(dvec3(0.04), dvec3(1, 0, 0)), tied = scene.box(dvec3(0.04), dvec3(0));
+  JointParameters rope = of_kind(JointKind::kRope);
+  rope.length = 0.2, rope.strength = 0.5, rope.end = dvec3(0, 0.02, 0);
+  scene.join(rope, tied, kNoEntity, dvec3(0, 0.02, 0));
+  scene.run(0.19);
+  ASSERT_LT(scene.joints().report(0).broke_at, 0.0);
+  scene.run(0.21);
+  EXPECT_GT(scene.joints().report(0).broke_at, 0.19);
+  EXPECT_GT(scene.joints().report(0).largest, rope.strength);
+  EXPECT_EQ(scene.rigid(tied).velocity()[1], scene.rigid(free).velocity()[1]);
+  EXPECT_EQ(scene.rigid(tied).centre().y, scene.rigid(free).centre().y);
+}
+
 TEST(Joints, TissueHangsByItsWeightAndCarriesARigidPart) {
   Jointed scene(1.0 / 60.0);
   SoftBody gel = pile_rubber();
@@ -282,6 +299,22 @@ TEST(Joints, WhatHangsFromAToolIsFelt) {
     EXPECT_NEAR(most.y, -weight, 0.02 * weight) << int(force);
     EXPECT_LT(std::max(std::abs(least.x), std::abs(most.z)), 0.02 * weight) << int(force);
   }
+}
+
+// The account of a hand has the work of gravity on what it is joined to in the step in which that moves.
+TEST(Joints, TheWorkOfTheirBodiesWeightIsCreditedInItsStep) {
+  Jointed scene(1.0 / 60.0);
+  const Handle6 handle;
+  const Entity tool = scene.stage.add_rigid(scenes::box(dvec3(0.03)), RigidBody{}, Pose{}, &handle);
+  const Entity hung = scene.box(dvec3(0.03), dvec3(0.05, 0, 0));
+  scene.join(of_kind(JointKind::kHinge), hung, tool, dvec3(0.02, 0, 0), kAcross);
+  scene.stage.prepare();
+  const double weight = scene.rigid(hung).mass().mass * kG;                   // the tool's own is carried
+  const auto height = [&] { return weight * scene.rigid(hung).centre().y; };  // [J]
+  const double first = height();
+  scene.stage.lead(tool, dvec3(0), 0.3,
+                   [&] { ASSERT_NEAR(scene.stage.world.tools->tools[0]->model.read().fed, first - height(), 1e-12); });
+  EXPECT_LT(height(), first - 1e-3);
 }
 
 TEST(Joints, OfFixedBodiesAndSlidersOfTissueAreRefused) {

@@ -2,65 +2,23 @@
 // friction it slips out.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
-#include "content/level_file.h"
-#include "systems/prepare_world.h"
-#include "systems/schedule.h"
-#include "systems/soft/soft_state.h"
-#include "systems/tool/tool_step.h"
-#include "systems/tool/tool_touch_state.h"
+#include "tests/tool/tool_level_run.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kGraspTick = 1e-3;  // [s]
-
-struct Grasp {
-  World world;
-  Schedule<World> touch{touch_schedule()}, soft{soft_schedule()};
-  std::uint64_t tick = 0, steps = 0;
-  double largest = 0.0;  // [N] on the hand
-
-  explicit Grasp(double friction = 0.0) {
-    Result<Level> level = load_level(std::string(PLIANT_SOURCE_DIR) + "/content/levels/grasp.glb");
-    EXPECT_TRUE(level.ok());
-    Result<World> spawned = spawn(*level);
-    EXPECT_TRUE(spawned.ok());
-    world = std::move(spawned).value();
-    if (friction > 0.0) {
-      for (auto [entity, body] : world.registry.view<SoftBody>())
-        body.friction_static = body.friction_sliding = friction;
-      for (auto [entity, body] : world.registry.view<RigidBody>())
-        body.friction_static = body.friction_sliding = friction;
-    }
-    const Status status = prepare_world(world);
-    EXPECT_TRUE(status.ok());
-  }
-  void run(double until) {
-    const double step = world.simulation.soft_step;
-    for (; static_cast<double>(tick) * kGraspTick < until - 1e-9; ++tick) {
-      const double now = static_cast<double>(tick) * kGraspTick;
-      while (static_cast<double>(steps) * step <= now + 1e-9) {
-        run_soft_step(soft, world, {steps, step, static_cast<double>(steps) * step});
-        ++steps;
-      }
-      touch.run(world, {tick, kGraspTick, now});
-      const HapticDevice& device = world.registry.get<HapticDevice>(find_by_name(world, "palm"));
-      largest = std::max(largest, length(device.force_sent));
-    }
-  }
-  const Body& body(const char* name) const {
-    const Entity entity = find_by_name(world, name);
-    return **std::find_if(world.soft->bodies.begin(), world.soft->bodies.end(),
-                          [&](const auto& b) { return b->entity == entity; });
-  }
-  dvec3 ball() const {  // [m] its middle
-    dvec3 sum(0.0);
-    for (const dvec3& x : body("ball").surface_position) sum += x;
-    return sum / static_cast<double>(body("ball").surface_position.size());
-  }
+struct Grasp : test::ToolLevelRun {
+  explicit Grasp(double friction = 0.0)
+      : ToolLevelRun("grasp", [&](World& world) {
+          if (friction == 0.0) return;
+          for (auto [entity, body] : world.registry.view<SoftBody>())
+            body.friction_static = body.friction_sliding = friction;
+          for (auto [entity, body] : world.registry.view<RigidBody>())
+            body.friction_static = body.friction_sliding = friction;
+        }) {}
+  dvec3 ball() const { return middle("ball"); }
   double leans() const {  // [1] cosine of the palm's tilt
     return (body("palm").pose_after(0.0)->rotation * dvec3(0, 1, 0)).y;
   }

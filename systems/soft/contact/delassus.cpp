@@ -317,17 +317,19 @@ void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& con
 SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
                             double beta, const SweepLimits& limits, Delassus& delassus,
                             std::vector<ContactPoint>& contacts, ContactProblem& problem, Crossings* left,
-                            const Joints* joints) {
+                            Joints* joints) {
   problem.own.clear();
   const double free_energy = joints ? joints->kinetic_energy(bodies) : 0.0;
   pass_first_stage(bodies, T, beta, limits, delassus, contacts, problem);
   SweepReport report = solve(problem, limits);
-  for (int round = 0; joints && round < kJointRounds && joints->stiffen(bodies, contacts, problem.impulse, T);
-       ++round) {
+  const auto solve_anew = [&] {
     build_problem(bodies, contacts, T, beta, delassus, problem);
     pass_first_stage(bodies, T, beta, limits, delassus, contacts, problem);
     report = solve(problem, limits);
-  }
+  };
+  for (int i = 0; joints && i < kJointRounds && joints->stiffen(bodies, contacts, problem.impulse, T); ++i)
+    solve_anew();
+  for (int i = 0; joints && i < kJointRounds && joints->snap(problem.impulse, T, contacts); ++i) solve_anew();
   apply_impulses(bodies, delassus, contacts, problem.impulse);
   for (int round = 0;; ++round) {
     keep_impulses(problem, contacts);
@@ -342,9 +344,7 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
     }
     Vector applied = Vector::Zero(3 * static_cast<Eigen::Index>(contacts.size()));
     applied.head(3 * static_cast<Eigen::Index>(known)) = problem.impulse.head(3 * static_cast<Eigen::Index>(known));
-    build_problem(bodies, contacts, T, beta, delassus, problem);
-    pass_first_stage(bodies, T, beta, limits, delassus, contacts, problem);
-    report = solve(problem, limits);
+    solve_anew();
     const Vector whole = problem.impulse.head(applied.size()), more = whole - applied;
     for (std::uint32_t b = 0; b < bodies.size(); ++b)  // a staged body has begun anew
       apply_to(b, bodies, delassus, contacts, bodies[b]->staged() ? whole : more);

@@ -47,6 +47,36 @@ void Joints::set_grip(Entity hand, double grip) {
     if (state.joint.hand == hand && hand != kNoEntity) state.grip = std::clamp(grip, 0.0, 1.0);
 }
 
+void Joints::load(JointState& state) const {
+  JointReport& report = state.report;
+  report.largest = std::max(report.largest, report.force);
+  if (state.joint.strength > 0.0 && report.force > state.joint.strength && report.broke_at < 0.0)
+    report.broke_at = end_;
+}
+
+bool Joints::snap(const Vector& impulses, double T, std::vector<ContactPoint>& contacts) {
+  if (std::none_of(joints_.begin(), joints_.end(), [](const JointState& s) { return s.joint.strength > 0.0; }))
+    return false;
+  for (JointState& state : joints_) state.sum = dvec3(0.0);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (contacts[i].hold.joint < 0) continue;
+    const double* const l = &impulses[3 * static_cast<Eigen::Index>(i)];
+    joints_[static_cast<std::size_t>(contacts[i].hold.joint)].sum += contacts[i].axes * dvec3(l[0], l[1], l[2]);
+  }
+  bool any = false;
+  for (JointState& state : joints_) {
+    if (state.report.broke_at >= 0.0 || length(state.sum) <= T * state.joint.strength) continue;
+    state.report.force = length(state.sum) / T;
+    load(state);
+    any |= state.report.broke_at >= 0.0;
+  }
+  const auto is_broken = [&](const ContactPoint& c) {
+    return c.hold.joint >= 0 && joints_[static_cast<std::size_t>(c.hold.joint)].report.broke_at >= 0.0;
+  };
+  if (any) std::erase_if(contacts, is_broken);
+  return any;
+}
+
 double Joints::fed() const {
   double sum = 0.0;
   for (const JointState& state : joints_) sum += state.report.fed;

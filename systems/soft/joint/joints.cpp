@@ -224,6 +224,7 @@ void Joints::take_out(std::vector<ContactPoint>& contacts) {
 
 void Joints::place(const std::vector<std::unique_ptr<Body>>& bodies, Tick tick, std::vector<ContactPoint>& contacts) {
   const double T = tick.dt;
+  end_ = tick.time + T;
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     JointState& state = joints_[j];
     Body &a = *bodies[state.a.body], &b = *bodies[state.b.body];
@@ -347,11 +348,11 @@ bool Joints::stiffen(const std::vector<std::unique_ptr<Body>>& bodies, const std
 void Joints::measure(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
                      Tick tick) {
   if (joints_.empty()) return;
-  std::vector<dvec3> impulse(joints_.size(), dvec3(0.0));
+  for (JointState& state : joints_) state.sum = dvec3(0.0);
   for (const ContactPoint& c : contacts) {
     if (c.hold.joint < 0) continue;
     const auto j = static_cast<std::size_t>(c.hold.joint);
-    impulse[j] += c.axes * c.impulse;
+    joints_[j].sum += c.axes * c.impulse;
     if (c.hold.axes != kFirst || !(c.hold.softness.x > 0.0)) continue;
     JointReport& report = joints_[j].report;
     const double arm = joints_[j].joint.kind == JointKind::kHinge ? joints_[j].arm : 1.0;
@@ -360,12 +361,9 @@ void Joints::measure(const std::vector<std::unique_ptr<Body>>& bodies, const std
         c.impulse.x * dot(c.axes[0], bodies[c.body_a]->velocity_of(c.a) - bodies[c.body_b]->velocity_of(c.b));
     if (std::abs(c.impulse.x) >= kAtBound * c.hold.most) report.limited_for += tick.dt;
   }
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    JointReport& report = joints_[j].report;
-    report.force = length(impulse[j]) / tick.dt;
-    report.largest = std::max(report.largest, report.force);
-    if (joints_[j].joint.strength > 0.0 && report.force > joints_[j].joint.strength && report.broke_at < 0.0)
-      report.broke_at = tick.time + tick.dt;
+  for (JointState& state : joints_) {
+    state.report.force = length(state.sum) / tick.dt;
+    load(state);
   }
 }
 

@@ -56,7 +56,10 @@ class Joints {
   // contact. True: it grew much, so that the problem is to be built again.
   bool stiffen(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
                const Vector& impulses, double T) const;
-  // After the step's solution: their forces; those beyond their strength break.
+  // Breaks those whose impulses [N s], three per contact, exceed their strength, and takes their points out of the
+  // contacts: the step is to be solved without them, so that what they held keeps its velocity. True: one broke.
+  bool snap(const Vector& impulses, double T, std::vector<ContactPoint>& contacts);
+  // After the step's solution: their forces; those that only the last correction brought beyond their strength break.
   void measure(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts, Tick tick);
 
   std::size_t size() const { return joints_.size(); }
@@ -88,6 +91,7 @@ class Joints {
     double target = 0.0;                     // [rad], [m] where its spring is at rest, at the step's end
     std::array<dvec3, kMostPoints> apart{};  // [m] between the points of two tissues at the beginning
     std::array<dvec3, kMostRows> impulse{};  // [N s] of the last step
+    dvec3 sum{0};                            // [N s] of its points
     JointReport report;
   };
   // A point that the joint holds, or pushes.
@@ -115,9 +119,11 @@ class Joints {
   static void add_frames(const JointState& state, const Pose& a, const Pose& b, Rows& out);
   static void add_free_axis(const JointState& state, const Pose& a, const Pose& b, Rows& out);
 
+  void load(JointState& state) const;  // breaks it if its force is beyond its strength
   static dmat3 turning_stiffness(const RigidState& body, dvec3 at, dvec3 force);
 
   std::vector<JointState> joints_;
+  double end_ = 0.0;                      // [s] of the current step
   mutable std::vector<dmat3> stiffness_;  // [N m/rad] per body
   mutable Rows rows_;
   std::unique_ptr<Mesh> nothing_ = std::make_unique<Mesh>();  // of the world's body
