@@ -39,6 +39,8 @@ struct RigidBody : RigidBodyParameters {
   Handle<Mesh> collision_mesh;  // set at spawn
 };
 
+inline constexpr std::size_t kMostRigidParts = 32;  // of a soft body
+
 // Bounds of their parameters, in a file and in code.
 struct SoftBodyRange {
   static constexpr Range kYoung{0.0, 1e12, true};   // [Pa]

@@ -86,9 +86,10 @@ struct CarriedPart {
 
 struct TetMesh {
   std::string name;
-  std::vector<dvec3> nodes;        // [m] rest. Order: free ones, then those on the handle, then the pinned
-  std::uint32_t free_count = 0;    // nodes [0, free_count) are free
-  std::uint32_t handle_count = 0;  // nodes [free_count, free_count + handle_count) belong to the rigid handle
+  std::vector<dvec3> nodes;                 // [m] rest. Order: free, on the handle, of each further rigid part, pinned
+  std::uint32_t free_count = 0;             // nodes [0, free_count) are free
+  std::uint32_t handle_count = 0;           // nodes [free_count, free_count + handle_count) belong to the rigid handle
+  std::vector<std::uint32_t> rigid_counts;  // nodes of each further rigid part (SoftBody::rigid), after the handle's
   std::vector<Tet> tets;
   // Of a lattice of hexahedra: they carry the elasticity. Tetrahedra 6 k to 6 k + 5 divide cell k, for what is
   // embedded.
@@ -107,7 +108,12 @@ struct TetMesh {
   TetReport report;
 
   std::uint32_t node_count() const { return static_cast<std::uint32_t>(nodes.size()); }
-  std::uint32_t pinned_begin() const { return free_count + handle_count; }
+  std::uint32_t rigid_begin() const { return free_count + handle_count; }
+  std::uint32_t pinned_begin() const {
+    std::uint32_t end = rigid_begin();
+    for (const std::uint32_t count : rigid_counts) end += count;
+    return end;
+  }
 };
 
 }  // namespace pliant

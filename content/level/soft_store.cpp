@@ -16,7 +16,7 @@ namespace {
 
 fs::path g_soft_store;
 
-constexpr std::uint64_t kBegin = 0x35746f6f66546c50, kEnd = ~kBegin;  // of a file
+constexpr std::uint64_t kBegin = 0x36746f6f66546c50, kEnd = ~kBegin;  // of a file
 
 // A structured binding names every member: a new one stops the build here.
 void visit_members(auto& io, auto& of, const BuiltMesh*) {
@@ -40,11 +40,12 @@ void visit_members(auto& io, auto& of, const DrawMesh*) {
   io(vertices, indices, parts);
 }
 void visit_members(auto& io, auto& of, const TetMesh*) {
-  auto& [name, nodes, free_count, handle_count, tets, cells, volume, group, factors, embedding, samples, parts,
-         cavities, start, quality, report] = of;
+  auto& [name, nodes, free_count, handle_count, rigid_counts, tets, cells, volume, group, factors, embedding, samples,
+         parts, cavities, start, quality, report] = of;
   // Carried nodes, contact keys, materials of parts and cavities belong to a World.
   ASSERT(parts.empty() && samples.empty() && factors.empty() && cavities.empty());
-  io(name, nodes, free_count, handle_count, tets, cells, volume, group, embedding, start, quality, report);
+  io(name, nodes, free_count, handle_count, rigid_counts, tets, cells, volume, group, embedding, start, quality,
+     report);
 }
 void visit_members(auto& io, auto& of, const TetReport*) {
   auto& [cell, coarsest, wall, parts_dropped, volume_dropped, thin, least_thickness, thinnest, notes, findings] = of;
@@ -166,6 +167,7 @@ LevelNode only_tissue(const LevelNode& node) {
   body.mesh = node.soft_body->mesh;
   body.elements = node.soft_body->elements;
   body.pinned = node.soft_body->pinned;
+  body.rigid = node.soft_body->rigid;
   body.contact = node.soft_body->contact;
   if (node.deformable) {  // sizes of its dents
     out.deformable.emplace();
@@ -194,6 +196,10 @@ std::uint64_t soft_key(const LevelNode& node, const LevelMesh* mesh, const mat4&
   add_text(hash, body.mesh);
   add_named_file(hash, folder, body.mesh);
   add_box(hash, body.pinned);
+  for (const RigidPart& part : body.rigid) {
+    add_text(hash, part.name);
+    for (int i = 0; i < 3; ++i) hash.add(part.box.min[i]), hash.add(part.box.max[i]);
+  }
   hash.add(asked.handle.has_value());
   if (asked.handle) add_box(hash, asked.handle->box);
   for (int column = 0; column < 4; ++column)

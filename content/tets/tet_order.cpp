@@ -30,7 +30,11 @@ void put_in_order(TetMesh& mesh, const std::vector<NodeGroup>& group) {
     return static_cast<std::uint32_t>(std::count(group.begin(), group.end(), which));
   };
   mesh.handle_count = count(NodeGroup::kHandle);
-  mesh.free_count = mesh.node_count() - mesh.handle_count - count(NodeGroup::kPinned);
+  mesh.rigid_counts.clear();
+  for (std::size_t part = 0; const std::uint32_t nodes = count(rigid_group(part)); ++part)
+    mesh.rigid_counts.push_back(nodes);
+  mesh.free_count = count(NodeGroup::kFree);
+  if (group.empty()) mesh.free_count = mesh.node_count();
 
   std::vector<dvec3> nodes(order.size());
   std::vector<std::uint32_t> moved(order.size());

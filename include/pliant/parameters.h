@@ -223,6 +223,13 @@ struct Cavity {
   bool operator==(const Cavity&) const = default;
 };
 
+// A rigid part of a soft body besides its handle: a bone. Tissue, contacts and joints move it.
+struct RigidPart {
+  std::string name;  // for joints
+  DBox box;          // [m] object frame
+  bool operator==(const RigidPart&) const = default;
+};
+
 // Fibres in tissue, along one direction: a stress young (stretch - rest) along them, besides that of the law.
 struct Fibres {
   double young = 0.0;         // [Pa] 0: none
@@ -244,6 +251,7 @@ struct SoftBodyParameters {
   Prony prony;                           // none: elastic
   Fibres fibres;
   std::vector<Cavity> cavities;
+  std::vector<RigidPart> rigid;
   double cell = 0.0;  // [m] lattice cell; 0: sized for some 2,000 tetrahedra
   Elements elements = Elements::kTetrahedra;
   std::vector<TissuePart> materials;  // of parts of the tissue; a later one counts where two overlap
@@ -372,10 +380,13 @@ enum class JointKind : std::uint8_t {
   kRope,    // pulls alone: the ends are at most `length` apart
 };
 
+inline constexpr const char* kHandlePart = "handle";  // JointParameters::part_a of a tool's handle
+
 // Connects two soft or rigid bodies, or a body and the world, at the node's frame. Keys of PLIANT_joint.
 struct JointParameters {
   JointKind kind = JointKind::kBall;
   std::string a, b;                    // names of the bodies; b empty: the world
+  std::string part_a, part_b;          // rigid parts of soft bodies a, b; "handle": the handle; empty: the tissue
   std::array<double, 2> limits{0, 0};  // [rad] of a hinge, [m] of a slider, from where it begins; equal: none
   double stiffness = 0.0;  // hinge [N m/rad], slider [N/m]: of a spring to `rest`; rope [N/m]: 0, it does not stretch
   double damping = 0.0;    // [N m s/rad], [N s/m] of that spring

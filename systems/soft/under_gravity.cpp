@@ -27,8 +27,8 @@ dvec3 gravity_of(const World& world, Entity entity) {
 
 // The pose of a tool is set by its handle; it always begins in equilibrium.
 bool decides(const World& world, Entity entity, const SoftBody& body, const TetMesh& tets) {
-  return body.under_gravity != UnderGravity::kFalls && length(world.simulation.gravity) > 0.0 &&
-         !(world.registry.has<Handle6>(entity) && tets.handle_count > 0);
+  return body.under_gravity != UnderGravity::kFalls && tets.rigid_counts.empty() &&
+         length(world.simulation.gravity) > 0.0 && !(world.registry.has<Handle6>(entity) && tets.handle_count > 0);
 }
 
 void begin_body(const SoftBody& body, dvec3 gravity, TetMesh& tets) {

@@ -18,7 +18,7 @@ struct Bar {
   Mesh collision_mesh;
 };
 
-enum class Role : std::uint8_t { kFree, kHandle, kPinned };
+enum class Role : std::uint8_t { kFree, kHandle, kBoneA, kBoneB, kPinned };  // bones: further rigid parts
 
 // `role` of a node by its place in the grid; `cell` [m].
 template <class RoleOf>
@@ -26,7 +26,8 @@ Bar make_bar(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double cell, 
   Bar bar;
   // Nodes in the order that TetMesh wants.
   std::map<std::array<std::uint32_t, 3>, std::uint32_t> number;
-  for (const Role wanted : {Role::kFree, Role::kHandle, Role::kPinned})
+  for (const Role wanted : {Role::kFree, Role::kHandle, Role::kBoneA, Role::kBoneB, Role::kPinned}) {
+    const std::uint32_t before = bar.tets.node_count();
     for (std::uint32_t i = 0; i <= nx; ++i)
       for (std::uint32_t j = 0; j <= ny; ++j)
         for (std::uint32_t k = 0; k <= nz; ++k)
@@ -36,6 +37,9 @@ Bar make_bar(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double cell, 
             bar.tets.free_count += wanted == Role::kFree;
             bar.tets.handle_count += wanted == Role::kHandle;
           }
+    const bool bone = wanted == Role::kBoneA || wanted == Role::kBoneB;
+    if (bone && bar.tets.node_count() > before) bar.tets.rigid_counts.push_back(bar.tets.node_count() - before);
+  }
 
   for (std::uint32_t i = 0; i < nx; ++i)
     for (std::uint32_t j = 0; j < ny; ++j)

@@ -25,6 +25,7 @@ struct SurfacePoint {
   std::uint32_t triangle = 0;  // of the collision mesh
   dvec3 barycentric{1, 0, 0};  // [1]
   dvec3 position{0};           // [m] world, at the beginning of the step
+  std::int32_t part = -1;      // >= 0: fixed to this rigid part of a soft body, at `position`
   bool beside = false;         // of a rigid body: its position is not on the triangle (contact_on_arcs.h)
   // Of a split contact on tissue: where its force acts instead, and where its motion is read.
   std::shared_ptr<const SmearedLoad> smeared;
@@ -190,6 +191,8 @@ class Body {
   // --- For joints.
   // Pose of a rigid body's object frame after `T` [s] with its current velocity(); 0: now. None: it deforms.
   virtual std::optional<Pose> pose_after(double T) const { return (void)T, std::nullopt; }
+  // The same of a rigid part of a soft body (SoftBodyState::rigid_part).
+  virtual std::optional<Pose> part_pose(int part, double T) const { return (void)part, (void)T, std::nullopt; }
   // The stiffness [N m/rad] against turning that the joints' forces give a rigid body in a step of T [s], by
   // their levers: beyond 2 I/T^2 it counts as inertia, without which that step would be unstable.
   // Returns whether that grew much.

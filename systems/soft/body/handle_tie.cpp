@@ -15,15 +15,21 @@ Eigen::Vector3d to_eigen(dvec3 v) {
 
 }  // namespace
 
-HandleTie::HandleTie(Attachment attachment, const TissueMaterial& material, const Tissue& tissue, std::uint32_t first)
-    : attachment_(attachment), material_(material), first_(first), row_of_node_(tissue.moving(), kNoNode) {
+HandleTie::HandleTie(Attachment attachment, const TissueMaterial& material, const Tissue& tissue, std::uint32_t first,
+                     const RigidParts* parts)
+    : attachment_(attachment),
+      material_(material),
+      first_(first),
+      parts_(parts),
+      row_of_node_(tissue.moving() + (parts ? 2 * parts->count() : 0), kNoNode) {
   ASSERT(attachment == Attachment::kSlave ? tissue.moving() == first : tissue.moving() > first);
 }
 
 void HandleTie::assemble(Tissue& tissue, const RigidHandle& handle, double T, dvec3 gravity) {
-  const Eigen::Index rows = 3 * static_cast<Eigen::Index>(tissue.moving());
-  right_.resize(rows + 6);
+  const Eigen::Index rows = 3 * static_cast<Eigen::Index>(tissue.moving()), more = parts_ ? parts_->rows() : 0;
+  right_.resize(rows + more + 6);
   right_.head(rows) = tissue.right().head(rows);
+  if (parts_) right_.segment(rows, more) = parts_->right();
   right_.tail<6>().setZero();
   corner_.setZero();
   if (attachment_ == Attachment::kSlave)
@@ -32,18 +38,31 @@ void HandleTie::assemble(Tissue& tissue, const RigidHandle& handle, double T, dv
     spring(tissue, handle, T, gravity);
 }
 
+Grip& HandleTie::border_at(std::uint32_t block_row) {
+  std::uint32_t& at = row_of_node_[block_row];
+  if (at == kNoNode) {
+    at = static_cast<std::uint32_t>(border_.size());
+    border_.push_back({block_row, Grip::Zero()});
+  }
+  return border_[at].value;
+}
+
 void HandleTie::slave(const Tissue& tissue, const RigidHandle& handle) {
   for (HandleRow& row : border_) row.value.setZero();
-  for (const Tissue::Entry& entry : tissue.outer()) {
-    if (row_of_node_[entry.row] == kNoNode) {
-      row_of_node_[entry.row] = static_cast<std::uint32_t>(border_.size());
-      border_.push_back({entry.row, Grip::Zero()});
+  const auto on_part = [&](std::uint32_t node) { return parts_ && parts_->has(node); };
+  for (const Tissue::Entry& entry : tissue.outer())
+    if (!on_part(entry.column)) border_at(entry.row) += entry.value * grip_matrix(handle.arm(entry.column - first_));
+  for (const Tissue::Entry& entry : tissue.corner()) {
+    if (on_part(entry.column)) continue;
+    const Grip moved = entry.value * grip_matrix(handle.arm(entry.column - first_));
+    if (!on_part(entry.row)) {
+      corner_ += grip_matrix(handle.arm(entry.row - first_)).transpose() * moved;
+      continue;
     }
-    border_[row_of_node_[entry.row]].value += entry.value * grip_matrix(handle.arm(entry.column - first_));
+    const auto row = static_cast<std::uint32_t>(tissue.moving() + 2 * parts_->of(entry.row));
+    border_at(row) += moved;
+    border_at(row + 1) += grip_matrix(parts_->arm(entry.row)).rightCols<3>().transpose() * moved;
   }
-  for (const Tissue::Entry& entry : tissue.corner())
-    corner_ += grip_matrix(handle.arm(entry.row - first_)).transpose() *
-               (entry.value * grip_matrix(handle.arm(entry.column - first_)));
   for (std::size_t i = 0; i < handle.node_count(); ++i)
     right_.tail<6>() +=
         grip_matrix(handle.arm(i)).transpose() * tissue.right().segment<3>(3 * static_cast<Eigen::Index>(first_ + i));

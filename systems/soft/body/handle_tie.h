@@ -18,6 +18,7 @@
 
 #include "components/soft_body.h"
 #include "systems/soft/body/handle.h"
+#include "systems/soft/body/rigid_parts.h"
 #include "systems/soft/body/schur.h"
 #include "systems/soft/fem/tissue.h"
 
@@ -29,11 +30,14 @@ inline constexpr double kTieStiffness = 100.0;
 
 class HandleTie {
  public:
-  // The handle's nodes in `tissue` are [first, first + handle.node_count()).
-  HandleTie(Attachment attachment, const TissueMaterial& material, const Tissue& tissue, std::uint32_t first);
+  // The handle's nodes in `tissue` are [first, first + handle.node_count()). `parts`: null without; else they outlive
+  // it.
+  HandleTie(Attachment attachment, const TissueMaterial& material, const Tissue& tissue, std::uint32_t first,
+            const RigidParts* parts = nullptr);
 
   void set_material(const TissueMaterial& material) { material_ = material; }
-  // After tissue.assemble(T, gravity): adds the handle to tissue.inner(), and fills border(), corner(), right().
+  // After tissue.assemble(T, gravity) and parts.assemble(): adds the handle to tissue.inner(), and fills border(),
+  // corner(), right().
   void assemble(Tissue& tissue, const RigidHandle& handle, double T, dvec3 gravity);
   // Adds further terms of the handle: a diagonal of A_hh and a part of b_h.
   void add_to_handle(const Vector6& diagonal, const Vector6& right) {
@@ -43,18 +47,20 @@ class HandleTie {
 
   const std::vector<HandleRow>& border() const { return border_; }  // A_th
   const Matrix6& corner() const { return corner_; }                 // A_hh
-  const Vector& right() const { return right_; }                    // b: tissue's rows, then the handle's six
+  const Vector& right() const { return right_; }                    // b: tissue's and parts' rows, then the handle's
 
   double stiffness = kTieStiffness;  // [1]
 
  private:
   void slave(const Tissue& tissue, const RigidHandle& handle);
+  Grip& border_at(std::uint32_t block_row);
   void spring(Tissue& tissue, const RigidHandle& handle, double T, dvec3 gravity);
 
   Attachment attachment_;
   TissueMaterial material_;
   std::uint32_t first_ = 0;
-  std::vector<std::uint32_t> row_of_node_;  // slave: index into border_ of a node, or 0xffffffff
+  const RigidParts* parts_ = nullptr;
+  std::vector<std::uint32_t> row_of_node_;  // slave: index into border_ of a block row, or 0xffffffff
   std::vector<HandleRow> border_;
   Matrix6 corner_ = Matrix6::Zero();
   Vector right_;

@@ -4,9 +4,10 @@
 
 namespace pliant {
 
-CoupledSolver::CoupledSolver(std::unique_ptr<LinearSolver> tissue, const BlockMatrix& pattern, bool handle)
+CoupledSolver::CoupledSolver(std::unique_ptr<LinearSolver> tissue, const BlockMatrix& pattern, bool handle,
+                             Eigen::Index parts)
     : tissue_(std::move(tissue)),
-      tissue_rows_(3 * static_cast<Eigen::Index>(pattern.size)),
+      tissue_rows_(3 * static_cast<Eigen::Index>(pattern.size) + parts),
       handle_rows_(handle ? 6 : 0) {
   ASSERT(tissue_ != nullptr);
   tissue_->analyse(pattern);

@@ -2,7 +2,8 @@
 //   [A_tt  A_th] [v]   [b_t]      y = A_tt^-1 b_t,  Z = A_tt^-1 A_th  (seven solves),
 //   [A_ht  A_hh] [w] = [b_h]      S = A_hh - A_ht Z,  w = S^-1 (b_h - A_ht y),  v = y - Z w.
 // Vectors and columns contain the tissue's degrees of freedom first and the handle's six last. The tissue's solver only
-// needs factorise and solve. Without a handle this reduces to that solver.
+// needs factorise and solve. Without a handle this reduces to that solver. Further rigid parts (rigid_parts.h) count as
+// tissue here: six rows each, after those of the nodes.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -14,7 +15,7 @@
 
 namespace pliant {
 
-// Coupling of a node to the handle: rows 3 node .. 3 node + 2 of A_th.
+// Coupling of a node to the handle: rows 3 node .. 3 node + 2 of A_th. Of a rigid part: two of these, after the nodes.
 struct HandleRow {
   std::uint32_t node = 0;
   Grip value = Grip::Zero();
@@ -22,7 +23,8 @@ struct HandleRow {
 
 class CoupledSolver {
  public:
-  CoupledSolver(std::unique_ptr<LinearSolver> tissue, const BlockMatrix& pattern, bool handle);
+  // `parts`: rows of rigid parts, of `tissue`'s solutions after those of `pattern`.
+  CoupledSolver(std::unique_ptr<LinearSolver> tissue, const BlockMatrix& pattern, bool handle, Eigen::Index parts = 0);
 
   void place(const std::vector<dvec3>& nodes) { tissue_->place(nodes); }  // LinearSolver::place
   // Factorises and solves for the first right-hand side: x = A^-1 b; x is the initial guess on entry. False: A is not

@@ -8,7 +8,6 @@
 #include "systems/soft/body/tissue_material.h"
 #include "systems/soft/fem/passive_step.h"
 #include "systems/soft/local/dent_spring.h"
-#include "systems/soft/local/smeared_response.h"
 #include "systems/soft/local/smearing_surface.h"
 
 namespace pliant {
@@ -26,7 +25,19 @@ bool has_handle_nodes(const TetMesh& tets, const Handle6* handle) {
 // Slaved nodes have no rows; tied ones, and handle nodes without a handle, do.
 std::uint32_t moving_nodes(const TetMesh& tets, const Handle6* handle) {
   const bool slaved = has_handle_nodes(tets, handle) && handle->attachment == Attachment::kSlave;
-  return slaved ? tets.free_count : tets.pinned_begin();
+  return slaved ? tets.free_count : tets.rigid_begin();
+}
+
+dvec3 box_size(const TetMesh& tets);
+
+std::optional<RigidParts> parts_of(const TetMesh& tets, const Tissue& tissue, const Pose& placement) {
+  if (tets.rigid_counts.empty()) return std::nullopt;
+  return RigidParts(tets, tissue, box_size(tets), placement);
+}
+
+std::unique_ptr<LinearSolver> with_parts(std::unique_ptr<LinearSolver> tissue, const std::optional<RigidParts>& parts) {
+  if (!parts) return tissue;
+  return std::make_unique<PartsSolver>(std::move(tissue), *parts);
 }
 
 dvec3 box_size(const TetMesh& tets) {
@@ -46,7 +57,10 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& surface, const Sof
     : tets_(tets),
       damping_{body.rayleigh[0], body.rayleigh[1]},
       tissue_(tets, material_of(body), moving_nodes(tets, handle)),
-      solver_(solver_of(tissue_, std::move(solver)), tissue_.inner(), has_handle_nodes(tets, handle)) {
+      parts_(parts_of(tets, tissue_, placement)),
+      solver_(with_parts(solver_of(tissue_, std::move(solver)), parts_), tissue_.inner(),
+              has_handle_nodes(tets, handle), parts_ ? parts_->rows() : 0) {
+  ASSERT(!parts_ || !tissue_.large_strain());
   ASSERT(tets.embedding.size() == surface.vertex_count);
   placed_ = placement.rotation;
   collision_mesh = &surface;
@@ -58,14 +72,14 @@ SoftBodyState::SoftBodyState(const TetMesh& tets, const Mesh& surface, const Sof
     settings_ = *handle;
     handle_.emplace(std::span(tets.nodes).subspan(first, count), std::span(tissue_.mass()).subspan(first, count),
                     box_size(tets), placement);
-    tie_.emplace(handle->attachment, material_of(body), tissue_, first);
+    tie_.emplace(handle->attachment, material_of(body), tissue_, first, parts_ ? &*parts_ : nullptr);
     for (std::uint32_t i = 0; i < tets.pinned_begin(); ++i) {
       mass_ += tissue_.mass()[i];
       balance_ += tissue_.mass()[i] * (tets.nodes[i] - handle_->centre());
     }
     balance_ /= mass_;
   }
-  if (!handle_) choose_step(body.integrator);
+  if (!handle_ && !parts_) choose_step(body.integrator);
   for (std::size_t i = 0; i < tets.nodes.size(); ++i) {
     tissue_.position()[i] = placement.to_world(tets.start.empty() ? tets.nodes[i] : tets.start[i]);
     tissue_.velocity()[i] = dvec3(0);
@@ -95,12 +109,17 @@ void SoftBodyState::free_step(double T, dvec3 gravity) {
   if (quasi_static()) std::fill(tissue_.velocity().begin(), tissue_.velocity().end(), dvec3(0));
   tissue_.assemble(stage_ * T, gravity);
   solver_.place(tissue_.position());
+  if (parts_) parts_->assemble(tissue_, parts_fixed_);
   if (handle_) {
     tie_->assemble(tissue_, *handle_, T, gravity);
     couple(T, gravity);
     tie_->add_to_handle(coupling_step_.matrix, coupling_step_.right + T * carry_);
     solvable_ = solver_.factorise(tissue_.inner(), tie_->border(), tie_->corner(), tie_->right(), velocity_);
     separate_tissue(T);
+  } else if (parts_) {
+    Vector right(size());
+    right << tissue_.right().head(part_row(0)), parts_->right();
+    solvable_ = solver_.factorise(tissue_.inner(), {}, Matrix6::Zero(), right, velocity_);
   } else {
     solvable_ = solver_.factorise(tissue_.inner(), {}, Matrix6::Zero(), tissue_.right(), velocity_);
   }
@@ -134,7 +153,10 @@ void SoftBodyState::separate_tissue(double T) {
 }
 
 void SoftBodyState::start_with(dvec3 velocity) {
-  for (std::uint32_t i = 0; i < tissue_.moving(); ++i) tissue_.velocity()[i] = velocity;
+  for (std::uint32_t i = 0; i < (parts_ ? tets_.pinned_begin() : tissue_.moving()); ++i)
+    tissue_.velocity()[i] = velocity;
+  for (std::size_t part = 0; parts_ && part < parts_->count(); ++part)
+    (*parts_)[part].set_velocity(join(velocity, dvec3(0)));
 }
 
 void SoftBodyState::set_material(const TissueMaterial& material) {
@@ -150,12 +172,14 @@ void SoftBodyState::halt() {
   std::fill(tissue_.velocity().begin(), tissue_.velocity().end(), dvec3(0));
   std::fill(surface_velocity.begin(), surface_velocity.end(), dvec3(0));
   if (handle_) handle_->set_velocity(Vector6::Zero());
+  if (parts_) parts_->set_velocity(Vector::Zero(parts_->rows()));
 }
 
 void SoftBodyState::settle(dvec3 gravity) {
   if (!handle_) return;
   const RigidMotion there = handle_->motion();
   tissue_.keep_relaxed(true);
+  parts_fixed_ = true;  // no joint holds them yet
   const double small = kSettled * length(box_size(tets_));
   for (int i = 0; i < kSettleSteps; ++i) {
     check_in();
@@ -168,6 +192,7 @@ void SoftBodyState::settle(dvec3 gravity) {
     if (moved < small) break;
   }
   halt();
+  parts_fixed_ = false;
   tissue_.keep_relaxed(false);
   prescribed_.reset();
 }
@@ -175,6 +200,7 @@ void SoftBodyState::settle(dvec3 gravity) {
 void SoftBodyState::unsettle() {
   const Pose pose = handle_->object_pose();
   for (std::size_t i = 0; i < tets_.nodes.size(); ++i) tissue_.position()[i] = pose.to_world(tets_.nodes[i]);
+  place_parts(pose);
   tissue_.rest_here();
   refresh_surface(tissue_.position(), surface_position);
 }
@@ -222,13 +248,39 @@ void SoftBodyState::advance(double T) {
     handle_->set_velocity(velocity_.tail<6>());
     handle_->advance(T);
     velocity_.tail<6>() = handle_->motion().velocity;
-    for (std::uint32_t i = tissue_.moving(); i < tets_.pinned_begin(); ++i) {
-      x[i] = handle_->motion().pose.position + arm(i);
+    for (std::uint32_t i = tissue_.moving(); i < tets_.rigid_begin(); ++i) {
+      x[i] = handle_->motion().pose.position + handle_->arm(i - tets_.free_count);
       v[i] = node_velocity(i, velocity_);
     }
   }
+  if (parts_) advance_parts(T);
   tissue_.end_step(T);
   refresh_surface(x, surface_position);
+}
+
+void SoftBodyState::advance_parts(double T) {
+  const Eigen::Index rows = parts_->rows();
+  parts_->set_velocity(velocity_.segment(part_row(0), rows));
+  for (std::size_t part = 0; part < parts_->count(); ++part) (*parts_)[part].advance(T);
+  velocity_.segment(part_row(0), rows) = parts_->velocity();
+  for (std::uint32_t i = tets_.rigid_begin(); i < tets_.pinned_begin(); ++i) {
+    tissue_.position()[i] = (*parts_)[parts_->of(i)].motion().pose.position + parts_->arm(i);
+    tissue_.velocity()[i] = node_velocity(i, velocity_);
+  }
+}
+
+void SoftBodyState::place_parts(const Pose& object) {
+  for (std::size_t part = 0; parts_ && part < parts_->count(); ++part) (*parts_)[part].place(object);
+}
+
+std::optional<Pose> SoftBodyState::part_pose(int part, double T) const {
+  if (part < 0 || part >= rigid_count()) return std::nullopt;
+  RigidHandle after = rigid_part(part);
+  if (T > 0.0) {
+    after.set_velocity(velocity_.segment<6>(part_row(part)));
+    after.advance(T);
+  }
+  return after.object_pose();
 }
 
 dvec3 SoftBodyState::node_velocity(std::uint32_t node, const Vector& velocity) const {
@@ -237,8 +289,9 @@ dvec3 SoftBodyState::node_velocity(std::uint32_t node, const Vector& velocity) c
     return {v[0], v[1], v[2]};
   }
   if (!slaved(node)) return dvec3(0);
-  const Vector6 w = velocity.tail<6>();
-  return linear(w) + cross(angular(w), arm(node));
+  const Ride on = ride(node);
+  const Vector6 w = velocity.segment<6>(on.row);
+  return linear(w) + cross(angular(w), on.arm);
 }
 
 void SoftBodyState::refresh_surface(const std::vector<dvec3>& of_nodes, std::vector<dvec3>& of_surface) const {
@@ -251,20 +304,6 @@ void SoftBodyState::refresh_surface(const std::vector<dvec3>& of_nodes, std::vec
   }
 }
 
-template <class Use>
-void SoftBodyState::for_each_node(const SurfacePoint& point, Use use) const {
-  if (point.smeared) {
-    for (const SmearedNode& part : point.smeared->nodes) use(part.node, part.weight);
-    return;
-  }
-  for (int corner = 0; corner < 3; ++corner) {
-    if (point.barycentric[corner] == 0.0) continue;
-    const Embedding& place = tets_.embedding[collision_mesh->triangles[point.triangle][corner]];
-    for (std::size_t k = 0; k < 4; ++k)
-      if (place.weight[k] != 0.0) use(tets_.tets[place.tet][k], point.barycentric[corner] * place.weight[k]);
-  }
-}
-
 LocalElasticity SoftBodyState::elasticity() const {
   return {tissue_.material().young, tissue_.material().poisson};
 }
@@ -273,20 +312,6 @@ dvec3 SoftBodyState::free_velocity(const SmearedLoad& load) const {
   dvec3 sum(0);
   for (const SmearedNode& part : load.nodes) sum += part.weight * node_velocity(part.node, free_velocity_);
   return sum;
-}
-
-void SoftBodyState::add_compliance(std::span<const Side> sides, double T, Eigen::MatrixXd& w) const {
-  if (smearing_) add_local_compliance(*smearing_, elasticity(), sides, T, w);
-}
-
-void SoftBodyState::push(const SurfacePoint& point, dvec3 impulse, Rows& columns, Eigen::Index column) const {
-  for_each_node(point, [&](std::uint32_t node, double weight) {
-    const dvec3 part = weight * impulse;
-    if (node < tissue_.moving())
-      for (int k = 0; k < 3; ++k) columns(3 * node + k, column) += part[k];
-    else if (slaved(node))
-      columns.block<6, 1>(handle_row(), column) += join(part, cross(arm(node), part));  // G^T
-  });
 }
 
 // As for a rigid body: each node gets its share by mass of the force, and of the angular acceleration.
@@ -313,71 +338,10 @@ void SoftBodyState::load(dvec3 force, dvec3 torque, Rows& column) const {
 
 void SoftBodyState::place(const Pose& pose) {
   for (std::size_t i = 0; i < tets_.nodes.size(); ++i) tissue_.position()[i] = pose.to_world(tets_.nodes[i]);
+  place_parts(pose);
   tissue_.rest_here();
   halt();
   refresh_surface(tissue_.position(), surface_position);
-}
-
-// Half a solve instead of a whole one, only at the contacts' nodes (LinearSolver::solve_gram).
-void SoftBodyState::respond(std::span<const PushedSide> sides, Eigen::Index contacts, Compliance& out) const {
-  pushed_.clear(tissue_.moving());
-  AnchorColumns anchors(sides);
-  anchors.push(smearing_.get(), pushed_);
-  for (const PushedSide& side : sides) {
-    if (anchors.has(side)) continue;
-    anchors.open(side.contact, pushed_);
-    const Block axes = to_block(*side.axes);
-    for_each_node(*side.point, [&](std::uint32_t node, double weight) {
-      if (node < tissue_.moving()) pushed_.entries.push_back({node, side.sign * weight * axes});
-    });
-  }
-  anchors.finish(contacts, pushed_);
-  solver_.gram_held(pushed_, out.held);
-  anchors.expand(sides, contacts, out.held, expand_);
-
-  Rows moved = Rows::Zero(3 * contacts, handle_ ? 6 : 0);
-  if (handle_)
-    for (const PushedSide& side : sides)
-      handle_rows(*side.point, *side.axes, side.sign, moved.middleRows<3>(3 * side.contact));
-  out.lever = handle_ ? solver_.lever(moved) : moved;
-  out.held *= response_;
-}
-
-bool SoftBodyState::respond_at(std::span<const Eigen::Index> rows, Rows& out) const {
-  ColumnMix mix;
-  for (const Eigen::Index row : rows) {
-    if (row != kNoRow && expand_.size() == 0) mix.parts.push_back({row, 1.0});
-    for (Eigen::Index k = 0; row != kNoRow && k < expand_.cols(); ++k)
-      if (expand_(row, k) != 0.0) mix.parts.push_back({k, expand_(row, k)});
-    mix.close();
-  }
-  out.resize(size(), mix.count());
-  out.bottomRows(size() - handle_row()).setZero();
-  if (!solver_.solve_kept(mix, out.topRows(handle_row()))) return false;
-  out *= response_;
-  return true;
-}
-
-void SoftBodyState::gather(const SurfacePoint& point, const dmat3& axes, double sign, const Rows& x,
-                           Eigen::Ref<Rows> out) const {
-  const Block along = sign * to_block(axes).transpose();
-  if (point.smeared) {  // hundreds of nodes: their motion is summed up first
-    Rows moved = Rows::Zero(3, x.cols());
-    for_each_node(point, [&](std::uint32_t node, double weight) {
-      if (node < tissue_.moving())
-        moved += weight * x.middleRows<3>(3 * node);
-      else if (slaved(node))
-        moved.noalias() += (weight * grip_matrix(arm(node))).eval() * x.bottomRows<6>();
-    });
-    out.noalias() += along * moved;
-    return;
-  }
-  for_each_node(point, [&](std::uint32_t node, double weight) {
-    if (node < tissue_.moving())
-      out.noalias() += (weight * along) * x.middleRows<3>(3 * node);
-    else if (slaved(node))
-      out.noalias() += (weight * along * grip_matrix(arm(node))).eval() * x.bottomRows<6>();
-  });
 }
 
 // Lumped masses; those of the handle's nodes belong to the handle, however they are attached.
@@ -386,6 +350,9 @@ void SoftBodyState::weigh(const Rows& x, Rows& out) const {
   const std::uint32_t tissue_only = handle_ ? tets_.free_count : tissue_.moving();
   for (std::uint32_t i = 0; i < tissue_.moving(); ++i)
     out.middleRows<3>(3 * i) = (i < tissue_only ? tissue_.mass()[i] : 0.0) * x.middleRows<3>(3 * i);
+  for (std::size_t part = 0; parts_ && part < parts_->count(); ++part)
+    out.middleRows<6>(part_row(static_cast<int>(part))).noalias() =
+        (*parts_)[part].mass_matrix() * x.middleRows<6>(part_row(static_cast<int>(part)));
   if (handle_) out.bottomRows<6>().noalias() = handle_mass_ * x.bottomRows<6>();
 }
 
@@ -393,6 +360,7 @@ Vector SoftBodyState::starting_velocity() const {
   Vector out(size());
   for (std::uint32_t i = 0; i < tissue_.moving(); ++i)
     for (int k = 0; k < 3; ++k) out[3 * i + k] = tissue_.velocity()[i][k];
+  if (parts_) out.segment(part_row(0), parts_->rows()) = parts_->velocity();
   if (handle_) out.tail<6>() = start_;
   return out;
 }

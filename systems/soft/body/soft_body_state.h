@@ -1,12 +1,14 @@
 // A soft body in the soft step, with a rigid handle (a tool) or without one. Degrees of freedom: velocities of its
-// moving nodes, 3 each, then the handle's six. Slaved nodes move with the handle, pinned ones do not move. Writer: the
-// soft clock; one thread at a time, as respond() uses scratch memory.
+// moving nodes, 3 each, then six of each further rigid part, then the handle's six. Slaved nodes move with the handle
+// or their part, pinned ones do not move. Writer: the soft clock; one thread at a time, as respond() uses scratch
+// memory.
 #pragma once
 
 #include <memory>
 #include <optional>
 
 #include "systems/soft/body/handle_tie.h"
+#include "systems/soft/body/rigid_parts.h"
 #include "systems/soft/body/schur.h"
 #include "systems/soft/body/tool_body.h"
 #include "systems/soft/body/two_stages.h"
@@ -68,6 +70,12 @@ class SoftBodyState final : public ToolBody {
 
   const TetMesh& tets() const { return tets_; }
   const Tissue& tissue() const { return tissue_; }
+  // Rigid parts, in the order of SoftBody::rigid; the last is the handle, if it has one.
+  int rigid_count() const { return static_cast<int>(parts_ ? parts_->count() : 0) + (handle_ ? 1 : 0); }
+  const RigidHandle& rigid_part(int part) const {
+    return part == rigid_count() - 1 && handle_ ? *handle_ : (*parts_)[static_cast<std::size_t>(part)];
+  }
+  std::optional<Pose> part_pose(int part, double T) const override;
   void set_tie_stiffness(double ratio) { tie_->stiffness = ratio; }  // [1] handle_tie.h; with spring attachment
   // Of a body whose contacts are split (SoftContact::kSplit); else null.
   const SmearingSurface* smearing() const { return smearing_.get(); }
@@ -97,8 +105,25 @@ class SoftBodyState final : public ToolBody {
   void for_each_node(const SurfacePoint& point, Use use) const;
   void smear();
   bool slaved(std::uint32_t node) const { return node >= tissue_.moving() && node < tets_.pinned_begin(); }
-  Eigen::Index handle_row() const { return 3 * static_cast<Eigen::Index>(tissue_.moving()); }
-  dvec3 arm(std::uint32_t node) const { return handle_->arm(node - tets_.free_count); }
+  Eigen::Index part_row(int part) const { return 3 * static_cast<Eigen::Index>(tissue_.moving()) + 6 * part; }
+  Eigen::Index handle_row() const { return part_row(static_cast<int>(parts_ ? parts_->count() : 0)); }
+  // Of a slaved node: its arm, and the rows of what it is on.
+  struct Ride {
+    Eigen::Index row;
+    dvec3 arm;
+  };
+  Ride ride(std::uint32_t node) const {
+    if (parts_ && parts_->has(node)) return {part_row(static_cast<int>(parts_->of(node))), parts_->arm(node)};
+    return {handle_row(), handle_->arm(node - tets_.free_count)};
+  }
+  Ride ride(const SurfacePoint& point) const {  // of one that is fixed to a rigid part
+    return {part_row(point.part), point.position - rigid_part(point.part).motion().pose.position};
+  }
+  void push_twist(Ride on, dvec3 impulse, Rows& columns, Eigen::Index column) const {  // G^T
+    columns.block<6, 1>(on.row, column) += join(impulse, cross(on.arm, impulse));
+  }
+  void place_parts(const Pose& object);
+  void advance_parts(double T);
   dvec3 node_velocity(std::uint32_t node, const Vector& velocity) const;  // [m/s]
   void separate_tissue(double T);
   std::vector<dvec3> carried_motion() const;  // [m/s] per node
@@ -112,6 +137,8 @@ class SoftBodyState final : public ToolBody {
   const TetMesh& tets_;
   RayleighDamping damping_;
   Tissue tissue_;
+  std::optional<RigidParts> parts_;
+  bool parts_fixed_ = false;
   std::optional<HandleTie> tie_;
   std::optional<TwoStages> stages_;
   double stage_ = 1.0;     // [1] of the step: the length that its matrix is of

@@ -52,26 +52,6 @@ double angle_of(const Pose& a, const Pose& b, double near) {
 
 }  // namespace
 
-Pose Joints::frame_of(const std::vector<std::unique_ptr<Body>>& bodies, const Side& side, double T) {
-  const Pose pose = *bodies[side.body]->pose_after(T);
-  return {pose.to_world(side.frame.position), pose.rotation * side.frame.rotation};
-}
-
-SurfacePoint Joints::point_of(const std::vector<std::unique_ptr<Body>>& bodies, const Side& side, std::size_t i,
-                              double T) {
-  const Body& body = *bodies[side.body];
-  SurfacePoint out = side.on[i];
-  if (side.rigid) {
-    out.position = body.pose_after(T)->to_world(side.point[i]);
-    return out;
-  }
-  const uvec3 corner = body.collision_mesh->triangles[out.triangle];
-  out.position = dvec3(0.0);
-  for (int k = 0; k < 3; ++k) out.position += out.barycentric[k] * body.surface_position[corner[k]];
-  if (T > 0.0) out.position += T * body.velocity_of(out);
-  return out;
-}
-
 // The joint of two rigid bodies: the rows of its frames.
 void Joints::add_frames(const JointState& state, const Pose& a, const Pose& b, Rows& out) {
   const dmat3 f = glm::mat3_cast(b.rotation);
@@ -133,8 +113,11 @@ void Joints::find_rows(const std::vector<std::unique_ptr<Body>>& bodies, const J
     out.push_back(row);
     return;
   }
-  if (state.a.rigid && state.b.rigid)
-    return add_frames(state, frame_of(bodies, state.a, T), frame_of(bodies, state.b, T), out);
+  if (state.a.rigid && state.b.rigid) {
+    add_frames(state, frame_of(bodies, state.a, T), frame_of(bodies, state.b, T), out);
+    for (Row& each : out) each.a.part = state.a.part, each.b.part = state.b.part;
+    return;
+  }
   for (std::size_t i = 0; i < held_points(joint.kind); ++i) {
     row.a = point_of(bodies, state.a, i, T), row.b = point_of(bodies, state.b, i, T);
     row.held = kAll;
@@ -168,12 +151,17 @@ Status Joints::add(const World& world, Entity entity, const Joint& joint, std::v
   Body &a = *bodies[state.a.body], &b = *bodies[state.b.body];
   if (a.size() == 0 && b.size() == 0)
     return Error{where, "joins what does not move: both sides are fixed", "join a body that moves, or remove it"};
-  state.a.rigid = a.pose_after(0.0).has_value(), state.b.rigid = b.pose_after(0.0).has_value();
+  const Result<std::int32_t> of_a = part_of(world, a, where, joint.part_a),
+                             of_b = part_of(world, b, where, joint.part_b);
+  if (!of_a) return of_a.error();
+  if (!of_b) return of_b.error();
+  state.a.part = *of_a, state.b.part = *of_b;
+  state.a.rigid = *of_a >= 0 || a.pose_after(0.0), state.b.rigid = *of_b >= 0 || b.pose_after(0.0);
   const bool tissue = !state.a.rigid || !state.b.rigid;
   if (tissue && (joint.kind == JointKind::kSlider ||
                  (joint.kind == JointKind::kHinge && (has_limits(joint) || has_spring(joint)))))
     return Error{where, "is a slider, or a hinge with limits or a spring, of tissue, which has no single direction",
-                 "join a rigid body there, and that to the tissue by `fixed`"};
+                 "join a rigid part of it (`part_a`, `part_b`), or a rigid body that is `fixed` to it"};
 
   double arm = HUGE_VAL;
   for (const Body* body : {&a, &b})
@@ -184,7 +172,7 @@ Status Joints::add(const World& world, Entity entity, const Joint& joint, std::v
   const auto place = [&](Side& side, bool at_end) {
     const Body& body = *bodies[side.body];
     const Pose* const begun = body.entity == kNoEntity ? nullptr : world.registry.find<Pose>(body.entity);
-    const Pose pose = body.pose_after(0.0).value_or(begun ? *begun : Pose{});
+    const Pose pose = side.rigid ? pose_of(body, side, 0.0) : begun ? *begun : Pose{};
     side.frame = {pose.to_local(frame.position), glm::conjugate(pose.rotation) * frame.rotation};
     for (std::size_t i = 0; i < kMostPoints; ++i) {
       const dvec3 local = pose.to_local(frame.to_world(at_end ? joint.end : arm * kOut[i]));
@@ -204,12 +192,12 @@ Status Joints::add(const World& world, Entity entity, const Joint& joint, std::v
       Side* const rigid = state.a.rigid ? &state.a : state.b.rigid ? &state.b : nullptr;
       const dvec3 on = point_of(bodies, state.a.rigid ? state.b : state.a, i, 0.0).position;
       if (rigid)
-        rigid->point[i] = bodies[rigid->body]->pose_after(0.0)->to_local(on);
+        rigid->point[i] = pose_of(*bodies[rigid->body], *rigid, 0.0).to_local(on);
       else
         state.apart[i] = on - point_of(bodies, state.b, i, 0.0).position;
     }
   }
-  a.joined.push_back(&b), b.joined.push_back(&a);
+  if (&a != &b) a.joined.push_back(&b), b.joined.push_back(&a);
   joints_.push_back(std::move(state));
   return Done{};
 }

@@ -76,6 +76,7 @@ class Joints {
   // One of a joint's bodies.
   struct Side {
     std::uint32_t body = 0;
+    std::int32_t part = -1;                    // >= 0: that rigid part of a soft body
     Pose frame;                                // of a rigid body: the joint's frame in the object's
     std::array<dvec3, kMostPoints> point{};    // [m] of a rigid body joined to tissue, object frame
     std::array<SurfacePoint, kMostPoints> on;  // of tissue
@@ -111,6 +112,10 @@ class Joints {
   void find_rows(const std::vector<std::unique_ptr<Body>>& bodies, const JointState& state, double T, Rows& out) const;
   static SurfacePoint point_of(const std::vector<std::unique_ptr<Body>>& bodies, const Side& side, std::size_t i,
                                double T);
+  // Number of a body's rigid part of this name; -1 of none.
+  static Result<std::int32_t> part_of(const World& world, const Body& body, const std::string& where,
+                                      const std::string& name);
+  static Pose pose_of(const Body& body, const Side& side, double T);  // of a rigid side
   static Pose frame_of(const std::vector<std::unique_ptr<Body>>& bodies, const Side& side, double T);
   // [rad], [m] Where its spring is at rest.
   static double rest_at(const Joint& joint, double grip, double time);
