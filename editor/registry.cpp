@@ -1,4 +1,6 @@
 // Lists every panel, tool and action of the editor. To add one, add a line here.
+#include <algorithm>
+#include <cctype>
 #include <numbers>
 
 #include "editor/app/add.h"
@@ -27,6 +29,7 @@ std::vector<std::unique_ptr<Panel>> make_panels(App& app) {
   panels.push_back(make_file_browser(app));
   panels.push_back(make_keys_page(app));
   panels.push_back(make_settings_panel(app));
+  panels.push_back(make_picture_panel(app));
   panels.push_back(make_start_page(app));
   panels.push_back(make_plots_panel(app));
   panels.push_back(make_error_budget_panel());
@@ -71,6 +74,9 @@ std::vector<Action> make_actions(App& app) {
   add({"file.save_copy", "File", "Save a copy\u2026", "", [&app](Editor&) { app.files().save_copy(); }});
   add({"file.revert", "File", "Revert", "", [&app](Editor&) { app.files().revert(); },
        [](const Editor& e) { return e.document.dirty() && !e.document.file().empty(); }});
+  add({"file.picture", "File", "Save picture or film\u2026", "F12", [&app](Editor&) { app.show_panel("Picture"); },
+       [](const Editor& e) { return !e.state().nodes.empty(); }});
+  all.back().separator = true;
   add({"file.settings", "File", "Settings\u2026", "Ctrl+,", [&app](Editor&) { app.show_panel("Settings"); }});
   all.back().separator = true;
   add({"file.quit", "File", "Quit", "Ctrl+Q", [&app](Editor&) { app.close(); }});
@@ -182,7 +188,22 @@ std::vector<Action> make_actions(App& app) {
   all.back().separator = true;
   toggle("play.contacts", key_row("play.contacts").label, key_row("play.contacts").editor, &ViewSettings::contacts);
   all.back().group = "Play";
+  add({"add.file", "Add", "Mesh from file\u2026", "", [&app](Editor&) { app.files().ask_add(); }});
+  const auto word = [](std::string name) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+    return name;
+  };
+  for (const SimpleShape& shape : shapes())
+    add({std::string("add.") + shape.word, "Add", word(shape.word), "", [&shape](Editor& e) { add_shape(e, shape); }});
+  for (const Instrument& instrument : instruments()) {
+    add({std::string("add.") + instrument.word, "Add", word(instrument.word), "",
+         [&instrument](Editor& e) { add_instrument(e, instrument); },
+         [](const Editor& e) { return touched_object(e) != nullptr; }});
+    all.back().separator = &instrument == instruments().data();
+  }
   add({"add.empty", "Add", "Empty node", "", [](Editor& e) { add_empty(e); }});
+  all.back().separator = true;
   add({"add.probe", "Add", "Probe with a device", "", [](Editor& e) { add_probe(e); }});
   add({"add.effect", "Add", "Effect on probes", "", [](Editor& e) { add_effect(e); }});
   add({"add.light", "Add", "Light", "", [](Editor& e) { add_light(e); }});

@@ -208,6 +208,7 @@ void App::frame(std::span<const InputEvent> arrived, double dt) {
   dirty_picture_ |= was_moving;
 
   play_.update();
+  film.update();
   rendered_.update(editor, *stage_, editor.view.shading == Shading::kRendered && !play_.on());
   picture_ = stage_->picture();
   if (picture_.trouble != said_trouble_) {

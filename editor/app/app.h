@@ -9,6 +9,7 @@
 #include <string>
 
 #include "editor/app/crease_lines.h"
+#include "editor/app/film.h"
 #include "editor/app/findings.h"
 #include "editor/app/guide_lines.h"
 #include "editor/app/layout.h"
@@ -72,7 +73,11 @@ class App {
   ImVec2 viewport_size() const { return {viewport_high_.x - viewport_low_.x, viewport_high_.y - viewport_low_.y}; }
   const StagePicture& picture() const { return picture_; }
   void screenshot(const std::filesystem::path& file);  // of the next frame
-  std::vector<ViewLine> extra_lines;                   // from panels, for the next picture; cleared every frame
+  Film film{*this};                                    // pictures and films of the viewport
+  // An order for a picture of the level alone, without grid, symbols and selection.
+  StageOrder plain_order(const Viewpoint& view, int width, int height);
+  void play_stepwise();               // begins to play, paused
+  std::vector<ViewLine> extra_lines;  // from panels, for the next picture; cleared every frame
 
  private:
   void frame(std::span<const InputEvent> arrived, double dt);
@@ -108,6 +113,7 @@ class App {
   void draw_toasts();
   // `shown` [point]: the drawn size, possibly smaller than the requested one; a drag starts from it.
   void splitter(const char* name, double& place, double shown, bool vertical, ImVec2 low, ImVec2 high, double sign);
+  SolidOrder look_of_document() const;
   void order_picture();
   void draw_opening();  // what takes long to open can be given up
   void ask_to_leave();

@@ -59,6 +59,12 @@ void App::begin_play() {
   play_.toggle();
 }
 
+void App::play_stepwise() {
+  play_.realtime = false;
+  if (!play_.on()) begin_play();
+  play_.pause(true);
+}
+
 void App::step_play(double seconds) {
   play_.step(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(seconds * play_.status().rate))));
 }

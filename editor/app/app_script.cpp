@@ -51,6 +51,7 @@ std::string App::under_way() const {
     const std::vector<std::string> jobs = editor.jobs.under_way();
     return jobs.empty() ? "a job" : jobs.front();
   }
+  if (film.under_way()) return "a film";
   if (editor.painting->working()) return "a stroke";
   if (editor.camera.moving()) return "the camera's way";
   if (play_.on()) return play_.ready() ? "" : "opening the level to play";  // playing redraws forever

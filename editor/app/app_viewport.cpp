@@ -157,12 +157,37 @@ void App::draw_start(ImVec2 low, ImVec2 high) {
   ImGui::End();
 }
 
-void App::order_picture() {
+// The look of the document, from the viewport's camera.
+SolidOrder App::look_of_document() const {
   const ui::Palette& p = ui::palette();
   SolidOrder solid;
   solid.view = editor.camera.viewpoint();
-  solid.orthographic = orthographic();
   solid.settings = editor.view;
+  solid.above = as_vec(p.raised);
+  solid.below = as_vec(p.window);
+  solid.grid = as_vec(p.text, 0.16f);
+  solid.selected_color = as_vec(p.accent);
+  solid.hovered_color = as_vec(p.text, 0.55f);
+  for (int i = 0; i < 3; ++i) solid.axis[i] = as_vec(p.axis[i]);
+  solid.sign = as_vec(p.dim, 0.9f);
+  return solid;
+}
+
+StageOrder App::plain_order(const Viewpoint& view, int width, int height) {
+  StageOrder order;
+  order.width = width;
+  order.height = height;
+  order.solid = look_of_document();
+  order.solid.view = view;
+  order.solid.settings.grid = order.solid.settings.nodes = order.solid.settings.names = false;
+  order.solid.settings.regions = order.solid.settings.normals = false;
+  order.solid.state = editor.state();
+  return order;
+}
+
+void App::order_picture() {
+  SolidOrder solid = look_of_document();
+  solid.orthographic = orthographic();
   solid.selected = editor.selected;
   solid.hovered = editor.hovered;
   solid.lines = extra_lines;
@@ -173,13 +198,6 @@ void App::order_picture() {
   }
   guides_.update(editor);
   solid.guides = guides_.known();
-  solid.above = as_vec(p.raised);
-  solid.below = as_vec(p.window);
-  solid.grid = as_vec(p.text, 0.16f);
-  solid.selected_color = as_vec(p.accent);
-  solid.hovered_color = as_vec(p.text, 0.55f);
-  for (int i = 0; i < 3; ++i) solid.axis[i] = as_vec(p.axis[i]);
-  solid.sign = as_vec(p.dim, 0.9f);
   const bool another =
       !same_scene(solid, ordered_) || solid.hovered != ordered_.hovered || ordered_size_ != viewport_size_now();
   if (!dirty_picture_ && !another && order_ > 0) return;

@@ -1,12 +1,14 @@
-// Files dropped on the window: a level or mesh is opened, a panorama becomes the environment, a script moves a probe,
-// tetrahedra fill a soft body, a folder is shown; others are rejected with a sentence.
+// Files dropped on the window: a level or mesh is added or opened, a panorama becomes the environment, a picture a
+// texture, a script moves a probe, tetrahedra fill a soft body, a folder is shown; others are rejected with a sentence.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <memory>
+#include <utility>
 
 #include "content/files/exr.h"
+#include "content/files/image.h"
 #include "content/level/script.h"
 #include "content/openable.h"
 #include "content/tets/tet_file.h"
@@ -20,7 +22,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Dropped : std::uint8_t { kOpens, kTetrahedra, kPanorama, kScript, kPicture, kFolder, kNothing, kGone };
+enum class Dropped : std::uint8_t {
+  kOpens,
+  kTetrahedra,
+  kPanorama,
+  kScript,
+  kTexture,
+  kPicture,
+  kFolder,
+  kNothing,
+  kGone
+};
 
 Dropped kind_of(const fs::path& file) {
   std::error_code failed;
@@ -35,8 +47,8 @@ Dropped kind_of(const fs::path& file) {
   if (has_ending(file, openable_endings())) return Dropped::kOpens;
   if (ending == ".exr") return Dropped::kPanorama;
   if (ending == ".csv") return Dropped::kScript;
-  if (any_of({".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga", ".tif", ".tiff", ".gif", ".hdr", ".ktx2"}))
-    return Dropped::kPicture;
+  if (any_of({".png", ".jpg", ".jpeg"})) return Dropped::kTexture;
+  if (any_of({".webp", ".bmp", ".tga", ".tif", ".tiff", ".gif", ".hdr", ".ktx2"})) return Dropped::kPicture;
   return Dropped::kNothing;
 }
 
@@ -148,10 +160,76 @@ void tetrahedra(App& app, const fs::path& file) {
             {"Cancel", "", {}}}});
 }
 
+// The object that wears a dropped picture: the selected one, or the only one.
+const DocumentNode* wearer(const Editor& editor) {
+  if (const DocumentNode* const active = editor.active_node(); active && active->node.mesh >= 0) return active;
+  const DocumentNode* only = nullptr;
+  for (const auto& each : editor.state().nodes)
+    if (each->node.mesh >= 0 && std::exchange(only, each.get())) return nullptr;
+  return only;
+}
+
+void put_on(App& app, NodeId id, std::shared_ptr<const Image> image, std::int32_t Material::*place) {
+  const DocumentNode* const node = app.editor.state().find(id);
+  if (!node || node->node.mesh < 0) return;
+  const Primitive& part = app.editor.state().meshes[static_cast<std::size_t>(node->node.mesh)]->primitives[0];
+  std::int32_t number = -1;
+  const State next = with_image(app.editor.state(), *image, number);
+  Material material;
+  material.name = node->node.name;
+  if (part.material >= 0) material = next.materials()[static_cast<std::size_t>(part.material)];
+  material.*place = number;
+  if (place == &Material::base_color_texture) material.base_color = vec4(1.0f, 1.0f, 1.0f, material.base_color.a);
+  constexpr float kUsualRelief = 1e-3f;  // [m]
+  if (place == &Material::height_texture && material.height_scale == 0.0f) material.height_scale = kUsualRelief;
+  if (!app.editor.apply("Texture", with_material(next, id, 0, material))) return;
+  app.editor.view.shading = Shading::kRendered;
+  app.editor.say(
+      fmt::format("{} wears {}; Solid shows it as it is edited", printable(node->node.name), printable(image->name)));
+}
+
+void texture(App& app, const fs::path& file) {
+  const DocumentNode* const node = wearer(app.editor);
+  if (!node)
+    return app.editor.say(
+        fmt::format("{} is a picture: select the object that wears it, then drop it again", name_of(file)),
+        Severity::kWarning);
+  for (const Primitive& part : app.editor.state().meshes[static_cast<std::size_t>(node->node.mesh)]->primitives)
+    if (part.uv.size() != part.position.size())
+      return app.editor.say(fmt::format("{} has no texture coordinates for {}: unwrap its mesh in a modelling program",
+                                        printable(node->node.name), name_of(file)),
+                            Severity::kWarning);
+  Result<Image> image = load_image(file);
+  if (!image) return app.editor.say(image.error().message(), Severity::kError);
+  image->name = file.stem().string();
+  const auto kept = std::make_shared<const Image>(*std::move(image));
+  const auto as = [&](const char* label, const char* hint, std::int32_t Material::*place) {
+    return Answer{label, hint, [&app, id = node->id, kept, place] { put_on(app, id, kept, place); }};
+  };
+  app.ask({fmt::format("What is {} on {}?", name_of(file), printable(node->node.name)),
+           {},
+           {as("Colour", "", &Material::base_color_texture),
+            as("Bumps", "A tangent-space normal map: seen", &Material::normal_texture),
+            as("Relief", "Heights, white above black: seen, and felt on a surface", &Material::height_texture),
+            {"Cancel", "", {}}}});
+}
+
+void add_or_open(App& app, const fs::path& file) {
+  app.ask({fmt::format("Add {} to this level, or open it?", name_of(file)),
+           {},
+           {{"Add", "Beside what is there; undo takes it back", [&app, file] { app.files().add(file); }},
+            {"Open", "Instead of this level", [&app, file] { app.open(file); }},
+            {"Cancel", "", {}}}});
+}
+
 // Several files that could be opened: a window has one level.
-void choose_one(App& app, const std::vector<fs::path>& files) {
-  constexpr std::size_t kMostAnswers = 5;
+void choose_one(App& app, const std::vector<fs::path>& files, bool empty) {
+  constexpr std::size_t kMostAnswers = 4;
   Question which{fmt::format("{} files were dropped; which one is opened?", files.size()), {}, {}};
+  if (!empty)
+    which.answers.push_back({"Add all", "Beside what is there; undo takes them back", [&app, files] {
+                               for (const fs::path& each : files) app.files().add(each);
+                             }});
   for (std::size_t i = 0; i < std::min(files.size(), kMostAnswers); ++i)
     which.answers.push_back(
         {name_of(files[i]), printable(files[i].string()), [&app, file = files[i]] { app.open(file); }});
@@ -177,7 +255,8 @@ void App::drop(const std::vector<std::string>& names) {
   const auto warn = [&](const std::string& text) { editor.say(text, Severity::kWarning); };
   for (const fs::path& file : rest) {
     const Dropped kind = kind_of(file);
-    const bool part = kind == Dropped::kPanorama || kind == Dropped::kScript || kind == Dropped::kTetrahedra;
+    const bool part = kind == Dropped::kPanorama || kind == Dropped::kScript || kind == Dropped::kTetrahedra ||
+                      kind == Dropped::kTexture;
     if (part && !opened.empty())
       warn(fmt::format("{} is a part of a level: drop it again when {} is open", name_of(file), name_of(opened[0])));
     else if (part && empty)
@@ -188,11 +267,11 @@ void App::drop(const std::vector<std::string>& names) {
       script(*this, file);
     else if (kind == Dropped::kTetrahedra)
       tetrahedra(*this, file);
+    else if (kind == Dropped::kTexture)
+      texture(*this, file);
     else if (kind == Dropped::kPicture)
-      warn(
-          fmt::format("{} is a picture: a mesh brings its pictures along in its own file, and what surrounds a level "
-                      "is an OpenEXR panorama (.exr)",
-                      name_of(file)));
+      warn(fmt::format("{} is a picture: textures are PNG or JPEG, and what surrounds a level is an OpenEXR panorama",
+                       name_of(file)));
     else if (kind == Dropped::kFolder)
       files_->ask_open(file);
     else if (kind == Dropped::kGone)
@@ -200,11 +279,11 @@ void App::drop(const std::vector<std::string>& names) {
     else
       warn(
           fmt::format("{} is nothing that the editor reads: drop a level or a mesh (glTF, OBJ, STL, PLY, OFF, "
-                      "tetrahedra), a panorama (.exr) or a script (.csv)",
+                      "tetrahedra), a picture (.png, .jpg), a panorama (.exr) or a script (.csv)",
                       name_of(file)));
   }
-  if (opened.size() == 1) open(opened.front());
-  if (opened.size() > 1) choose_one(*this, opened);
+  if (opened.size() == 1) empty ? open(opened.front()) : add_or_open(*this, opened.front());
+  if (opened.size() > 1) choose_one(*this, opened, empty);
 }
 
 }  // namespace pliant

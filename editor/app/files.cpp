@@ -8,9 +8,12 @@
 #include <chrono>
 #include <ctime>
 
+#include "content/level/unit.h"
 #include "content/level_file.h"
+#include "editor/app/add.h"
 #include "editor/app/app.h"
 #include "editor/document/named_files.h"
+#include "runtime/printable.h"
 
 namespace pliant {
 namespace {
@@ -167,6 +170,29 @@ void Files::load(const fs::path& file, double unit, bool read_only, std::functio
           (void)app_.settings.save();
         };
       });
+}
+
+void Files::add(const fs::path& file) {
+  const std::string name = printable(file.filename().string());
+  app_.editor.jobs.start("add " + file.string(), "Reading " + name, [this, file, name](const Jobs::Stop&) {
+    auto level = std::make_shared<Result<Level>>(load_level(file));
+    return [this, level, name](Editor& to) {
+      if (!*level) return to.say(level->error().message(), Severity::kError);
+      const Box box = bounds(**level);
+      if ((*level)->has_pliant() || unit_hint(box).empty()) return void(add_level(to, name, **level, 1.0));
+      Question unit{fmt::format("{} is {:.3g} m across. What is one unit of it?", name, box.diagonal()), {}, {}};
+      for (const auto& [word, metres] : {std::pair{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}})
+        unit.answers.push_back(
+            {word, "", [this, level, name, metres] { add_level(app_.editor, name, **level, metres); }});
+      unit.answers.push_back({"Cancel", "", {}});
+      app_.ask(std::move(unit));
+    };
+  });
+}
+
+void Files::ask_add() {
+  choose({.title = "Add a mesh or a level", .folder = app_.editor.document.folder()},
+         [this](const fs::path& file) { add(file); });
 }
 
 void Files::give_up_opening() {

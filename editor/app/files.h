@@ -30,6 +30,8 @@ class Files {
   // In the background, without a question. `failed`: hears why it cannot be opened; empty: the console says it.
   void load(const std::filesystem::path& file, double unit, bool read_only = false,
             std::function<void(const Error&)> failed = {});
+  void add(const std::filesystem::path& file);  // to the level: all that its scene shows
+  void ask_add();
   void give_up_opening();  // the level stays as it is
   static constexpr const char* kOpenJob = "open";
   void recover(const RecoveryCopy& copy);

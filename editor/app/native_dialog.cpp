@@ -20,18 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether a program is in the folders of PATH.
-bool there(const char* program) {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (::access((fs::path(folder) / program).c_str(), X_OK) == 0) return true;
-  return false;
-}
-
 std::vector<std::string> command_of(const FileRequest& request) {
   const std::string start = (request.folder / request.name).string();
-  if (there("zenity")) {
+  if (program_there("zenity")) {
     std::vector<std::string> command{"zenity", "--file-selection", "--title=" + request.title, "--filename=" + start};
     if (request.save) command.push_back("--save");
     if (!request.save) {
@@ -47,8 +38,16 @@ std::vector<std::string> command_of(const FileRequest& request) {
 
 }  // namespace
 
+bool program_there(const char* program) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((fs::path(folder) / program).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
 bool native_dialog_there() {
-  return there("zenity") || there("kdialog");
+  return program_there("zenity") || program_there("kdialog");
 }
 
 bool native_dialog(const FileRequest& request, const std::atomic<bool>& stop, fs::path& chosen) {

@@ -14,6 +14,7 @@ struct FileRequest {
   std::string name;              // suggested name for saving
 };
 
+bool program_there(const char* program);  // in the folders of PATH
 bool native_dialog_there();
 // Blocks until answered; call on a separate thread. Empty: no choice, or `stop` was set. False: no dialog could be
 // shown.

@@ -110,7 +110,9 @@ Status Document::write(const fs::path& file, const State& state, bool scripts_to
       if (!text) return text.error();
       files.push_back({file.parent_path() / name, Bytes(text->begin(), text->end())});
     }
-  Result<std::vector<MadeFile>> level = make_level_files(level_of(state), file);
+  Level whole = level_of(state);
+  if (!whole.source) drop_unseen_meshes(whole);
+  Result<std::vector<MadeFile>> level = make_level_files(whole, file);
   if (!level) return level.error();
   for (MadeFile& each : *level) files.push_back(std::move(each));
   return write_made(files);

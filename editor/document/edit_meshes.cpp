@@ -1,4 +1,7 @@
 // Paint, meshes and scripts, and edits of a whole level.
+#include <algorithm>
+#include <utility>
+
 #include "editor/document/edit_parts.h"
 
 namespace pliant {
@@ -51,6 +54,34 @@ Result<State> with_script(const State& state, NodeId id, const std::string& file
   return std::move(change->state);
 }
 
+namespace {
+
+// Meshes of which an edit has changed the materials get new numbers, with their paint.
+void renumber_changed(State& next, const State& before) {
+  const auto same_materials = [](const LevelMesh& a, const LevelMesh& b) {
+    return std::equal(a.primitives.begin(), a.primitives.end(), b.primitives.begin(), b.primitives.end(),
+                      [](const Primitive& x, const Primitive& y) { return x.material == y.material; });
+  };
+  for (std::size_t i = 0; i < before.meshes.size(); ++i) {
+    const std::shared_ptr<const DocumentMesh> changed = std::exchange(next.meshes[i], before.meshes[i]);
+    if (same_materials(*changed, *before.meshes[i])) continue;
+    const auto from = static_cast<std::uint32_t>(i), number = static_cast<std::uint32_t>(next.meshes.size());
+    next.meshes.push_back(changed);
+    std::vector<std::pair<LayerKey, PaintLayer>> layers;
+    for (const auto& [key, layer] : next.paint)
+      if (key.mesh == from) layers.push_back({{number, key.primitive, key.channel}, layer});
+    for (auto& [key, layer] : layers) next.paint.emplace(key, std::move(layer));
+    for (auto& each : next.nodes) {
+      if (each->node.mesh != static_cast<std::int32_t>(i)) continue;
+      auto node = std::make_shared<DocumentNode>(*each);
+      node->node.mesh = static_cast<std::int32_t>(number);
+      each = std::move(node);
+    }
+  }
+}
+
+}  // namespace
+
 Result<State> by_level(const State& state, NodeId& next_id, const std::function<Status(Level&)>& edit) {
   Level level = level_of(state);
   // Nodes are marked to identify them after the edit, wherever it inserts new ones.
@@ -67,7 +98,6 @@ Result<State> by_level(const State& state, NodeId& next_id, const std::function<
     id_of.push_back(known ? state.nodes[before]->id : fresh++);
     node.source = known ? state.nodes[before]->node.source : -1;
   }
-  const std::size_t mesh_count = state.meshes.size();
   NodeId numbers = 1;
   State next = state_of(std::move(level), numbers);  // numbered from 1 on, in order
   for (auto& each : next.nodes) {
@@ -78,13 +108,12 @@ Result<State> by_level(const State& state, NodeId& next_id, const std::function<
   }
   next_id = fresh;
   // Unchanged data stay shared.
-  for (std::size_t i = 0; i < mesh_count; ++i) next.meshes[i] = state.meshes[i];
+  renumber_changed(next, state);
   for (auto& [key, layer] : next.paint)
     if (const auto before = state.paint.find(key); before != state.paint.end() && before->second == layer)
       layer = before->second;
-  const bool same_looks = next.rest->materials.size() == state.rest->materials.size() &&
-                          next.rest->images.size() == state.rest->images.size();
-  if (same_looks) next.rest = state.rest;
+  if (next.materials().size() == state.materials().size()) next.looks = state.looks;
+  if (next.rest->images.size() == state.rest->images.size()) next.rest = state.rest;
   next.scripts = state.scripts;
   return next;
 }

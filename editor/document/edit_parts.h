@@ -1,6 +1,7 @@
 // Shared by the kinds of edits (edits.h).
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,15 @@ struct NodeChange {
   std::shared_ptr<DocumentNode> node;
 };
 std::optional<NodeChange> changing(const State& state, NodeId id);
+
+// Materials of another state's meshes, with their pictures: each is added once.
+class LooksBrought {
+ public:
+  void bring(State& to, const State& from, LevelMesh& mesh);
+
+ private:
+  std::map<std::int32_t, std::int32_t> material_, image_;
+};
 
 // Updates every reference to a node by name.
 void rename_references(State& state, const std::string from, const std::string to);

@@ -202,6 +202,7 @@ Result<State> pasted(const State& state, const State& from, NodeIds ids, NodeId 
   if (tops.empty()) return Error{"paste", "there is nothing to paste", "copy a node first"};
   // A mesh that this document already has is shared; others are added.
   State next = state;
+  LooksBrought looks;
   std::map<std::int32_t, std::int32_t> mesh_of;
   for (const auto& each : from.nodes) {
     const std::int32_t mesh = each->node.mesh;
@@ -216,9 +217,8 @@ Result<State> pasted(const State& state, const State& from, NodeIds ids, NodeId 
     mesh_of[mesh] = static_cast<std::int32_t>(number);
     LevelMesh copy = *from.meshes[at];
     copy.source = -1;
-    const bool same_materials = from.rest == next.rest;
-    for (Primitive& primitive : copy.primitives)
-      if (!same_materials) primitive.material = -1;
+    copy.skinned = -1;
+    if (from.looks != state.looks) looks.bring(next, from, copy);
     next.meshes.push_back(std::make_shared<const DocumentMesh>(std::move(copy)));
     for (const auto& [key, layer] : from.paint)
       if (key.mesh == at) next.paint.emplace(LayerKey{number, key.primitive, key.channel}, layer);

@@ -60,6 +60,25 @@ Result<State> without_layer(const State& state, std::uint32_t mesh, Channel chan
 // arrays.
 Result<State> with_mesh(const State& state, NodeId id, LevelMesh mesh);
 
+// --- Looks
+// The places of pictures in a material.
+inline constexpr std::int32_t Material::*kTextures[] = {
+    &Material::base_color_texture, &Material::metallic_roughness_texture,
+    &Material::normal_texture,     &Material::occlusion_texture,
+    &Material::emissive_texture,   &Material::transmission_texture,
+    &Material::thickness_texture,  &Material::height_texture};
+// Changes the material of a part of the node's mesh, for all that share it. A part without one gets it, with all parts
+// of its mesh that have none.
+Result<State> with_material(const State& state, NodeId id, std::size_t primitive, const Material& material);
+// Gives the node a copy of that part's material, which no other node shares.
+Result<State> with_own_material(const State& state, NodeId id, std::size_t primitive);
+// How many other nodes show the material of that part.
+std::size_t sharing_material(const State& state, NodeId id, std::size_t primitive);
+// Adds a picture; `number` receives its number.
+State with_image(const State& state, Image image, std::int32_t& number);
+// Adds a root of the scene with a mesh of one material.
+Result<State> with_object(const State& state, NodeId id, LevelNode node, LevelMesh mesh, Material material);
+
 // Makes the node's device follow these keys, in a script of that name beside the level.
 Result<State> with_script(const State& state, NodeId id, const std::string& file, const ScriptKeys& keys);
 

@@ -36,6 +36,7 @@ bool same_node(const DocumentNode& a, const DocumentNode& b) {
 Level without_nodes(const State& state) {
   Level level;
   if (state.rest) level = *state.rest;
+  level.materials = state.materials();
   level.about = state.about;
   level.environment = state.environment;
   level.simulation = state.simulation;
@@ -68,6 +69,11 @@ std::string name_of(Channel channel) {
   std::string name = painted_attribute(channel).name + 1;
   for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return name;
+}
+
+const std::vector<Material>& State::materials() const {
+  static const std::vector<Material> kNone;
+  return looks ? *looks : kNone;
 }
 
 std::size_t State::place(NodeId id) const {
@@ -143,12 +149,14 @@ State state_of(Level level, NodeId& next_id) {
       }
     state.meshes.push_back(std::make_shared<const DocumentMesh>(std::move(mesh)));
   }
+  state.looks = std::make_shared<const std::vector<Material>>(std::move(level.materials));
   state.about = std::move(level.about);
   state.environment = std::move(level.environment);
   state.simulation = level.simulation;
   state.stated = std::move(level.stated);
   level.nodes.clear();
   level.meshes.clear();
+  level.materials.clear();
   level.environment.reset();
   level.about.clear();
   level.stated.clear();
@@ -165,6 +173,21 @@ Level level_of(const State& state) {
   return level;
 }
 
+void drop_unseen_meshes(Level& level) {
+  std::vector<std::int32_t> now(level.meshes.size(), -1);
+  for (const LevelNode& node : level.nodes)
+    if (node.mesh >= 0) now[static_cast<std::size_t>(node.mesh)] = 0;
+  std::vector<LevelMesh> kept;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (now[i] == 0) {
+      now[i] = static_cast<std::int32_t>(kept.size());
+      kept.push_back(std::move(level.meshes[i]));
+    }
+  for (LevelNode& node : level.nodes)
+    if (node.mesh >= 0) node.mesh = now[static_cast<std::size_t>(node.mesh)];
+  level.meshes = std::move(kept);
+}
+
 Level outline_of(const State& state) {
   Level level;
   level.about = state.about;
@@ -176,6 +199,10 @@ Level outline_of(const State& state) {
 }
 
 bool same(const State& a, const State& b) {
+  return a.looks == b.looks && same_but_looks(a, b);
+}
+
+bool same_but_looks(const State& a, const State& b) {
   if (a.nodes.size() != b.nodes.size() || a.meshes != b.meshes || a.about != b.about || a.rest != b.rest) return false;
   for (std::size_t i = 0; i < a.nodes.size(); ++i)
     if (a.nodes[i] != b.nodes[i] && !same_node(*a.nodes[i], *b.nodes[i])) return false;

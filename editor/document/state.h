@@ -60,15 +60,17 @@ struct State {
   std::vector<std::shared_ptr<const DocumentNode>> nodes;  // parents before children
   // Only appended to, so that a number identifies the same mesh in every state.
   std::vector<std::shared_ptr<const DocumentMesh>> meshes;
-  std::map<LayerKey, PaintLayer> paint;  // absent: unpainted
-  std::shared_ptr<const Level> rest;     // materials, images, animations, notes, source; without nodes and meshes
-  std::string about;                     // description of the level
+  std::map<LayerKey, PaintLayer> paint;                // absent: unpainted
+  std::shared_ptr<const std::vector<Material>> looks;  // materials by number; null: none
+  std::shared_ptr<const Level> rest;  // images, animations, notes, source; without nodes, meshes and materials
+  std::string about;                  // description of the level
   std::optional<LevelEnvironment> environment;
   Simulation simulation;
   std::set<std::string> stated;  // stated keys of the scene, as Level::stated; nodes have their own
   // Paths of devices, by file name relative to the level; unreadable files are absent.
   Scripts scripts;
 
+  const std::vector<Material>& materials() const;
   const DocumentNode* find(NodeId id) const;
   const DocumentNode* find(const std::string& name) const;  // the first with that name
   std::size_t place(NodeId id) const;                       // into `nodes`; their number: not found
@@ -83,9 +85,13 @@ State state_of(Level level, NodeId& next_id);
 Level level_of(const State& state);
 // The same without mesh contents and painted values: names, frames and components only.
 Level outline_of(const State& state);
+// Removes meshes that no node shows, and numbers the others anew.
+void drop_unseen_meshes(Level& level);
 
 // Whether both documents are identical, bit by bit: nodes, components, painted values, scene.
 bool same(const State& a, const State& b);
+// The same, without the materials.
+bool same_but_looks(const State& a, const State& b);
 
 // Replaces the driver of devices that follow one of these scripts, because their files may not be written yet.
 void leave_out_scripts(Level& level, const Scripts& scripts, DriverKind instead);

@@ -6,8 +6,10 @@
 
 #include "content/keys/extension_table.h"
 #include "editor/app/app.h"
+#include "editor/panels/automatic.h"
 #include "editor/panels/key_fields.h"
 #include "editor/panels/light_fields.h"
+#include "editor/panels/material_fields.h"
 #include "editor/panels/panels.h"
 #include "editor/panels/place_fields.h"
 #include "editor/panels/property_row.h"
@@ -43,6 +45,7 @@ class InspectorPanel : public Panel {
     if (search_.empty()) place_fields_.draw(editor, *active);
     for (const Extension& each : extension_table())
       if (!each.on_scene) draw_component(editor, each);
+    if (editor.selected.size() == 1) draw_material_fields(editor, *active, search_, part_);
     if (search_.empty()) {
       draw_light_fields(editor, *active);
       draw_camera_fields(editor, *active);
@@ -82,14 +85,7 @@ class InspectorPanel : public Panel {
   }
 
   bool found(const Extension& extension, const Key& key) const {
-    if (search_.empty()) return true;
-    const auto lower = [](std::string s) {
-      for (char& c : s) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-      return s;
-    };
-    const std::string what = lower(search_);
-    return lower(key.name).find(what) != std::string::npos || lower(key.doc).find(what) != std::string::npos ||
-           lower(extension.name).find(what) != std::string::npos;
+    return matches(search_, key.name) || matches(search_, key.doc) || matches(search_, extension.name);
   }
 
   void draw_component(Editor& editor, const Extension& extension) {
@@ -138,10 +134,13 @@ class InspectorPanel : public Panel {
       return;
     }
     Json next = value;
+    if (const DocumentNode* const of = editor.state().find(shown); of && value.is_number())
+      ui::zero_reads(zero_text(editor.state(), *of, extension.name, key));
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (key_field(editor, key, next))
       editor.apply(what, with_value(editor.state(), ids, extension.name, key.name, next),
                    extension.name + "." + key.name);
+    ui::zero_reads("");
     if (key.name == "error" && ui::button("Measure models\u2026", "What this budget chooses, and from what"))
       app_.show_panel("Error budget");
     if (const std::optional<Note> doubtful = doubt(key, value)) {
@@ -207,6 +206,7 @@ class InspectorPanel : public Panel {
   std::string search_, new_name_;
   NodeId shown_ = kNoNode;
   std::uint64_t name_at_ = 0;
+  std::size_t part_ = 0;  // of the mesh, whose material is shown
   PlaceFields place_fields_;
 };
 

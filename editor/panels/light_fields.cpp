@@ -3,6 +3,7 @@
 #include <glm/gtc/constants.hpp>
 #include <string>
 
+#include "editor/app/add.h"
 #include "editor/panels/property_row.h"
 #include "viewer/ui/widgets.h"
 
@@ -49,6 +50,10 @@ void draw_camera_fields(Editor& editor, const DocumentNode& node) {
     camera.yfov = static_cast<float>(glm::radians(degrees));
     editor.apply("Camera", with_camera(editor.state(), node.id, camera), "camera " + std::to_string(node.id));
   }
+  if (ui::button("Look through", "The viewport shows what this camera sees")) look_through(editor, node);
+  ImGui::SameLine(0, ui::px(4));
+  if (ui::button("Place here", "The camera sees what the viewport shows"))
+    editor.apply("Place the camera", placed(editor.state(), node.id, camera_place(editor, node)));
   if (ui::button("Remove camera")) editor.apply("Remove camera", with_camera(editor.state(), node.id, {}));
 }
 

@@ -16,6 +16,7 @@ std::unique_ptr<Panel> make_console_panel(App& app);
 std::unique_ptr<Panel> make_file_browser(App& app);
 std::unique_ptr<Panel> make_keys_page(App& app);
 std::unique_ptr<Panel> make_settings_panel(App& app);
+std::unique_ptr<Panel> make_picture_panel(App& app);
 std::unique_ptr<Panel> make_unit_banner();
 std::unique_ptr<Panel> make_start_page(App& app);
 std::unique_ptr<Panel> make_play_panel(App& app);

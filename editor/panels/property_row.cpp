@@ -1,10 +1,19 @@
 #include "editor/panels/property_row.h"
 
+#include <algorithm>
+#include <cctype>
 #include <string>
 
 #include "viewer/ui/widgets.h"
 
 namespace pliant {
+
+bool matches(const std::string& what, const std::string& text) {
+  return std::search(text.begin(), text.end(), what.begin(), what.end(),
+                     [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); }) !=
+             text.end() ||
+         what.empty();
+}
 
 bool property_row(const char* label, const char* hint_text, bool differs, float share) {
   const float left = ImGui::GetCursorPosX(), wide = ImGui::GetContentRegionAvail().x;

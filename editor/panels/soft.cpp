@@ -9,6 +9,7 @@
 #include "content/author/staging.h"
 #include "content/author/touchable.h"
 #include "content/keys/stated.h"
+#include "editor/panels/material_fields.h"
 #include "editor/panels/panels.h"
 #include "editor/panels/soft_panel.h"
 #include "viewer/ui/widgets.h"
@@ -19,12 +20,6 @@ namespace {
 constexpr Side kSides[] = {Side::kBottom, Side::kTop, Side::kLeft, Side::kRight, Side::kFront, Side::kBack};
 
 }  // namespace
-
-std::int32_t place_in(const Level& level, const std::string& name) {
-  for (std::size_t i = 0; i < level.nodes.size(); ++i)
-    if (level.nodes[i].name == name) return static_cast<std::int32_t>(i);
-  return -1;
-}
 
 void SoftPanel::draw(Editor& editor) {
   const DocumentNode* const node = editor.active_node();
@@ -49,28 +44,11 @@ void SoftPanel::draw(Editor& editor) {
   draw_instruments(editor, *node);
 }
 
-bool SoftPanel::author(Editor& editor, const std::string& what, const DocumentNode& node, const Edit& edit,
-                       bool select_new) {
-  const NodeId before = editor.document.next_id();
-  const std::string name = node.node.name;
-  const bool done = editor.apply(what, by_level(editor.state(), editor.document.next_id(), [&](Level& level) {
-                                   const std::int32_t at = place_in(level, name);
-                                   return at < 0 ? Status(Error{name, "is not there any more"}) : edit(level, at);
-                                 }));
-  if (done && select_new)
-    for (const auto& each : editor.state().nodes)
-      if (each->id >= before) {
-        editor.selected = {each->id};
-        break;
-      }
-  return done;
-}
-
 void SoftPanel::draw_kind(Editor& editor, const DocumentNode& node) {
   const LevelNode& it = node.node;
   ui::title(it.name.c_str());
-  const auto kind = [&](const char* label, bool down, const char* hint, const Edit& edit) {
-    if (ui::choice_button(label, down, hint) && !down) author(editor, label, node, edit);
+  const auto kind = [&](const char* label, bool down, const char* hint, const NodeEdit& edit) {
+    if (ui::choice_button(label, down, hint) && !down) author_node(editor, label, node, edit);
     ImGui::SameLine(0, ui::px(2));
   };
   kind("Surface", it.deformable.has_value(), "Deforms locally, vertex by vertex, at 1 kHz (P1): skin, thick organs",
@@ -100,7 +78,7 @@ void SoftPanel::draw_organ(Editor& editor, const DocumentNode& node) {
                   "lumps, an inner sheet"))
     return;
   std::string body, parts;
-  const bool done = author(editor, "All parts of this organ", node, [&](Level& level, std::int32_t at) -> Status {
+  const bool done = author_node(editor, "All parts of this organ", node, [&](Level& level, std::int32_t at) -> Status {
     const Result<Organ> organ = organ_of(level, at);
     if (!organ) return organ.error();
     body = level.nodes[static_cast<std::size_t>(organ->body)].name;
@@ -133,29 +111,8 @@ void SoftPanel::draw_material(Editor& editor, const DocumentNode& node) {
                          preset.source)
                  .c_str());
     if (!pressed) continue;
-    author(editor, std::string("Material ") + preset.name, node, [&](Level& level, std::int32_t at) {
-      LevelNode& of = level.nodes[static_cast<std::size_t>(at)];
-      if (of.soft_body) {
-        const SoftBodyParameters from = soft_body_of(preset);
-        SoftBodyParameters& to = *of.soft_body;
-        to.young = from.young;
-        to.poisson = from.poisson;
-        to.density = from.density;
-        to.rayleigh = from.rayleigh;
-        to.friction_static = from.friction_static;
-        to.friction_sliding = from.friction_sliding;
-      } else {
-        const DeformableParameters from = surface_of(preset);
-        DeformableParameters& to = *of.deformable;
-        to.young = 0.0;
-        to.stiffness = surface_stiffness(preset);
-        to.settling_time = from.settling_time;
-        to.friction_static = from.friction_static;
-        to.friction_sliding = from.friction_sliding;
-      }
-      add_look(level, at, preset);
-      return Status(Done{});
-    });
+    author_node(editor, std::string("Material ") + preset.name, node,
+                [&](Level& level, std::int32_t at) { return take_preset(level, at, preset); });
   }
 }
 
@@ -174,11 +131,11 @@ void SoftPanel::draw_pins(Editor& editor, const DocumentNode& node) {
     label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
     if (i % 3) ImGui::SameLine(0, ui::px(4));
     if (ui::button(label.c_str(), "Pin this side", true, 88))
-      author(editor, "Pin the " + std::string(word_of(side)), node,
-             [&](Level& level, std::int32_t at) { return pin(level, at, side, share_); });
+      author_node(editor, "Pin the " + std::string(word_of(side)), node,
+                  [&](Level& level, std::int32_t at) { return pin(level, at, side, share_); });
   }
   if (ui::button("Nothing pinned", "Removes the box and the paint"))
-    author(editor, "Unpin", node, [](Level& level, std::int32_t at) {
+    author_node(editor, "Unpin", node, [](Level& level, std::int32_t at) {
       unpin(level, at);
       return Status(Done{});
     });
@@ -188,8 +145,8 @@ void SoftPanel::draw_instruments(Editor& editor, const DocumentNode& node) {
   ui::gap(2);
   if (!ui::section("Touch it with")) return;
   const ui::Scope scope("Instruments");
-  const auto add = [&](const char* label, const char* hint, const Edit& edit) {
-    if (ui::button(label, hint, true, 140)) author(editor, std::string("Add ") + label, node, edit, true);
+  const auto add = [&](const char* label, const char* hint, const NodeEdit& edit) {
+    if (ui::button(label, hint, true, 140)) author_node(editor, std::string("Add ") + label, node, edit, true);
   };
   add("Probe", "A fingertip: a sphere of a few millimetres; feels surfaces and bodies",
       [](Level& level, std::int32_t at) {

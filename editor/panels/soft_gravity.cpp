@@ -80,7 +80,7 @@ void SoftPanel::draw_advice(Editor& editor, const DocumentNode& node) {
     const std::string label = fmt::format("Pin {} {:.0f} %: sags {:.2g} mm###Pin {}", word_of(each.side),
                                           100.0 * each.share, 1e3 * each.sag, i + 1);
     if (ui::button(label.c_str(), "Pins this side instead of what is pinned now"))
-      author(editor, "Pin the " + std::string(word_of(each.side)), node, [each](Level& level, std::int32_t at) {
+      author_node(editor, "Pin the " + std::string(word_of(each.side)), node, [each](Level& level, std::int32_t at) {
         unpin(level, at);
         return pin(level, at, each.side, each.share);
       });

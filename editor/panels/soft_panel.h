@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "content/level/soft_preview.h"
+#include "editor/app/add.h"
 #include "editor/app/app.h"
 #include "engine/choice/pin_advice.h"
 #include "systems/soft/body/equilibrium.h"
@@ -31,11 +32,6 @@ class SoftPanel : public Panel {
   void draw(Editor& editor) override;
 
  private:
-  using Edit = std::function<Status(Level&, std::int32_t node)>;
-  // Runs an edit of content/author on a node; selects what it added.
-  bool author(Editor& editor, const std::string& what, const DocumentNode& node, const Edit& edit,
-              bool select_new = false);
-
   void draw_kind(Editor& editor, const DocumentNode& node);
   // Makes an organ of several nested meshes soft, in one click.
   void draw_organ(Editor& editor, const DocumentNode& node);
@@ -74,8 +70,6 @@ class SoftPanel : public Panel {
   std::optional<Error> trouble_;
 };
 
-// -1: none.
-std::int32_t place_in(const Level& level, const std::string& name);
 // A row of two columns; `bad`: in the colour of a warning.
 void soft_figure(const char* what, const std::string& value, bool bad = false);
 inline vec4 shown_as(const ImVec4& c, float alpha) {

@@ -27,11 +27,29 @@ Level level_to_play(const State& state, const std::filesystem::path& folder, con
   return level;
 }
 
+bool Rendered::change_looks(const Editor& editor, Stage& stage) {
+  const State& now = editor.state();
+  if (!world_ || now.looks == of_.looks || now.materials().size() != of_.materials().size() ||
+      !same_but_looks(now, of_))
+    return false;
+  for (std::size_t i = 0; i < now.materials().size(); ++i) {  // a relief changes the surface
+    const Material &a = now.materials()[i], &b = of_.materials()[i];
+    if (a.height_texture != b.height_texture || a.height_scale != b.height_scale) return false;
+  }
+  of_ = now;
+  stage.show([it = world_, looks = now.looks] {
+    it->materials = *looks;
+    return std::make_unique<SceneView>(it);
+  });
+  return true;
+}
+
 void Rendered::update(Editor& editor, Stage& stage, bool shown) {
   if (!shown) {
     if (shows_) stage.show(nullptr);
     if (waits_) editor.jobs.cancel("rendered");
     shows_ = waits_ = false;
+    world_.reset();
     made_ = seen_ = ~std::uint64_t{0};
     return;
   }
@@ -40,6 +58,7 @@ void Rendered::update(Editor& editor, Stage& stage, bool shown) {
     files_ = editor.files_read;
     if (seen_ != ~std::uint64_t{0}) seen_ = made_ = revision + 1;
   }
+  if (revision != seen_ && made_ == seen_ && !waits_ && change_looks(editor, stage)) made_ = seen_ = revision;
   if (revision != seen_) {
     changed_at_ = seen_ == ~std::uint64_t{0} ? -kPatience : editor.now;  // the first one at once
     seen_ = revision;
@@ -49,11 +68,10 @@ void Rendered::update(Editor& editor, Stage& stage, bool shown) {
   made_ = revision;
   const State state = editor.state();
   const auto folder = editor.document.folder(), file = editor.document.file();
-  editor.jobs.start("rendered", "Preparing the picture", [this, &stage, state, folder, file](const Jobs::Stop& stop) {
+  editor.jobs.start("rendered", "Preparing the picture", [this, &stage, state, folder, file](const Jobs::Stop&) {
     auto world =
         std::make_shared<Result<std::shared_ptr<World>>>(world_of(level_to_play(state, folder, file, state.scripts)));
-    (void)stop;
-    return [this, &stage, world](Editor& to) {
+    return [this, &stage, world, state](Editor& to) {
       waits_ = false;
       if (!*world) {
         to.say("the picture of the level as it is played cannot be made: " + world->error().message(),
@@ -61,6 +79,8 @@ void Rendered::update(Editor& editor, Stage& stage, bool shown) {
         return;
       }
       shows_ = true;
+      world_ = **world;
+      of_ = state;
       stage.show([it = **world] { return std::make_unique<SceneView>(it); });
     };
   });

@@ -26,7 +26,7 @@ bool same_scene(const SolidOrder& a, const SolidOrder& b) {
   };
   return view(a) == view(b) && a.settings == b.settings && a.selected == b.selected && a.lines == b.lines &&
          a.creases == b.creases && a.guides == b.guides && a.state.nodes == b.state.nodes &&
-         a.state.meshes == b.state.meshes && a.state.rest == b.state.rest && a.state.paint == b.state.paint;
+         a.state.meshes == b.state.meshes && a.state.looks == b.state.looks && a.state.paint == b.state.paint;
 }
 
 mat4 clip_from_world(const Viewpoint& view, double orthographic, double aspect, const Box& box) {
@@ -197,7 +197,7 @@ void SolidView::draw_surfaces(const Scene& scene, std::size_t i, MeshOnGpu& mesh
   for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
     const PrimitiveOnGpu& primitive = mesh.primitives[p];
     const std::int32_t material = mesh.of->primitives[p].material;
-    const auto& materials = order.state.rest->materials;
+    const auto& materials = order.state.materials();
     vec3 base(0.72f, 0.70f, 0.68f);
     if (material >= 0 && static_cast<std::size_t>(material) < materials.size())
       base = glm::max(encoded(vec3(materials[static_cast<std::size_t>(material)].base_color)), vec3(0.18f));

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "runtime/clock.h"
+#include "viewer/picture/window_png.h"
 
 namespace pliant {
 namespace {
@@ -76,6 +77,41 @@ void Stage::show(std::function<std::unique_ptr<Scenery>()> make) {
     scenery_.reset();
     if (make) scenery_ = make();
   });
+}
+
+void Stage::shoot(StageOrder order, std::function<void(Result<Image>)> then) {
+  post([this, order = std::move(order), then = std::move(then)] { then(shot(order)); });
+}
+
+Result<Image> Stage::shot(const StageOrder& order) {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+  if (order.width > most || order.height > most)
+    return Error{"picture", "is larger than this display draws", "choose at most " + std::to_string(most) + " pixels"};
+  drawn_.reset();  // what it answered is drawn over
+  Target target;
+  resize(target, order.width, order.height);
+  Status drawn = Error{"picture", failure_.empty() ? "there is nothing to draw" : failure_};
+  try {
+    if (scenery_) scenery_->ask({});
+    if (scenery_) drawn = scenery_->draw(order.solid, target.frame, order.width, order.height);
+    if (!scenery_ && solid_) {
+      solid_->draw(order.solid, target.frame, order.width, order.height);
+      drawn = Done{};
+    }
+  } catch (const std::exception& error) {
+    drawn = Error{"picture", error.what()};
+  }
+  Image image;
+  if (drawn) {
+    image.width = static_cast<std::uint32_t>(order.width);
+    image.height = static_cast<std::uint32_t>(order.height);
+    image.rgba = frame_pixels(target.frame, order.width, order.height);
+  }
+  glDeleteFramebuffers(1, &target.frame);
+  glDeleteTextures(1, &target.texture);
+  if (!drawn) return drawn.error();
+  return image;
 }
 
 void Stage::reload_shaders() {

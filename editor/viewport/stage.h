@@ -10,6 +10,7 @@
 #include <optional>
 #include <thread>
 
+#include "components/appearance.h"
 #include "editor/viewport/solid_view.h"
 #include "viewer/picture/picture_budget.h"
 #include "viewer/window/window.h"
@@ -72,6 +73,8 @@ class Stage {
   void show(std::function<std::unique_ptr<Scenery>()> make);
   // Recompiles the shaders; errors are the trouble of the next pictures.
   void reload_shaders();
+  // A picture of that size, independent of those that are shown; `then` is called on the stage's thread.
+  void shoot(StageOrder order, std::function<void(Result<Image>)> then);
   // Runs on the stage's thread before the next picture, with its context current.
   void post(std::function<void()> task);
 
@@ -79,6 +82,7 @@ class Stage {
   Stage() = default;
   void run();
   void draw(const StageOrder& order, std::uint64_t number, bool refine);
+  Result<Image> shot(const StageOrder& order);
   void answer(const StageOrder& order, std::uint64_t number);
 
   Window* window_ = nullptr;

@@ -73,6 +73,9 @@ struct OverlayState {
   std::string message;  // a temporary message; empty: none
   bool message_is_error = false;
   std::vector<ProbeLine> probes;
+  bool show_levels = false;
+  std::vector<std::string> levels;  // files that the panel offers
+  std::string level;                // the one that runs
   bool show_devices = false;
   DevicesView devices;
   std::string stop_keys;              // of the emergency stop
@@ -90,6 +93,12 @@ struct OverlayMouse {
   double wheel = 0;
 };
 
+// Commands from the panel of levels.
+struct LevelOrders {
+  std::string open;  // a level; empty: none
+  bool picture = false;
+};
+
 class Overlay {
  public:
   explicit Overlay(float scale);  // needs the window's context, as does every call
@@ -104,14 +113,17 @@ class Overlay {
             int height, double dt);
   // Commands from the device panel since the last call.
   DeviceOrders take_orders() { return std::exchange(orders_, {}); }
+  LevelOrders take_level_orders() { return std::exchange(level_orders_, {}); }
 
  private:
   void draw_panel(const OverlayState& state, RenderOptions& options, float tint);
   void draw_devices(const OverlayState& state);
+  void draw_levels(const OverlayState& state);
   void draw_question(const OverlayState& state);
   float scale_;
   bool large_ = false;
   DeviceOrders orders_;
+  LevelOrders level_orders_;
 };
 
 }  // namespace pliant

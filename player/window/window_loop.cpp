@@ -6,7 +6,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "content/openable.h"
 #include "lab/console/exit.h"
+#include "lab/files/content_folder.h"
 #include "player/run/touch_loop.h"
 #include "runtime/printable.h"
 #include "systems/device/mouse.h"
@@ -58,6 +60,22 @@ float tint_of(const World& world) {
   return reach > 0 ? kTintShare * static_cast<float>(reach) : 0.01f;
 }
 
+// The shipped ones, and those beside the level.
+std::vector<std::string> levels_to_open(const std::string& level) {
+  std::vector<std::string> all, beside;
+  for (const std::filesystem::path& each : shipped_levels()) all.push_back(each.string());
+  std::error_code failed;
+  const std::filesystem::path folder = std::filesystem::path(level).parent_path();
+  for (std::filesystem::directory_iterator it(folder.empty() ? "." : folder, failed), end; !failed && it != end;
+       it.increment(failed))
+    if (has_ending(it->path(), level_endings()))
+      beside.push_back(folder.empty() ? it->path().filename().string() : it->path().string());
+  std::sort(beside.begin(), beside.end());
+  for (const std::string& each : beside)
+    if (std::find(all.begin(), all.end(), each) == all.end()) all.push_back(each);
+  return all;
+}
+
 }  // namespace
 
 WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
@@ -77,6 +95,8 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
     if (summary.source == "mouse") mouse_probe_ = i;
     if (session.journal.probes()[i] == hand_.tool()) carried_ = i;
   }
+  state_.level = session.level;
+  state_.levels = levels_to_open(session.level);
   state_.stop_keys = session.devices ? session.stop_keys : std::string();
   state_.show_devices = session.devices != nullptr;
   for (const std::string& line : session.question) state_.question.push_back(printable(line));
@@ -197,6 +217,8 @@ Status WindowLoop::learn(const PictureDone& done) {
   widgets_ = done.widgets;
   press_widgets();
   if (s_.devices && done.orders.any()) s_.devices->order(done.orders);
+  if (!done.level_orders.open.empty()) open(done.level_orders.open);
+  if (done.level_orders.picture) ++screenshots_;
   if (done.orders.allow || done.orders.decline) answer_question(done.orders.allow);
   if (!shooting_.empty() && !done.screenshot && is_there(shooting_))
     ++screenshots_;  // another window has taken the name meanwhile

@@ -146,6 +146,10 @@ void WindowLoop::key(int key) {
     state_.show_devices = !state_.show_devices;
     state_.figures |= state_.show_devices;
   }
+  if (id == "view.levels") {
+    state_.show_levels = !state_.show_levels;
+    state_.figures |= state_.show_levels;
+  }
   if (id == "play.toggle") touch_->pause(!touch_->paused());
   if (id == "play.restart") open(s_.level);
   if (id == "file.screenshot") ++screenshots_;

@@ -267,12 +267,18 @@ TEST_F(Document, WhatTheEditorChangesIsSavedAndTheRestOfTheDocumentStays) {
   gltf.primitive({{"POSITION", gltf.positions(kSquare)}});
   gltf.json["nodes"][0]["matrix"] = {0, 0, -2, 0, 0, 2, 0, 0, 2, 0, 0, 0, 1, 2, 3, 1};
   gltf.json["nodes"][0]["extras"] = {{"keep", "me"}};
+  gltf.json["materials"] = {{{"pbrMetallicRoughness", {{"roughnessFactor", 0.25}, {"metallicFactor", 0.5}}},
+                             {"extras", {{"keep", "it"}}},
+                             {"extensions", {{"KHR_materials_sheen", {{"sheenRoughnessFactor", 0.5}}}}}}};
+  gltf.json["extensionsUsed"] = {"KHR_materials_sheen"};
   gltf.json["scenes"] = Json::array({{{"nodes", {0}}, {"name", "kept"}}});
   ASSERT_TRUE(write_file(folder_ / "in.glb", gltf.glb()).ok());
   Level level = load(folder_ / "in.glb");
   EXPECT_EQ(level.nodes[0].local.translation, vec3(1, 2, 3));
   EXPECT_EQ(level.nodes[0].local.scale, vec3(2));
   level.nodes[0].local.translation.x = 7.0f;
+  level.materials[0].metallic = 1.0f;  // glTF's default: the member goes
+  level.materials[0].clearcoat = 0.75f;
   make_touchable(level);
   ASSERT_TRUE(set_key(level, "thing.deformable.stiffness=123").ok());
   LevelNode added;
@@ -284,6 +290,12 @@ TEST_F(Document, WhatTheEditorChangesIsSavedAndTheRestOfTheDocumentStays) {
   EXPECT_EQ(Difference::of(level, back), "");
   EXPECT_EQ(back.source->json["nodes"][0]["extras"]["keep"], "me");
   EXPECT_EQ(back.source->json["scenes"][0]["name"], "kept");
+  const Json& material = back.source->json["materials"][0];
+  EXPECT_EQ(material["extras"]["keep"], "it");
+  EXPECT_EQ(material["extensions"]["KHR_materials_sheen"]["sheenRoughnessFactor"], 0.5);
+  EXPECT_EQ(material["extensions"]["KHR_materials_clearcoat"]["clearcoatFactor"], 0.75);
+  EXPECT_EQ(material["pbrMetallicRoughness"]["roughnessFactor"], 0.25);
+  EXPECT_FALSE(material["pbrMetallicRoughness"].contains("metallicFactor"));
   EXPECT_FALSE(back.source->json["nodes"][0].contains("matrix"));
 }
 

@@ -112,6 +112,8 @@ click Error budget/Measure
 click Scene/sheet/row
 expect Error budget/Cancel
 drop other.glb
+await Question/Open
+click Question/Open
 await Scene/slab/row
 click Scene/slab/row
 expect Error budget/Measure

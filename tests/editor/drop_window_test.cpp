@@ -41,7 +41,7 @@ TEST_F(DropWindowTest, WhatIsNoLevelIsSaidInASentenceAndAFolderIsShown) {
                                "notes.txt\nsay notes.txt is nothing that the editor reads\n"
                                "drop " +
                                at +
-                               "photo.png\nsay photo.png is a picture\n"
+                               "photo.png\nsay sheet has no texture coordinates for photo.png\n"
                                "drop " +
                                at +
                                "gone.glb\nsay gone.glb is not there\n"

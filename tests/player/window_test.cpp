@@ -235,6 +235,15 @@ TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {
   EXPECT_EQ(report("out/other")["level"], "other");
 }
 
+TEST_F(WindowTest, ThePanelOfLevelsOpensAnother) {
+  fs::copy_file(fs::path(PLIANT_SOURCE_DIR) / "content/levels/palpation.glb", folder / "beside.glb");
+  fs::copy_file(fs::path(PLIANT_SOURCE_DIR) / "content/levels/palpation.csv", folder / "palpation.csv");
+  fs::copy_file(fs::path(PLIANT_SOURCE_DIR) / "content/environments/sky.exr", folder / "sky.exr");
+  const Said said = shown({"plate.obj"}, "0.1,key,L\n0.5,click,Levels/beside\n20.0,close,\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_EQ(report("out/beside")["level"], "beside") << said.err;
+}
+
 TEST_F(WindowTest, TheSameLevelAnewIsWrittenBesideWhatWasWrittenOfIt) {
   for (const std::string close : {"9.0", "40.0"}) {  // on a slow machine it is still loading when the first one closes
     for (const char* old : {"out", "out-2", "out-3", "p.rec", "p-2.rec", "p-3.rec"}) fs::remove_all(folder / old);

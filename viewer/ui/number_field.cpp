@@ -25,6 +25,7 @@ Typed g_typed;
 ImGuiID g_refused_field = 0;
 double g_refused_at = 0.0;
 std::optional<std::string> g_refused;
+std::string g_zero;  // of the next number
 
 // A unit after # is understood and not shown.
 struct FieldUnit {
@@ -84,12 +85,17 @@ float drag_speed(double value, double least, double most) {
 
 }  // namespace
 
+void zero_reads(std::string text) {
+  g_zero = std::move(text);
+}
+
 std::optional<std::string> take_refused() {
   return std::exchange(g_refused, std::nullopt);
 }
 
 bool number(const char* label, double& value, double least, double most, const char* unit_text, bool, float width,
             bool* finished) {
+  const std::string zero = std::exchange(g_zero, {});
   if (finished) *finished = false;
   ImGui::SetNextItemWidth(width == 0 ? -1.0f : px(width));
   ImGuiWindow* const window = ImGui::GetCurrentWindow();
@@ -155,7 +161,7 @@ bool number(const char* label, double& value, double least, double most, const c
     changed = true;
   }
   if (finished) *finished |= ImGui::IsItemDeactivatedAfterEdit();
-  const std::string text = number_text(value + 0.0, unit.shown);
+  const std::string text = value == 0.0 && !zero.empty() ? zero : number_text(value + 0.0, unit.shown);
   ImGui::RenderTextClipped(frame.Min, frame.Max, text.c_str(), text.c_str() + text.size(), nullptr, {0.5f, 0.5f});
   if (g_refused_field == id && ImGui::GetTime() - g_refused_at < kRefusedShown)
     window->DrawList->AddRect(frame.Min, frame.Max, color(palette().bad), g.Style.FrameRounding, 0, px(1.5f));

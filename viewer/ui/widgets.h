@@ -63,6 +63,7 @@ bool text_field(const char* label, std::string& value, const char* placeholder =
 // the value; `logarithmic` for stiffnesses and similar. True while it changes; `finished` at the end of a gesture.
 bool number(const char* label, double& value, double least, double most, const char* unit, bool logarithmic = false,
             float width = 0, bool* finished = nullptr);
+void zero_reads(std::string text);                  // how the next number shows 0, "automatic: 12 mm"
 std::optional<std::string> take_refused();          // why a number's text was rejected, once
 bool color_field(const char* label, float rgb[3]);  // linear, a swatch and three numbers
 // A bar dragged along its whole width.

@@ -54,6 +54,7 @@ constexpr KeyRow kKeyRows[] = {
     {"view.figures", "Tab", "hide or show figures"},
     {"help.keys", "F1", "; this page", "F1", "Keys\u2026"},
     {"view.devices", "D", "devices: state, axes, forces, arming"},
+    {"view.levels", "L", "levels to open, picture"},
     {"", "Drop a file", "open it"},
     {"file.close", "Esc", "close"},
 };

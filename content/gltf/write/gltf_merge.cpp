@@ -197,6 +197,7 @@ void merge_scenes(Merge& merge) {
 Result<SourceDocument> merge_document(const Level& level) {
   Merge merge = merge_nodes(level);
   if (const Status status = merge_meshes(merge); !status) return status.error();
+  if (const Status status = merge_materials(merge); !status) return status.error();
   merge_names(merge);
   merge_lights_and_cameras(merge);
   merge_scenes(merge);

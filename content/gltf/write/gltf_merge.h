@@ -25,6 +25,7 @@ struct Merge {
 // In this order: each step relies on the previous ones.
 Merge merge_nodes(const Level& level);  // numbers, children, transforms
 Status merge_meshes(Merge& merge);      // meshes, materials, images, new animations; mesh and skin of every node
+Status merge_materials(Merge& merge);   // changed ones
 void merge_names(Merge& merge);
 void merge_lights_and_cameras(Merge& merge);
 void merge_scenes(Merge& merge);
@@ -33,6 +34,9 @@ void merge_animations(Merge& merge);
 // Appends the meshes of which `meshes_anew` is set (by Level mesh), and the materials, images and animations that are
 // not in the document. `made`: the number of each such mesh in /meshes, else -1.
 Status append_parts(Merge& merge, const std::vector<bool>& meshes_anew, std::vector<std::int32_t>& made);
+
+// build_parts numbers textures by their images; afterwards by the document's textures.
+void point_textures(Json& document, Json& json);
 
 // Whether the Level's animation equals that of the document, except for channels of removed nodes.
 bool is_as_read(const Merge& merge, std::size_t animation);

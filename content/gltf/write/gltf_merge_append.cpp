@@ -21,7 +21,8 @@ std::size_t texture_of(Json& json, std::size_t image) {
   return json["textures"].size() - 1;
 }
 
-// build_document numbers textures by their images.
+}  // namespace
+
 void point_textures(Json& document, Json& json) {
   if (!json.is_object()) return;
   for (auto& [key, value] : json.items()) {
@@ -32,8 +33,6 @@ void point_textures(Json& document, Json& json) {
       point_textures(document, value);
   }
 }
-
-}  // namespace
 
 Status append_parts(Merge& merge, const std::vector<bool>& meshes_anew, std::vector<std::int32_t>& made) {
   Json& json = merge.document.json;
