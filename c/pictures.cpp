@@ -1,7 +1,12 @@
 // Pictures of a session, into memory, a framebuffer or a texture.
+#ifdef __EMSCRIPTEN__
+#include <GLES3/gl3.h>
+#include <emscripten/html5.h>
+#else
 #include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#endif
 
 #include <cstring>
 #include <optional>
@@ -34,15 +39,40 @@ pliant_status with_pictures(pliant_pictures* pictures, const char* call, F&& act
   });
 }
 
+#ifdef __EMSCRIPTEN__
+void throw_without_context() {
+  if (emscripten_webgl_get_current_context() <= 0)
+    throw pliant::Error{"Pictures", "no WebGL context is current", "make one current, of version 2"};
+}
+bool is_es() {
+  return true;
+}
+void throw_unless_of_size(GLuint, GLint, GLint) {}
+#else
+bool is_es() {
+  return !epoxy_is_desktop_gl();
+}
+
 // The loader of OpenGL's functions ends the process where no context is current.
 void throw_without_context() {
   using CurrentContext = void* (*)();
   const auto glx = reinterpret_cast<CurrentContext>(dlsym(RTLD_DEFAULT, "glXGetCurrentContext"));
   if (eglGetCurrentContext() == EGL_NO_CONTEXT && !(glx && glx()))
     throw pliant::Error{"Pictures", "no OpenGL context is current on this thread", "make one current, of version 4.5"};
-  if (epoxy_gl_version() < 45)
-    throw pliant::Error{"Pictures", "the current OpenGL context is older than 4.5", "create it with version 4.5 core"};
+  if (epoxy_gl_version() < (is_es() ? 30 : 45))
+    throw pliant::Error{"Pictures", "the current OpenGL context is older than 4.5, or than ES 3.0",
+                        "create it with version 4.5 core"};
 }
+
+void throw_unless_of_size(GLuint texture, GLint width, GLint height) {
+  GLint wide = 0, high = 0;
+  glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &wide);
+  glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &high);
+  if (wide != width || high != height)
+    throw Misuse{"`texture` has " + std::to_string(wide) + " x " + std::to_string(high) + " pixels",
+                 "pass its width and height", "call.context"};
+}
+#endif
 
 void make_pictures(pliant_session* session, bool headless, pliant_pictures** out) {
   needed(out, "out");
@@ -123,19 +153,18 @@ pliant_status pliant_pictures_draw_texture(pliant_pictures* pictures, const plia
   return with_pictures(pictures, __func__, [&](PicturesHandle& of, Held&) {
     throw_if_headless(of);
     if (!glIsTexture(texture)) throw Misuse{"`texture` is not one of the current context", "", "call.context"};
-    GLint wide = 0, high = 0;
-    glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &wide);
-    glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &high);
-    if (wide != width || high != height)
-      throw Misuse{"`texture` has " + std::to_string(wide) + " x " + std::to_string(high) + " pixels",
-                   "pass its width and height", "call.context"};
+    if (is_es())
+      throw Misuse{"OpenGL ES 3.0 does not know the size of `texture`",
+                   "attach it to a framebuffer and call pliant_pictures_draw", "call.context"};
+    throw_unless_of_size(texture, width, height);
     struct Framebuffer {
       GLuint id = 0;
-      Framebuffer() { glCreateFramebuffers(1, &id); }
+      Framebuffer() { glGenFramebuffers(1, &id); }
       ~Framebuffer() { glDeleteFramebuffers(1, &id); }
     } const framebuffer;
-    glNamedFramebufferTexture(framebuffer.id, GL_COLOR_ATTACHMENT0, texture, 0);
-    if (glCheckNamedFramebufferStatus(framebuffer.id, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.id);
+    glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    if (glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
       throw Misuse{"`texture` cannot be drawn into", "use a two-dimensional one of GL_RGBA8 or GL_SRGB8_ALPHA8",
                    "call.context"};
     check(of.pictures.draw(view_of_c(view), framebuffer.id, width, height));

@@ -2,24 +2,21 @@
 #include "frame.glsl"
 #include "environment.glsl"
 #include "light.glsl"
+#include "marker_point.glsl"
 #include "tone.glsl"
 
-in Varying {
-  vec3 position;
-  vec3 normal;
-  vec4 tint;
-} from;
+in MarkerPoint point;
 
 layout(location = 0) out vec4 color;
 
 void main() {
   Surface s;
-  s.position = from.position;
-  s.normal = normalize(from.normal);
-  s.to_eye = normalize(eye.xyz - from.position);
-  s.diffuse = from.tint.rgb;
+  s.position = point.position;
+  s.normal = normalize(point.normal);
+  s.to_eye = normalize(eye.xyz - point.position);
+  s.diffuse = point.tint.rgb;
   s.reflectance = vec3(0.04);
-  s.roughness = from.tint.w;
+  s.roughness = point.tint.w;
   s.occlusion = 1.0;
   s.wrap = s.behind = vec3(0.0);
   s.coat = vec2(0.0);

@@ -1,25 +1,20 @@
 // A deformed surface.
 #include "frame.glsl"
+#include "surface_point.glsl"
 #include "vertex.glsl"
 
-out Varying {
-  vec3 position;  // [m] world
-  vec3 normal;
-  vec4 tangent;
-  vec2 uv;
-  float height;   // [m]
-  flat uint zone;
-} to;
+out SurfacePoint point;
+flat out uint zone;
 
 const uint kZoneSize = 128u;
 
 void main() {
   vec4 world = world_position();
-  to.position = world.xyz;
-  to.normal = world_normal();
-  to.tangent = vec4(world_tangent(), tangent.w);
-  to.uv = uv;
-  to.height = height();
-  to.zone = touch_vertex / kZoneSize;
+  point.position = world.xyz;
+  point.normal = world_normal();
+  point.tangent = vec4(world_tangent(), tangent.w);
+  point.uv = uv;
+  point.height = height();
+  zone = touch_vertex / kZoneSize;
   gl_Position = view_projection * world;
 }

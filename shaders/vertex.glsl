@@ -15,13 +15,13 @@ bool rides() { return object.y != 0u; }
 
 vec4 world_position() {
   if (rides()) return vec4(skin_position(touch_vertex), 1.0);
-  return to_world * vec4(deformed_position(position, touch_normal, stream[touch_vertex]), 1.0);
+  return to_world * vec4(deformed_position(position, touch_normal, stream_at(touch_vertex)), 1.0);
 }
 
 // Not unit.
 vec3 world_normal() {
   if (rides()) return skin_normal(touch_vertex);
-  return mat3(normal_to_world) * deformed_normal(normal, stream[touch_vertex]);
+  return mat3(normal_to_world) * deformed_normal(normal, stream_at(touch_vertex));
 }
 
 // Not unit, and perpendicular to the normal only at rest.
@@ -31,4 +31,4 @@ vec3 world_tangent() {
 }
 
 // [m] along the normal, of a deformable surface.
-float height() { return rides() ? 0.0 : stream[touch_vertex].w; }
+float height() { return rides() ? 0.0 : stream_at(touch_vertex).w; }

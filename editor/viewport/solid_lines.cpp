@@ -46,9 +46,9 @@ void SolidView::draw_ends(const std::vector<LineEnd>& ends, const mat4& from_wor
   if (ends.empty()) return;
   line_ends_.write<LineEnd>(ends);
   line_layout_ = gpu::VertexArray::make();
-  glVertexArrayVertexBuffer(line_layout_.id(), 0, line_ends_.id(), 0, sizeof(LineEnd));
-  line_layout_.floats(0, 0, 3, 0);
-  line_layout_.floats(1, 0, 4, sizeof(vec3));
+  line_layout_.source(line_ends_.buffer(), sizeof(LineEnd));
+  line_layout_.floats(0, 3, 0);
+  line_layout_.floats(1, 4, sizeof(vec3));
   lines_program_.use();
   glUniformMatrix4fv(0, 1, GL_FALSE, &from_world[0][0]);
   glUniform1f(1, over ? 0.0f : 2e-5f);

@@ -44,9 +44,9 @@ SolidView::MeshOnGpu& SolidView::on_gpu(const std::shared_ptr<const DocumentMesh
     p.vertices = gpu::Buffer::fixed<SolidVertex>(vertices);
     p.indices = gpu::Buffer::fixed<std::uint32_t>(primitive.index);
     p.layout = gpu::VertexArray::make();
-    p.layout.source(0, p.vertices, sizeof(SolidVertex));
-    p.layout.floats(0, 0, 3, 0);
-    p.layout.floats(1, 0, 3, sizeof(vec3));
+    p.layout.source(p.vertices, sizeof(SolidVertex));
+    p.layout.floats(0, 3, 0);
+    p.layout.floats(1, 3, sizeof(vec3));
     p.layout.indices(p.indices);
     out.primitives.push_back(std::move(p));
   }
@@ -76,9 +76,9 @@ void SolidView::add_edges(PrimitiveOnGpu& to, const Primitive& primitive) {
   to.edge_count = static_cast<GLsizei>(ends.size());
   to.edges = gpu::Buffer::fixed<std::uint32_t>(ends);
   to.edge_layout = gpu::VertexArray::make();
-  to.edge_layout.source(0, to.vertices, sizeof(SolidVertex));
-  to.edge_layout.floats(0, 0, 3, 0);
-  to.edge_layout.floats(1, 0, 3, sizeof(vec3));
+  to.edge_layout.source(to.vertices, sizeof(SolidVertex));
+  to.edge_layout.floats(0, 3, 0);
+  to.edge_layout.floats(1, 3, sizeof(vec3));
   to.edge_layout.indices(to.edges);
 }
 
@@ -133,8 +133,8 @@ void SolidView::show_values(MeshOnGpu& mesh, std::size_t number, const SolidOrde
         it != order.state.paint.end() ? it->second : PaintLayer::constant(count, unpainted(*order.settings.channel));
     if (!p.has_values) {
       p.values = gpu::Buffer::writable(nullptr, layer.chunk_count() * PaintLayer::kChunk * sizeof(float));
-      p.layout.source(1, p.values, sizeof(float));
-      p.layout.floats(2, 1, 1, 0);
+      p.layout.source(p.values, sizeof(float));
+      p.layout.floats(2, 1, 0);
       p.shown = PaintLayer();
       p.has_values = true;
     }

@@ -27,6 +27,7 @@ double median_us(Work work) {
 }  // namespace
 
 Result<FieldCost> measure_field_cost(const World& world, double frame_rate) {
+  if (gpu::is_es()) return Error{"field", "the GPU computes no field in OpenGL ES 3.0"};
   const Mesh* mesh = nullptr;
   const Deformable* deformable = nullptr;
   for (auto [entity, d] : world.registry.view<Deformable>()) {

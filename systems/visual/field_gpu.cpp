@@ -4,6 +4,8 @@
 #include <tuple>
 #include <vector>
 
+#include "systems/visual/gpu/desktop.h"
+
 namespace pliant {
 
 GpuSource gpu_source(const FieldSource& s) {
@@ -46,9 +48,8 @@ std::size_t FieldOnGpu::evaluate(const FieldProgram& program, std::span<const Fi
   glUniform1i(program.source_count_, static_cast<GLint>(sources.size()));
   glUniform1ui(program.vertex_count_, vertices_);
   const GLuint bindings[] = {stream.id(), rest_.id(), rest_yz_.id(), sources_.id()};
-  for (GLuint i = 0; i < 4; ++i) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, bindings[i]);
-  glDispatchCompute((vertices_ + kZoneSize - 1) / kZoneSize, 1, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+  for (GLuint i = 0; i < 4; ++i) gpu::desktop::bind_storage(i, bindings[i]);
+  gpu::desktop::dispatch((vertices_ + kZoneSize - 1) / kZoneSize);
   return travelled;
 }
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "systems/touch/collide/surface_distance.h"
+#include "systems/visual/gpu/desktop.h"
 
 namespace pliant {
 namespace {
@@ -222,7 +223,7 @@ void FieldReplay::end_tick() {
 }
 
 std::size_t FieldReplay::evaluate(const ReplayProgram& program, const gpu::Buffer& stream) {
-  if (clear_) state_.clear();
+  if (clear_) gpu::desktop::clear(state_.id());
   clear_ = false;
   if (runs_.empty()) {
     rows_.clear();
@@ -283,9 +284,8 @@ std::size_t FieldReplay::evaluate(const ReplayProgram& program, const gpu::Buffe
   number("arm_ramp", motion_.arm_time / motion_.dt * (1 - motion_.arm_decay));
   const GLuint bindings[] = {stream.id(),        rest_.id(),          rest_yz_.id(),     state_.id(),
                              coefficients_.id(), sources_there_.id(), steps_there_.id(), offsets_there_.id()};
-  for (GLuint i = 0; i < std::size(bindings); ++i) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, bindings[i]);
-  glDispatchCompute(static_cast<GLuint>(zones.size()), 1, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+  for (GLuint i = 0; i < std::size(bindings); ++i) gpu::desktop::bind_storage(i, bindings[i]);
+  gpu::desktop::dispatch(static_cast<GLuint>(zones.size()));
 
   rows_.clear();
   sources_.clear();

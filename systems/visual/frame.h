@@ -59,7 +59,9 @@ enum TextureUnit : unsigned {
   kTransmissionUnit = 9,
   kThicknessUnit = 10,
   kBehindUnit = 11,
-  kBehindDepthUnit = 12
+  kBehindDepthUnit = 12,
+  kStreamUnit = 13,  // in OpenGL ES, like the next
+  kSkinUnit = 14
 };
 
 }  // namespace pliant

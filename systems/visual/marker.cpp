@@ -41,7 +41,7 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
   Result<gpu::Program> program = gpu::Program::load({"marker.vert", "marker.frag"});
   if (!program) return program.error();
   made.program_ = *std::move(program);
-  Result<gpu::Program> shadow = gpu::Program::load({"marker_shadow.vert"});
+  Result<gpu::Program> shadow = gpu::Program::load({"marker_shadow.vert", "marker_shadow.frag"});
   if (!shadow) return shadow.error();
   made.shadow_ = *std::move(shadow);
   Box scene;
@@ -81,18 +81,19 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
   for (const Known& probe : made.probes_) parts += probe.parts.size();
   const std::size_t most = made.probes_.size() * kMostInstances + kMostOfPart * parts +
                            made.most_contacts_ * kMostOfContact + made.most_handles_ * kMostOfHandle;
-  made.instances_ = gpu::Buffer::writable(nullptr, most * sizeof(Instance));
-
-  made.layout_ = gpu::VertexArray::make();
-  made.layout_.source(0, made.vertices_, sizeof(MarkerVertex));
-  made.layout_.source(1, made.instances_, sizeof(Instance), 1);
-  made.layout_.floats(0, 0, 3, offsetof(MarkerVertex, position));
-  made.layout_.floats(1, 0, 3, offsetof(MarkerVertex, normal));
-  made.layout_.floats(2, 1, 4, offsetof(Instance, row_x));
-  made.layout_.floats(3, 1, 4, offsetof(Instance, row_y));
-  made.layout_.floats(4, 1, 4, offsetof(Instance, row_z));
-  made.layout_.floats(5, 1, 4, offsetof(Instance, tint));
-  made.layout_.indices(made.indices_);
+  for (unsigned kind = 0; kind < kKinds; ++kind) {
+    made.instances_[kind] = gpu::Buffer::writable(nullptr, most * sizeof(Instance));
+    gpu::VertexArray& layout = made.layout_[kind] = gpu::VertexArray::make();
+    layout.source(made.vertices_, sizeof(MarkerVertex));
+    layout.floats(0, 3, offsetof(MarkerVertex, position));
+    layout.floats(1, 3, offsetof(MarkerVertex, normal));
+    layout.source(made.instances_[kind], sizeof(Instance), 1);
+    layout.floats(2, 4, offsetof(Instance, row_x));
+    layout.floats(3, 4, offsetof(Instance, row_y));
+    layout.floats(4, 4, offsetof(Instance, row_z));
+    layout.floats(5, 4, offsetof(Instance, tint));
+    layout.indices(made.indices_);
+  }
   return made;
 }
 
@@ -256,27 +257,23 @@ std::size_t Markers::upload(const Viewpoint& viewpoint, const RenderOptions& opt
   changed_ = placed_[kBall] != balls_before_;
   balls_before_ = placed_[kBall];
   std::size_t travelled = 0;
-  for (const std::vector<Instance>& kind : placed_)
-    travelled += instances_.write(travelled, kind.data(), kind.size() * sizeof(Instance));
+  for (unsigned kind = 0; kind < kKinds; ++kind)
+    travelled += instances_[kind].write(0, placed_[kind].data(), placed_[kind].size() * sizeof(Instance));
   return travelled;
 }
 
-void Markers::draw_kind(Kind kind, GLuint first_instance) const {
-  glDrawElementsInstancedBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(shapes_[kind].index_count), GL_UNSIGNED_INT,
-                                      reinterpret_cast<const void*>(shapes_[kind].first_index * sizeof(std::uint32_t)),
-                                      static_cast<GLsizei>(placed_[kind].size()), first_instance);
+void Markers::draw_kind(Kind kind) const {
+  glBindVertexArray(layout_[kind].id());
+  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(shapes_[kind].index_count), GL_UNSIGNED_INT,
+                          reinterpret_cast<const void*>(shapes_[kind].first_index * sizeof(std::uint32_t)),
+                          static_cast<GLsizei>(placed_[kind].size()));
 }
 
 void Markers::draw() const {
   program_.use();
-  glBindVertexArray(layout_.id());
   glFrontFace(GL_CCW);
   glEnable(GL_CULL_FACE);
-  GLuint first = 0;
-  for (unsigned kind = 0; kind < kKinds; ++kind) {
-    draw_kind(static_cast<Kind>(kind), first);
-    first += static_cast<GLuint>(placed_[kind].size());
-  }
+  for (const Kind kind : {kBall, kRod, kHead}) draw_kind(kind);
 }
 
 std::uint32_t Markers::balls(std::span<vec4> balls) const {
@@ -290,8 +287,7 @@ std::uint32_t Markers::balls(std::span<vec4> balls) const {
 
 void Markers::draw_shadow() const {
   shadow_.use();
-  glBindVertexArray(layout_.id());
-  draw_kind(kBall, 0);
+  draw_kind(kBall);
 }
 
 }  // namespace pliant

@@ -65,7 +65,7 @@ class Markers {
   void lay_out_handle(const HandleMark& handle);
   void lay_out_axes(vec3 from, const mat3& axes);
   void lay_out_arrow(vec3 from, vec3 force, float thickness);
-  void draw_kind(Kind kind, GLuint first_instance) const;
+  void draw_kind(Kind kind) const;
   void place(Kind kind, vec3 from, vec3 to, float radius, vec3 color, float roughness);
 
   std::vector<Known> probes_;
@@ -74,8 +74,8 @@ class Markers {
   std::size_t most_contacts_ = 0, most_handles_ = 0;  // capacity
   std::vector<Box> boxes_;
   float diagonal_ = 1.0f;  // [m] of the scene
-  gpu::Buffer vertices_, indices_, instances_;
-  gpu::VertexArray layout_;
+  gpu::Buffer vertices_, indices_, instances_[kKinds];
+  gpu::VertexArray layout_[kKinds];
   Shape shapes_[kKinds];
   std::vector<Instance> placed_[kKinds];
   std::vector<Instance> balls_before_;

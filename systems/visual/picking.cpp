@@ -12,8 +12,9 @@ using Pixel = glm::uvec4;
 
 gpu::Object<gpu::DestroyRenderbuffer> plane_of_one_pixel(GLenum format) {
   GLuint id = 0;
-  glCreateRenderbuffers(1, &id);
-  glNamedRenderbufferStorage(id, format, 1, 1);
+  glGenRenderbuffers(1, &id);
+  glBindRenderbuffer(GL_RENDERBUFFER, id);
+  glRenderbufferStorage(GL_RENDERBUFFER, format, 1, 1);
   return gpu::Object<gpu::DestroyRenderbuffer>(id);
 }
 
@@ -37,50 +38,45 @@ Result<Picking> Picking::make() {
   made.program_ = *std::move(program);
   made.clip_from_world_ = glGetUniformLocation(made.program_.id(), "clip_from_world");
   GLuint id = 0;
-  glCreateFramebuffers(1, &id);
+  glGenFramebuffers(1, &id);
   made.framebuffer_ = gpu::Object<gpu::DestroyFramebuffer>(id);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, id);
   GLenum targets[kPlanes];
   for (std::size_t i = 0; i < kPlanes; ++i) {
     targets[i] = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i);
     made.planes_[i] = plane_of_one_pixel(GL_RGBA32UI);
-    glNamedFramebufferRenderbuffer(id, targets[i], GL_RENDERBUFFER, made.planes_[i].id());
+    glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, targets[i], GL_RENDERBUFFER, made.planes_[i].id());
   }
   made.depth_ = plane_of_one_pixel(GL_DEPTH_COMPONENT32F);
-  glNamedFramebufferRenderbuffer(id, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, made.depth_.id());
-  glNamedFramebufferDrawBuffers(id, kPlanes, targets);
-  made.answer_ = gpu::Buffer::writable(nullptr, kPlanes * sizeof(Pixel));
+  glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, made.depth_.id());
+  glDrawBuffers(kPlanes, targets);
   return made;
 }
 
 void Picking::draw(Surfaces& surfaces, const mat4& clip_from_world, const PickQuestion& question) {
   question_ = question;
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.id());
   glViewport(0, 0, 1, 1);
   const GLuint nothing[4] = {};
-  for (GLint i = 0; i < static_cast<GLint>(kPlanes); ++i)
-    glClearNamedFramebufferuiv(framebuffer_.id(), GL_COLOR, i, nothing);
+  for (GLint i = 0; i < static_cast<GLint>(kPlanes); ++i) glClearBufferuiv(GL_COLOR, i, nothing);
   glClear(GL_DEPTH_BUFFER_BIT);
   program_.use();
   const mat4 through_pixel = narrowed(question) * clip_from_world;
   glUniformMatrix4fv(clip_from_world_, 1, GL_FALSE, &through_pixel[0][0]);
   surfaces.hold(question.holds);
   surfaces.draw_as_held();
-
-  // Into a GPU buffer; fetched only once it is complete.
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, answer_.id());
-  for (std::size_t i = 0; i < kPlanes; ++i) {
-    glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
-    glReadPixels(0, 0, 1, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, reinterpret_cast<void*>(i * sizeof(Pixel)));
-  }
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   written_ = gpu::Fence::here();
 }
 
 std::optional<PickAnswer> Picking::take(const Surfaces& surfaces, bool wait) {
-  if (!written_.set() || !(wait ? written_.wait() : written_.passed())) return std::nullopt;
+  if (!written_.set() || !(wait || written_.passed())) return std::nullopt;
   written_ = gpu::Fence();
   Pixel pixels[kPlanes];
-  glGetNamedBufferSubData(answer_.id(), 0, sizeof pixels, pixels);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
+  for (std::size_t i = 0; i < kPlanes; ++i) {
+    glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+    glReadPixels(0, 0, 1, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, &pixels[i]);
+  }
   PickAnswer answer{question_, std::nullopt};
   if (const Entity object = surfaces.object(pixels[0].x); object != kNoEntity)
     answer.seen = Picked{object, place_of(pixels[0]), place_of(pixels[1]), normalize(place_of(pixels[2]))};

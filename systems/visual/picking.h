@@ -33,7 +33,6 @@ class Picking {
   gpu::Object<gpu::DestroyFramebuffer> framebuffer_;
   std::array<gpu::Object<gpu::DestroyRenderbuffer>, kPlanes> planes_;
   gpu::Object<gpu::DestroyRenderbuffer> depth_;
-  gpu::Buffer answer_;  // kPlanes pixels
   gpu::Fence written_;
   PickQuestion question_;
 };

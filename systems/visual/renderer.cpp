@@ -4,6 +4,7 @@
 
 #include "runtime/clock.h"
 #include "systems/visual/environment.h"
+#include "systems/visual/gpu/desktop.h"
 #include "systems/visual/gpu/framebuffer.h"
 #include "systems/visual/gpu/program.h"
 #include "systems/visual/gpu/scene_texture.h"
@@ -34,13 +35,14 @@ struct Renderer::Parts {
   Surfaces surfaces;
   Markers markers;
   TetLines tetrahedra;
-  gpu::Program background;
-  gpu::VertexArray nothing;  // the background's vertices are computed from their index
+  gpu::Program background, encode;  // `encode` in OpenGL ES
+  gpu::VertexArray nothing;         // the background's vertices are computed from their index
   gpu::Buffer frame = gpu::Buffer::writable(nullptr, sizeof(FrameConstants));
   gpu::Buffer behind_frame = gpu::Buffer::writable(nullptr, sizeof(FrameConstants));
   gpu::Framebuffer samples, picture;
   gpu::SceneTexture behind;  // the picture seen through glass
-  bool through = false;      // this picture contains glass
+  gpu::Texture blank = gpu::Texture::constant(0, 0, 0);
+  bool through = false;  // this picture contains glass
   Shadow shadow;
   bool shaded = false;     // this picture has a shadow
   bool shadow_old = true;  // the map is out of date
@@ -54,6 +56,7 @@ struct Renderer::Parts {
   bool draw_shadow();
   void draw_behind(int width, int height);
   void draw_scene(vec3 eye);
+  void show_in(std::uint32_t target, int width, int height);
   FrameStats render(const Viewpoint& viewpoint, int width, int height);
 };
 
@@ -104,10 +107,10 @@ bool Renderer::Parts::draw_shadow() {
 
 // The picture behind glass: everything that is not glass, in linear light, in the same view.
 void Renderer::Parts::draw_behind(int width, int height) {
+  blank.bind(kBehindUnit);  // not the picture that is being drawn, nor no texture, of which browsers warn
+  blank.bind(kBehindDepthUnit);
   if (!through) return;
   if (!behind.has_size(width, height)) behind = gpu::SceneTexture(width, height);
-  glBindTextureUnit(kBehindUnit, 0);
-  glBindTextureUnit(kBehindDepthUnit, 0);
   glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, behind_frame.id());
   behind.begin();
   surfaces.draw_opaque(false);
@@ -118,9 +121,9 @@ void Renderer::Parts::draw_behind(int width, int height) {
 
 // The passes of the visible picture, in order.
 void Renderer::Parts::draw_scene(vec3 eye) {
-  glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
+  surfaces.draw_as_lines(options.wireframe);
   surfaces.draw_opaque(true);
-  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  surfaces.draw_as_lines(false);
   markers.draw();
 
   if (options.background) {
@@ -131,9 +134,9 @@ void Renderer::Parts::draw_scene(vec3 eye) {
   }
 
   glEnable(GL_BLEND);
-  glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
+  surfaces.draw_as_lines(options.wireframe);
   surfaces.draw_blended(eye);
-  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  surfaces.draw_as_lines(false);
   glDisable(GL_BLEND);
   if (options.tetrahedra) tetrahedra.draw();
 }
@@ -145,8 +148,8 @@ FrameStats Renderer::Parts::render(const Viewpoint& viewpoint, int width, int he
   }
   FrameStats stats;
   stats.upload_bytes = upload(viewpoint, width, height);
-  glEnable(GL_FRAMEBUFFER_SRGB);
-  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+  gpu::desktop::encode_srgb(true);
+  gpu::desktop::filter_across_cube_edges();
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);  // the background is exactly at the far plane
   glDepthMask(GL_TRUE);
@@ -164,7 +167,23 @@ FrameStats Renderer::Parts::render(const Viewpoint& viewpoint, int width, int he
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   draw_scene(vec3(viewpoint.eye));
   samples.resolve_into(picture);
+  glBindVertexArray(0);
+  glActiveTexture(GL_TEXTURE0);
   return stats;
+}
+
+// Copies the encoded bytes. Blits of OpenGL ES decode them, and encode them again only in a target that is sRGB.
+void Renderer::Parts::show_in(std::uint32_t target, int width, int height) {
+  if (!encode.id() || gpu::encodes_srgb(target)) return picture.copy_into(target);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+  glViewport(0, 0, width, height);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  encode.use();
+  picture.bind(gpu::kScratchUnit);
+  glBindVertexArray(nothing.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glActiveTexture(GL_TEXTURE0);
 }
 
 Renderer::Renderer() : parts_(std::make_unique<Parts>()) {}
@@ -176,6 +195,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const World& world) {
   Result<Surfaces> surfaces = Surfaces::make(world);
   if (!surfaces) return surfaces.error();
   parts.surfaces = *std::move(surfaces);
+  if (parts.surfaces.has_glass() && !gpu::SceneTexture(1, 1).complete())
+    return Error{"GPU", "does not draw into half-float textures, which glass needs",
+                 "enable EXT_color_buffer_float or EXT_color_buffer_half_float"};
   Result<Picking> picking = Picking::make();
   if (!picking) return picking.error();
   parts.picking = *std::move(picking);
@@ -188,6 +210,11 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const World& world) {
   Result<gpu::Program> background = gpu::Program::load({"background.vert", "background.frag"});
   if (!background) return background.error();
   parts.background = *std::move(background);
+  if (gpu::is_es()) {
+    Result<gpu::Program> encode = gpu::Program::load({"screen.vert", "encode.frag"});
+    if (!encode) return encode.error();
+    parts.encode = *std::move(encode);
+  }
   parts.surroundings = Surroundings::make(world);
   parts.shadow = Shadow::make();
   parts.nothing = gpu::VertexArray::make();
@@ -230,7 +257,7 @@ RenderOptions& Renderer::options() {
 FrameStats Renderer::draw(const Viewpoint& viewpoint, std::uint32_t target, int width, int height) {
   const std::uint64_t start = now_ns();
   FrameStats stats = parts_->render(viewpoint, width, height);
-  parts_->picture.copy_into(target);
+  parts_->show_in(target, width, height);
   glFinish();
   stats.draw_ms = static_cast<double>(now_ns() - start) * 1e-6;
   return stats;

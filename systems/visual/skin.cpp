@@ -14,10 +14,7 @@ std::uint32_t folded(vec3 n) {
   return glm::packSnorm2x16(f);
 }
 
-Skin::Skin(std::size_t vertices)
-    : here_(vertices),
-      gpu_buffer_(gpu::Buffer::writable(nullptr, vertices * sizeof(glm::uvec4))),
-      staging_(std::max<std::size_t>(1, vertices) * sizeof(glm::uvec4)) {}
+Skin::Skin(std::size_t vertices) : here_(vertices), table_(gpu::Table::Of::kBits, nullptr, vertices, vertices) {}
 
 bool Skin::take(std::span<const vec3> position, std::span<const vec3> normal) {
   if (position.size() != here_.size() || normal.size() != here_.size() || here_.empty()) return false;
@@ -35,8 +32,8 @@ bool Skin::take(std::span<const vec3> position, std::span<const vec3> normal) {
 std::size_t Skin::upload() {
   if (!newer_here_) return 0;
   newer_here_ = false;
-  const std::size_t travelled = staging_.send(gpu_buffer_, 0, here_.data(), here_.size() * sizeof(glm::uvec4));
-  staging_.finish();
+  const std::size_t travelled = table_.write(0, here_.data(), here_.size());
+  table_.finish();
   return travelled;
 }
 

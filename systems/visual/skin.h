@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "components/math.h"
-#include "systems/visual/gpu/buffer.h"
-#include "systems/visual/gpu/staging.h"
+#include "systems/visual/gpu/table.h"
 
 namespace pliant {
 
@@ -29,16 +28,15 @@ class Skin {
 
   std::size_t vertices() const { return here_.size(); }
   const Box& box() const { return box_; }  // [m] world
-  const gpu::Buffer& buffer() const { return gpu_buffer_; }
+  const gpu::Table& table() const { return table_; }
   // A copy of the last state taken.
-  gpu::Buffer copy() const { return gpu::Buffer::writable(here_.data(), here_.size() * sizeof(glm::uvec4)); }
+  gpu::Table copy() const { return {gpu::Table::Of::kBits, here_.data(), here_.size(), 0}; }
 
  private:
   std::vector<glm::uvec4> here_;
   Box box_;
   bool newer_here_ = false;
-  gpu::Buffer gpu_buffer_;
-  gpu::Staging staging_;
+  gpu::Table table_;
 };
 
 }  // namespace pliant

@@ -57,15 +57,23 @@ std::vector<Vertex> vertices_of(const DrawMesh& draw, const Mesh* touch, bool by
 
 gpu::VertexArray layout_of(const gpu::Buffer& vertices, const gpu::Buffer& indices) {
   gpu::VertexArray layout = gpu::VertexArray::make();
-  layout.source(0, vertices, sizeof(Vertex));
-  layout.floats(0, 0, 3, offsetof(Vertex, position));
-  layout.floats(1, 0, 3, offsetof(Vertex, touch_normal));
-  layout.floats(2, 0, 3, offsetof(Vertex, normal));
-  layout.floats(3, 0, 4, offsetof(Vertex, tangent));
-  layout.floats(4, 0, 2, offsetof(Vertex, uv));
-  layout.integer(5, 0, offsetof(Vertex, touch_vertex));
+  layout.source(vertices, sizeof(Vertex));
+  layout.floats(0, 3, offsetof(Vertex, position));
+  layout.floats(1, 3, offsetof(Vertex, touch_normal));
+  layout.floats(2, 3, offsetof(Vertex, normal));
+  layout.floats(3, 4, offsetof(Vertex, tangent));
+  layout.floats(4, 2, offsetof(Vertex, uv));
+  layout.integer(5, offsetof(Vertex, touch_vertex));
   layout.indices(indices);
   return layout;
+}
+
+std::vector<std::uint32_t> triangle_edges(const std::vector<std::uint32_t>& triangles) {
+  std::vector<std::uint32_t> ends;
+  ends.reserve(2 * triangles.size());
+  for (std::size_t i = 0; i + 2 < triangles.size(); i += 3)
+    for (const std::size_t k : {0, 1, 1, 2, 2, 0}) ends.push_back(triangles[i + k]);
+  return ends;
 }
 
 // Closed, and not inside out (by its signed volume).
@@ -110,20 +118,21 @@ Result<Surfaces> Surfaces::make(const World& world) {
   if (!shadow) return shadow.error();
   made.shadow_ = *std::move(shadow);
 
-  GLint largest = 0;  // [bytes] largest stream that a shader can address
-  glGetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
+  const std::size_t largest = gpu::Table::most_bytes();
   for (auto [entity, drawable] : world.registry.view<Drawable>()) {
     Item item = make_item(world, entity, world.draw_meshes[drawable.mesh]);
-    if (item.stream.buffer().size() > static_cast<std::size_t>(largest))
+    if (item.stream.table().bytes() > largest)
       return Error{"GPU",
                    fmt::format("a surface of {} vertices needs a stream of {} MiB, this driver allows {}",
-                               item.stream.values().size(), item.stream.buffer().size() >> 20, largest >> 20),
+                               item.stream.values().size(), item.stream.table().bytes() >> 20, largest >> 20),
                    "use a GPU, or a coarser mesh"};
-    if (item.replay.bytes() > static_cast<std::size_t>(largest))
+    if (item.replay.bytes() > largest)
       return Error{"GPU",
                    fmt::format("the field of a surface of {} vertices needs {} MiB there, this driver allows {}",
                                item.stream.values().size(), item.replay.bytes() >> 20, largest >> 20),
                    "use --field cpu, or a coarser mesh"};
+    if (gpu::is_es() && (item.on_gpu || item.replayed))
+      return Error{"GPU", "the field was to be computed there, which needs OpenGL 4.5", "use --field cpu"};
     made.boxes_.push_back(world_box(world.draw_meshes[drawable.mesh], item.to_world));
     item.number = static_cast<std::uint32_t>(made.items_.size()) + 1;
     const MapPlacement block = placement_block(item.to_world, item.number, false);
@@ -167,6 +176,10 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
   item.vertices = gpu::Buffer::fixed<Vertex>(vertices);
   item.indices = gpu::Buffer::fixed<std::uint32_t>(draw.indices);
   item.layout = layout_of(item.vertices, item.indices);
+  if (gpu::is_es()) {
+    item.edges = gpu::Buffer::fixed<std::uint32_t>(triangle_edges(draw.indices));
+    item.edge_layout = layout_of(item.vertices, item.edges);
+  }
   item.rest = box_of(draw);
   for (const DrawPart& run : draw.parts) {
     Box box;
@@ -189,7 +202,7 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
     if (item.on_gpu) item.field = FieldOnGpu(*touch);
     if (item.replayed) item.replay = FieldReplay(*touch, *deformable, 1 / world.simulation.touch_rate);
   }
-  if (touch && rides) item.skin = Skin(touch->vertex_count);
+  item.skin = Skin(touch && rides ? touch->vertex_count : 0);
 
   item.to_world = placement_of(world, entity);
   item.mirrored = glm::determinant(mat3(item.to_world)) < 0;

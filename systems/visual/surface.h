@@ -33,6 +33,8 @@ class Surfaces {
   std::size_t upload();                      // returns the bytes uploaded
   bool changed() const { return changed_; }  // something looks different since the last upload
 
+  // From now on triangles are drawn as lines. (OpenGL ES also draws those that face away.)
+  void draw_as_lines(bool on);
   // Draws with materials. Opaque parts come first; blended parts only in the second call, from back to front as seen
   // from `eye` [m].
   void draw_opaque(bool glass_too) const;
@@ -62,6 +64,8 @@ class Surfaces {
     Entity entity;
     gpu::Buffer vertices, indices, placement;
     gpu::VertexArray layout;
+    gpu::Buffer edges;             // in OpenGL ES: both ends of every triangle's edges
+    gpu::VertexArray edge_layout;  // the same vertices, by `edges`
     std::vector<Part> parts;
     StreamCopies stream;
     FieldOnGpu field;                      // only if the field is a list on the GPU
@@ -85,7 +89,8 @@ class Surfaces {
   // State kept by hold(): a soft body's vertices and a rigid one's placement.
   struct Held {
     Entity object = kNoEntity;
-    gpu::Buffer skin, placement;
+    gpu::Table skin;
+    gpu::Buffer placement;
   };
   Item* find(Entity entity);
   void bind(const Item& item) const;
@@ -100,6 +105,7 @@ class Surfaces {
   FieldProgram field_program_;  // compiled only if a field needs them, as is the next
   ReplayProgram replay_program_;
   bool changed_ = true, has_glass_ = false;
+  bool by_edges_ = false;  // draws `edges`
 };
 
 }  // namespace pliant

@@ -2,23 +2,30 @@
 #include <algorithm>
 
 #include "systems/visual/frame.h"
+#include "systems/visual/gpu/desktop.h"
 #include "systems/visual/surface.h"
 
 namespace pliant {
 
+void Surfaces::draw_as_lines(bool on) {
+  gpu::desktop::draw_as_lines(on);
+  by_edges_ = on && gpu::is_es();
+}
+
 void Surfaces::bind(const Item& item) const {
-  glBindVertexArray(item.layout.id());
+  glBindVertexArray((by_edges_ ? item.edge_layout : item.layout).id());
   const Item& dented = item.stream_of ? items_[*item.stream_of] : item;
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kStreamBinding, dented.stream.buffer().id());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSkinBinding, item.skin.buffer().id());
+  dented.stream.table().bind(kStreamBinding, kStreamUnit);
+  item.skin.table().bind(kSkinBinding, kSkinUnit);
   glBindBufferBase(GL_UNIFORM_BUFFER, kPlacementBinding, item.placement.id());
   glFrontFace(item.mirrored ? GL_CW : GL_CCW);
 }
 
 void Surfaces::draw_part(const Part& part) const {
   materials_.bind(part.run.material);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.run.index_count), GL_UNSIGNED_INT,
-                 reinterpret_cast<const void*>(std::size_t{part.run.first_index} * sizeof(std::uint32_t)));
+  const std::size_t ends = by_edges_ ? 2 : 1;  // per index of a triangle
+  glDrawElements(by_edges_ ? GL_LINES : GL_TRIANGLES, static_cast<GLsizei>(ends * part.run.index_count),
+                 GL_UNSIGNED_INT, reinterpret_cast<const void*>(ends * part.run.first_index * sizeof(std::uint32_t)));
 }
 
 // Both sides of everything: a sheet, or the rim of a dent, blocks light in either direction.
@@ -42,7 +49,7 @@ void Surfaces::draw_as_held() const {
   for (const Item& item : items_) {
     bind(item);
     if (item.entity == held_.object && held_.placement.size() > 0) {
-      glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSkinBinding, held_.skin.id());
+      held_.skin.bind(kSkinBinding, kSkinUnit);
       glBindBufferBase(GL_UNIFORM_BUFFER, kPlacementBinding, held_.placement.id());
     }
     for (const Part& part : item.parts) draw_one(item, part);

@@ -41,8 +41,8 @@ Result<TetLines> TetLines::make(const World& world) {
     item.edges = gpu::Buffer::fixed<std::uint32_t>(ends);
     item.on_gpu = gpu::Buffer::writable(nullptr, item.nodes.size() * sizeof(vec3));
     item.layout = gpu::VertexArray::make();
-    item.layout.source(0, item.on_gpu, sizeof(vec3));
-    item.layout.floats(0, 0, 3, 0);
+    item.layout.source(item.on_gpu, sizeof(vec3));
+    item.layout.floats(0, 3, 0);
     item.layout.indices(item.edges);
     made.items_.push_back(std::move(item));
   }

@@ -10,7 +10,6 @@ namespace {
 
 // One snapshot's zones; more only occur if several snapshots were taken for one picture.
 constexpr std::size_t kStagedZones = 512;
-constexpr std::size_t kZoneBytes = kZoneSize * sizeof(vec4);
 
 }  // namespace
 
@@ -19,8 +18,7 @@ StreamCopies::StreamCopies(std::span<const vec4> initial) : here_(initial.begin(
   here_.resize(zones * kZoneSize, vec4(0));
   newer_here_.assign(zones, false);
   waiting_.reserve(zones);
-  gpu_buffer_ = gpu::Buffer::writable(here_.data(), here_.size() * sizeof(vec4));
-  staging_ = gpu::Staging(std::min(zones, kStagedZones) * kZoneBytes);
+  table_ = gpu::Table(gpu::Table::Of::kFloats, here_.data(), here_.size(), std::min(zones, kStagedZones) * kZoneSize);
 }
 
 void StreamCopies::take(std::span<const std::uint32_t> zones, std::span<const vec4> packed) {
@@ -42,9 +40,9 @@ std::size_t StreamCopies::upload() {
     const std::size_t first = waiting_[i];
     std::size_t count = 0;
     for (; i < waiting_.size() && waiting_[i] == first + count; ++i, ++count) newer_here_[waiting_[i]] = false;
-    travelled += staging_.send(gpu_buffer_, first * kZoneBytes, &here_[first * kZoneSize], count * kZoneBytes);
+    travelled += table_.write(first * kZoneSize, &here_[first * kZoneSize], count * kZoneSize);
   }
-  staging_.finish();
+  table_.finish();
   waiting_.clear();
   return travelled;
 }

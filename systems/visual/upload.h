@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "components/math.h"
-#include "systems/visual/gpu/buffer.h"
-#include "systems/visual/gpu/staging.h"
+#include "systems/visual/gpu/table.h"
 
 namespace pliant {
 
@@ -24,15 +23,15 @@ class StreamCopies {
   // Updates the GPU's copy, neighbouring zones in one transfer. Returns the bytes uploaded.
   std::size_t upload();
 
-  const gpu::Buffer& buffer() const { return gpu_buffer_; }
+  const gpu::Table& table() const { return table_; }
+  const gpu::Buffer& buffer() const { return table_.buffer(); }
   std::span<const vec4> values() const { return here_; }
 
  private:
   std::vector<vec4> here_;              // [1,1,1,m] never older than the GPU's
   std::vector<bool> newer_here_;        // per zone
   std::vector<std::uint32_t> waiting_;  // zones with newer_here_, in order of arrival
-  gpu::Buffer gpu_buffer_;
-  gpu::Staging staging_;
+  gpu::Table table_;
 };
 
 }  // namespace pliant

@@ -3,57 +3,74 @@
 #include "runtime/assert.h"
 
 namespace pliant::gpu {
+namespace {
 
-Buffer::Buffer(const void* data, std::size_t size, GLbitfield flags) : size_(size) {
+const void* at_byte(std::size_t offset) {
+  return reinterpret_cast<const void*>(offset);
+}
+
+}  // namespace
+
+// Contents pass through GL_COPY_WRITE_BUFFER, which belongs to no vertex array and gives WebGL's buffers no kind.
+Buffer::Buffer(const void* data, std::size_t size, GLenum usage) : size_(size) {
   GLuint id = 0;
-  glCreateBuffers(1, &id);
+  glGenBuffers(1, &id);
   object_ = Object<DestroyBuffer>(id);
   // OpenGL has no empty buffers: a few bytes are allocated, so that an empty mesh needs no special case.
   const std::size_t at_least_some = size ? size : 16;
-  glNamedBufferStorage(id, static_cast<GLsizeiptr>(at_least_some), size ? data : nullptr, flags);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, id);
+  glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(at_least_some), size ? data : nullptr, usage);
 }
 
 Buffer Buffer::fixed(const void* data, std::size_t size) {
-  return {data, size, 0};
+  return {data, size, GL_STATIC_DRAW};
 }
 
 Buffer Buffer::writable(const void* data, std::size_t size) {
-  return {data, size, GL_DYNAMIC_STORAGE_BIT};
+  return {data, size, GL_DYNAMIC_DRAW};
 }
 
 std::size_t Buffer::write(std::size_t offset, const void* data, std::size_t size) {
   ASSERT(offset + size <= size_);
-  if (size) glNamedBufferSubData(id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(size), data);
+  if (size == 0) return 0;
+  glBindBuffer(GL_COPY_WRITE_BUFFER, id());
+  glBufferSubData(GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(size), data);
   return size;
-}
-
-void Buffer::clear() {
-  if (size_) glClearNamedBufferData(id(), GL_R32F, GL_RED, GL_FLOAT, nullptr);
 }
 
 VertexArray VertexArray::make() {
   GLuint id = 0;
-  glCreateVertexArrays(1, &id);
+  glGenVertexArrays(1, &id);
   VertexArray made;
   made.object_ = Object<DestroyVertexArray>(id);
   return made;
 }
 
-void VertexArray::source(GLuint slot, const Buffer& buffer, GLsizei stride, GLuint divisor) const {
-  glVertexArrayVertexBuffer(id(), slot, buffer.id(), 0, stride);
-  glVertexArrayBindingDivisor(id(), slot, divisor);
+void VertexArray::source(const Buffer& buffer, GLsizei stride, GLuint divisor) {
+  buffer_ = buffer.id();
+  stride_ = stride;
+  divisor_ = divisor;
 }
 
-void VertexArray::floats(GLuint attribute, GLuint slot, GLint count, std::size_t offset) const {
-  glEnableVertexArrayAttrib(id(), attribute);
-  glVertexArrayAttribFormat(id(), attribute, count, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
-  glVertexArrayAttribBinding(id(), attribute, slot);
+void VertexArray::floats(GLuint attribute, GLint count, std::size_t offset) const {
+  glBindVertexArray(id());
+  glBindBuffer(GL_ARRAY_BUFFER, buffer_);
+  glEnableVertexAttribArray(attribute);
+  glVertexAttribPointer(attribute, count, GL_FLOAT, GL_FALSE, stride_, at_byte(offset));
+  glVertexAttribDivisor(attribute, divisor_);
 }
 
-void VertexArray::integer(GLuint attribute, GLuint slot, std::size_t offset) const {
-  glEnableVertexArrayAttrib(id(), attribute);
-  glVertexArrayAttribIFormat(id(), attribute, 1, GL_UNSIGNED_INT, static_cast<GLuint>(offset));
-  glVertexArrayAttribBinding(id(), attribute, slot);
+void VertexArray::integer(GLuint attribute, std::size_t offset) const {
+  glBindVertexArray(id());
+  glBindBuffer(GL_ARRAY_BUFFER, buffer_);
+  glEnableVertexAttribArray(attribute);
+  glVertexAttribIPointer(attribute, 1, GL_UNSIGNED_INT, stride_, at_byte(offset));
+  glVertexAttribDivisor(attribute, divisor_);
+}
+
+void VertexArray::indices(const Buffer& buffer) const {
+  glBindVertexArray(id());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer.id());
 }
 
 }  // namespace pliant::gpu

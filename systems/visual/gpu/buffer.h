@@ -17,7 +17,7 @@ struct DestroyBuffer {
 class Buffer {
  public:
   Buffer() = default;
-  // Initialised once; read-only afterwards.
+  // Initialised once; only read afterwards.
   static Buffer fixed(const void* data, std::size_t size);
   // Writable any number of times; `data` may be null (undefined contents).
   static Buffer writable(const void* data, std::size_t size);
@@ -28,12 +28,11 @@ class Buffer {
 
   // Replaces bytes [offset, offset + size); returns `size`, for summing up uploads.
   std::size_t write(std::size_t offset, const void* data, std::size_t size);
-  void clear();  // all bytes zero
   std::size_t size() const { return size_; }
   GLuint id() const { return object_.id(); }
 
  private:
-  Buffer(const void* data, std::size_t size, GLbitfield flags);
+  Buffer(const void* data, std::size_t size, GLenum usage);
   Object<DestroyBuffer> object_;
   std::size_t size_ = 0;  // [bytes]
 };
@@ -48,6 +47,7 @@ class GrowingBuffer {
       buffer_ = Buffer::writable(nullptr, std::max<std::size_t>(2 * items.size_bytes(), 256));
     return buffer_.write(0, items.data(), items.size_bytes());
   }
+  const Buffer& buffer() const { return buffer_; }
   GLuint id() const { return buffer_.id(); }
 
  private:
@@ -62,15 +62,17 @@ struct DestroyVertexArray {
 class VertexArray {
  public:
   static VertexArray make();
-  // Binding slot `slot` reads `buffer` every `stride` bytes; per vertex, or (divisor 1) per instance.
-  void source(GLuint slot, const Buffer& buffer, GLsizei stride, GLuint divisor = 0) const;
-  void floats(GLuint attribute, GLuint slot, GLint count, std::size_t offset) const;
-  void integer(GLuint attribute, GLuint slot, std::size_t offset) const;
-  void indices(const Buffer& buffer) const { glVertexArrayElementBuffer(id(), buffer.id()); }
+  // Attributes added from now on read `buffer` every `stride` bytes; per vertex, or (divisor 1) per instance.
+  void source(const Buffer& buffer, GLsizei stride, GLuint divisor = 0);
+  void floats(GLuint attribute, GLint count, std::size_t offset) const;
+  void integer(GLuint attribute, std::size_t offset) const;
+  void indices(const Buffer& buffer) const;
   GLuint id() const { return object_.id(); }
 
  private:
   Object<DestroyVertexArray> object_;
+  GLuint buffer_ = 0, divisor_ = 0;
+  GLsizei stride_ = 0;  // [bytes]
 };
 
 }  // namespace pliant::gpu

@@ -3,21 +3,18 @@
 namespace pliant::gpu {
 
 DepthMap::DepthMap(int size) : size_(size) {
-  GLuint id = 0;
-  glCreateTextures(GL_TEXTURE_2D, 1, &id);
-  texture_ = Object<DestroyTexture>(id);
-  glTextureStorage2D(id, 1, GL_DEPTH_COMPONENT32F, size, size);
-  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(id, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  glTextureParameteri(id, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  texture_ = make_plane(GL_DEPTH_COMPONENT32F, size, size);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   GLuint framebuffer = 0;
-  glCreateFramebuffers(1, &framebuffer);
+  glGenFramebuffers(1, &framebuffer);
   framebuffer_ = Object<DestroyFramebuffer>(framebuffer);
-  glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, id, 0);
-  glNamedFramebufferDrawBuffer(framebuffer, GL_NONE);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, texture_.id(), 0);
+  const GLenum none = GL_NONE;
+  glDrawBuffers(1, &none);
 }
 
 void DepthMap::begin() const {

@@ -12,7 +12,7 @@ class DepthMap {
   explicit DepthMap(int size);  // [pixels] an edge
   // Redirects drawing to this map.
   void begin() const;
-  void bind(GLuint unit) const { glBindTextureUnit(unit, texture_.id()); }
+  void bind(GLuint unit) const { bind_texture(unit, GL_TEXTURE_2D, texture_.id()); }
   int size() const { return size_; }
 
  private:

@@ -1,9 +1,9 @@
 // A point in the GPU's command stream; can be queried or waited for.
 #pragma once
 
-#include <epoxy/gl.h>
-
 #include <utility>
+
+#include "systems/visual/gpu/gl_api.h"
 
 namespace pliant::gpu {
 
@@ -27,7 +27,7 @@ class Fence {
 
   bool set() const { return sync_ != nullptr; }
   bool passed() const { return reached(0); }
-  bool wait() const { return reached(GL_TIMEOUT_IGNORED); }
+  bool wait() const { return reached(GL_TIMEOUT_IGNORED); }  // not in WebGL
 
  private:
   bool reached(GLuint64 timeout_ns) const {

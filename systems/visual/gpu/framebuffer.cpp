@@ -3,44 +3,60 @@
 #include <algorithm>
 
 #include "runtime/assert.h"
+#include "systems/visual/gpu/desktop.h"
 
 namespace pliant::gpu {
 namespace {
 
-Object<DestroyRenderbuffer> make_plane(GLenum format, int width, int height, int samples) {
+Object<DestroyRenderbuffer> make_samples(GLenum format, int width, int height, int samples) {
   GLuint id = 0;
-  glCreateRenderbuffers(1, &id);
-  glNamedRenderbufferStorageMultisample(id, samples, format, width, height);
+  glGenRenderbuffers(1, &id);
+  glBindRenderbuffer(GL_RENDERBUFFER, id);
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width, height);
   return Object<DestroyRenderbuffer>(id);
 }
 
 void blit(GLuint from, GLuint to, int width, int height) {
-  glBlitNamedFramebuffer(from, to, 0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
+  glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
 }  // namespace
 
+bool encodes_srgb(GLuint framebuffer) {
+  GLint encoding = GL_LINEAR;
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, framebuffer ? GL_COLOR_ATTACHMENT0 : GL_BACK,
+                                        GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING, &encoding);
+  return encoding == GL_SRGB;
+}
+
 Framebuffer::Framebuffer(int width, int height, int samples) : width_(width), height_(height) {
   ASSERT(width > 0 && height > 0);
   GLuint id = 0;
-  glCreateFramebuffers(1, &id);
+  glGenFramebuffers(1, &id);
   framebuffer_ = Object<DestroyFramebuffer>(id);
-  color_ = make_plane(GL_SRGB8_ALPHA8, width, height, samples);
-  glNamedFramebufferRenderbuffer(id, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_.id());
-  if (samples) {
-    depth_ = make_plane(GL_DEPTH_COMPONENT32F, width, height, samples);
-    glNamedFramebufferRenderbuffer(id, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.id());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, id);
+  if (!samples) {
+    picture_ = make_plane(GL_SRGB8_ALPHA8, width, height);
+    glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, picture_.id(), 0);
+    return;
   }
+  color_ = make_samples(GL_SRGB8_ALPHA8, width, height, samples);
+  glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_.id());
+  depth_ = make_samples(GL_DEPTH_COMPONENT32F, width, height, samples);
+  glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.id());
 }
 
 void Framebuffer::resolve_into(const Framebuffer& target) const {
   ASSERT(target.has_size(width_, height_));
-  glEnable(GL_FRAMEBUFFER_SRGB);
+  desktop::encode_srgb(true);
   blit(id(), target.id(), width_, height_);
 }
 
 void Framebuffer::copy_into(GLuint target) const {
-  glDisable(GL_FRAMEBUFFER_SRGB);  // bytes are encoded already: the window's framebuffer must not encode them again
+  desktop::encode_srgb(false);  // bytes are encoded already: the window's framebuffer must not encode them again
   blit(id(), target, width_, height_);
 }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "systems/visual/gpu/object.h"
+#include "systems/visual/gpu/texture.h"
 
 namespace pliant::gpu {
 
@@ -14,6 +14,9 @@ struct DestroyFramebuffer {
 struct DestroyRenderbuffer {
   static void destroy(GLuint id) { glDeleteRenderbuffers(1, &id); }
 };
+
+// Whether what is written into the first plane of `framebuffer` is encoded, in OpenGL ES; binds it for drawing.
+bool encodes_srgb(GLuint framebuffer);
 
 // Colour is sRGB with 8 bits a channel (shaders write linear values while GL_FRAMEBUFFER_SRGB is on); depth is 32-bit.
 class Framebuffer {
@@ -26,14 +29,17 @@ class Framebuffer {
 
   // Averages the samples of this one into `target` (same size), in linear light.
   void resolve_into(const Framebuffer& target) const;
-  // Copies the encoded bytes into any other framebuffer of at least this size.
+  // Copies the encoded bytes into any other framebuffer of at least this size. In OpenGL ES `target` must encode sRGB.
   void copy_into(GLuint target) const;
+  // The picture as a texture; only of one that was resolved into.
+  void bind(GLuint unit) const { bind_texture(unit, GL_TEXTURE_2D, picture_.id()); }
   // 8-bit RGBA, rows top to bottom.
   std::vector<std::uint8_t> read() const;
 
  private:
   Object<DestroyFramebuffer> framebuffer_;
   Object<DestroyRenderbuffer> color_, depth_;
+  Object<DestroyTexture> picture_;  // instead of both, if not multisampled
   int width_ = 0, height_ = 0;
 };
 

@@ -1,9 +1,9 @@
 // Owner of one OpenGL name: move-only, deletes it on destruction. Its context must then be current.
 #pragma once
 
-#include <epoxy/gl.h>
-
 #include <utility>
+
+#include "systems/visual/gpu/gl_api.h"
 
 namespace pliant::gpu {
 

@@ -11,11 +11,12 @@ class SceneTexture {
   SceneTexture() = default;
   SceneTexture(int width, int height);  // [pixels]
   bool has_size(int width, int height) const { return width == width_ && height == height_; }
+  bool complete() const;  // the context can draw into it: OpenGL ES 3.0 by an extension
   // Redirects drawing to this picture, cleared to alpha 0 and the largest depth.
   void begin() const;
   void bind(GLuint color_unit, GLuint depth_unit) const {
-    glBindTextureUnit(color_unit, color_.id());
-    glBindTextureUnit(depth_unit, depth_.id());
+    bind_texture(color_unit, GL_TEXTURE_2D, color_.id());
+    bind_texture(depth_unit, GL_TEXTURE_2D, depth_.id());
   }
 
  private:

@@ -55,6 +55,16 @@ std::string shape_list() {
   return out + "  return vec4(0);\n}\n";
 }
 
+constexpr std::string_view kEsHead = R"(#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp samplerCube;
+precision highp sampler2DShadow;
+precision highp usampler2D;
+#define PLIANT_ES
+)";
+
 std::optional<std::string> read_text(const std::string& name) {
   if (name == "law_list.glsl") return law_list();
   if (name == "shape_list.glsl") return shape_list();
@@ -126,6 +136,26 @@ Result<ShaderSource> load_shader(const std::string& name) {
 Result<ShaderSource> expand_shader(const std::string& name, const std::string& text) {
   ShaderSource source{.name = name, .text = "#version 450 core\n", .files = {}};
   if (Status done = append(source, name, text); !done) return done.error();
+  return source;
+}
+
+// Every binding in shaders/ stands in one line: layout(std140, binding = 2) uniform NAME { or
+// layout(binding = 3) uniform sampler2D NAME;
+ShaderSource to_es(ShaderSource source, std::vector<ShaderBinding>& bindings) {
+  constexpr const char* kBlock = " layout(std140, binding = %d) uniform %63[A-Za-z0-9_]";
+  constexpr const char* kSampler = " layout(binding = %d) uniform %*s %63[A-Za-z0-9_]";
+  std::istringstream lines(source.text);
+  std::string line, text(kEsHead);
+  std::getline(lines, line);  // the version
+  for (; std::getline(lines, line); text += line + '\n') {
+    int number = 0;
+    char name[64];
+    const bool block = std::sscanf(line.c_str(), kBlock, &number, name) == 2;
+    if (!block && std::sscanf(line.c_str(), kSampler, &number, name) != 2) continue;
+    bindings.push_back({name, block, number});
+    line = (block ? "layout(std140) " : "") + line.substr(line.find("uniform"));
+  }
+  source.text = std::move(text);
   return source;
 }
 

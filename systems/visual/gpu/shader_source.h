@@ -25,6 +25,16 @@ Result<ShaderSource> load_shader(const std::string& name);
 // The same for given text; includes are found as by load_shader.
 Result<ShaderSource> expand_shader(const std::string& name, const std::string& text);
 
+// A binding that the program must set, because GLSL ES 3.00 cannot state it.
+struct ShaderBinding {
+  std::string name;
+  bool block = false;  // of uniforms; else a sampler
+  int number = 0;      // binding point, or texture unit
+};
+// The same shader in GLSL ES 3.00, for OpenGL ES 3.0 and WebGL 2: version and precisions, PLIANT_ES defined, bindings
+// moved to `bindings`.
+ShaderSource to_es(ShaderSource source, std::vector<ShaderBinding>& bindings);
+
 // "3:12(5): error: ..." (Mesa) and "3(12) : error ..." (NVIDIA) become "light.glsl:12: error: ...".
 std::string explain_log(const ShaderSource& source, const std::string& log);
 

@@ -3,26 +3,28 @@
 #include <algorithm>
 #include <cstring>
 
+#include "systems/visual/gpu/desktop.h"
+
 namespace pliant::gpu {
 
 Staging::Staging(std::size_t part_size) : part_size_(part_size) {
   GLuint id = 0;
-  glCreateBuffers(1, &id);
+  glGenBuffers(1, &id);
   buffer_ = Object<DestroyBuffer>(id);
-  const GLbitfield flags = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-  const auto size = static_cast<GLsizeiptr>(kParts * part_size);
-  glNamedBufferStorage(id, size, nullptr, flags | GL_CLIENT_STORAGE_BIT);
-  mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(id, 0, size, flags));
+  glBindBuffer(GL_COPY_READ_BUFFER, id);
+  mapped_ = desktop::map(id, kParts * part_size);
 }
 
 std::size_t Staging::send(const Buffer& target, std::size_t offset, const void* data, std::size_t size) {
   const std::byte* from = static_cast<const std::byte*>(data);
+  glBindBuffer(GL_COPY_READ_BUFFER, buffer_.id());
+  glBindBuffer(GL_COPY_WRITE_BUFFER, target.id());
   for (std::size_t done = 0; done < size;) {
     if (used_ == part_size_) finish();
     const std::size_t count = std::min(size - done, part_size_ - used_), place = part_ * part_size_ + used_;
     std::memcpy(mapped_ + place, from + done, count);
-    glCopyNamedBufferSubData(buffer_.id(), target.id(), static_cast<GLintptr>(place),
-                             static_cast<GLintptr>(offset + done), static_cast<GLsizeiptr>(count));
+    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(place),
+                        static_cast<GLintptr>(offset + done), static_cast<GLsizeiptr>(count));
     used_ += count;
     done += count;
   }

@@ -18,13 +18,27 @@ int all_levels(int width, int height) {
 
 }  // namespace
 
-Texture::Texture(GLenum kind, GLenum format, int width, int height, int levels) {
+// It stays bound to the scratch unit.
+Texture::Texture(GLenum kind, GLenum format, int width, int height, int levels) : kind_(kind) {
   GLuint id = 0;
-  glCreateTextures(kind, 1, &id);
+  glGenTextures(1, &id);
   object_ = Object<DestroyTexture>(id);
-  glTextureStorage2D(id, levels, format, width, height);
-  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  bind(kScratchUnit);
+  glTexStorage2D(kind, levels, format, width, height);
+  glTexParameteri(kind, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(kind, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+}
+
+Object<DestroyTexture> make_plane(GLenum format, int width, int height) {
+  GLuint id = 0;
+  glGenTextures(1, &id);
+  bind_texture(kScratchUnit, GL_TEXTURE_2D, id);
+  glTexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+  return Object<DestroyTexture>(id);
 }
 
 Result<Texture> Texture::from_image(const Image& image, Meaning meaning) {
@@ -41,23 +55,23 @@ Result<Texture> Texture::from_image(const Image& image, Meaning meaning) {
   const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
   Texture texture(GL_TEXTURE_2D, meaning == Meaning::kColor ? GL_SRGB8_ALPHA8 : GL_RGBA8, width, height,
                   all_levels(width, height));
-  const GLuint id = texture.object_.id();
-  glTextureSubImage2D(id, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
-  glGenerateTextureMipmap(id);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
+  glGenerateMipmap(GL_TEXTURE_2D);
   return texture;
 }
 
 Texture Texture::from_cube(std::span<const std::uint16_t> rgb, int face, int levels) {
   Texture texture(GL_TEXTURE_CUBE_MAP, GL_RGB16F, face, face, levels);
-  const GLuint id = texture.object_.id();
   glPixelStorei(GL_UNPACK_ALIGNMENT, 2);
   std::size_t first = 0;
   for (int level = 0; level < levels; ++level) {
     const int size = face >> level;
-    const std::size_t count = std::size_t{18} * static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
-    ASSERT(first + count <= rgb.size());
-    glTextureSubImage3D(id, level, 0, 0, 0, size, size, 6, GL_RGB, GL_HALF_FLOAT, &rgb[first]);
-    first += count;
+    const std::size_t count = std::size_t{3} * static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+    for (GLenum side = 0; side < 6; ++side, first += count) {
+      ASSERT(first + count <= rgb.size());
+      glTexSubImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + side, level, 0, 0, size, size, GL_RGB, GL_HALF_FLOAT,
+                      &rgb[first]);
+    }
   }
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   return texture;
@@ -66,18 +80,17 @@ Texture Texture::from_cube(std::span<const std::uint16_t> rgb, int face, int lev
 Texture Texture::from_table(std::span<const vec2> values, int size) {
   ASSERT(values.size() == static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
   Texture texture(GL_TEXTURE_2D, GL_RG16F, size, size, 1);
-  const GLuint id = texture.object_.id();
-  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  glTextureSubImage2D(id, 0, 0, 0, size, size, GL_RG, GL_FLOAT, values.data());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size, size, GL_RG, GL_FLOAT, values.data());
   return texture;
 }
 
 Texture Texture::constant(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
   Texture texture(GL_TEXTURE_2D, GL_RGBA8, 1, 1, 1);
   const std::uint8_t pixel[4] = {r, g, b, 255};
-  glTextureSubImage2D(texture.object_.id(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
   return texture;
 }
 

@@ -15,6 +15,15 @@ struct DestroyTexture {
   static void destroy(GLuint id) { glDeleteTextures(1, &id); }
 };
 
+// Textures are made and written on this unit, which no shader reads.
+inline constexpr GLuint kScratchUnit = 15;
+inline void bind_texture(GLuint unit, GLenum kind, GLuint id) {
+  glActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(kind, id);
+}
+// One level, sampled without filter, clamped to the border; on the scratch unit.
+Object<DestroyTexture> make_plane(GLenum format, int width, int height);
+
 enum class Meaning {
   kColor,  // sRGB: decoded to linear when sampled
   kData    // numbers: normals, roughness
@@ -34,10 +43,11 @@ class Texture {
   // One pixel, for materials without an image.
   static Texture constant(std::uint8_t r, std::uint8_t g, std::uint8_t b);
 
-  void bind(GLuint unit) const { glBindTextureUnit(unit, object_.id()); }
+  void bind(GLuint unit) const { bind_texture(unit, kind_, object_.id()); }
 
  private:
   Texture(GLenum kind, GLenum format, int width, int height, int levels);
+  GLenum kind_ = GL_TEXTURE_2D;
   Object<DestroyTexture> object_;
 };
 

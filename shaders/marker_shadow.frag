@@ -1,0 +1,2 @@
+// Depth only. OpenGL ES requires both stages.
+void main() {}
