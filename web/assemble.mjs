@@ -100,11 +100,11 @@ function wrapped(entry, seen) {
 }
 function script(entry) {
   const { before, source } = joined(entry, new Set([entry]));
-  return `const joined = {};\n${before}\n${source}`;
+  return `const joined = {};\n${before}\n${source}`.replaceAll('import.meta.url', 'location.href'); // a classic worker: no module loads from file:
 }
 
 function singleFile(levels) {
-  const single = text(join(built, 'pliant.single.js')).replace(/export default (\w+);\s*$/, 'globalThis.pliantModule = $1;');
+  const single = text(join(built, 'pliant.single.js')).replace(/export default (\w+);\s*$/, 'globalThis.pliantModule = (options) => $1({ locateFile: (name) => name, ...options });');
   const { name, file } = levels[0], folder = join(root, 'content/levels');
   const base64 = (path) => readFileSync(path).toString('base64');
   const files = Object.fromEntries(readdirSync(folder).filter((each) => each.startsWith(`${name}_`) && each.endsWith('.csv')).map((each) => [each, base64(join(folder, each))]));
@@ -117,7 +117,7 @@ const bytes = (base64) => Uint8Array.from(atob(base64), (each) => each.charCodeA
 globalThis.pliantLevelList = data.list;
 globalThis.pliantLevels = { [data.list[0].name]: { name: data.name, bytes: () => bytes(data.level),
   files: () => Object.fromEntries(Object.entries(data.files).map(([name, each]) => [name, bytes(each)])) } };
-globalThis.pliantWorker = () => new Worker(URL.createObjectURL(new Blob([document.getElementById('worker').textContent], { type: 'text/javascript' })), { type: 'module' });
+globalThis.pliantWorker = () => new Worker(URL.createObjectURL(new Blob([document.getElementById('worker').textContent], { type: 'text/javascript' })));
 `;
   const inline = (code) => code.replace(/<\/(script)/gi, '<\\/$1').replace(/<!--/g, '<\\!--');
   return text(join(web, 'index.html'))

@@ -102,11 +102,10 @@ const tests = {
     const touchPoints = [[0.36, 0.45], [0.6, 0.5]].map(([x, y], id) => ({ id, x: box.x + x * box.width, y: box.y + y * box.height }));
     await cdp.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints });
     await untilForce(page);
-    await page.waitForTimeout(1200);
-    const touching = await page.evaluate(() => globalThis.pliantPage.readings().filter((each) => each.touching).length);
+    await page.waitForFunction(() => globalThis.pliantPage.readings().filter((each) => each.touching).length === 2, null, { timeout: 10000 });
+    await page.waitForTimeout(1000);
     await page.screenshot({ path: join(shots, 'phone.png') });
     await page.screenshot({ path: join(shots, 'phone_all.png'), fullPage: true });
-    expect(touching === 2, `${touching} probes touch, not 2`);
     await closed(page);
   },
 
@@ -136,11 +135,12 @@ const tests = {
       const until = performance.now() + 500;
       while (performance.now() < until); // the page hangs
     });
+    await untilForce(page); // the finger is still there, so it presses again
     await page.mouse.up();
     const rows = await recorded(page), forces = rows.filter((row) => row[2] === rows[1][2]).map((row) => Math.hypot(row[12], row[13], row[14]));
-    let quiet = 0, longest = 0;
-    for (const force of forces.slice(forces.findIndex((each) => each > 0.2))) longest = Math.max(longest, (quiet = force === 0 ? quiet + 1 : 0));
-    expect(longest > 250 && longest < 460, `the force was zero for ${longest} ms of a 500 ms hang`);
+    const felt = forces.slice(forces.findIndex((each) => each > 0.2)), from = felt.indexOf(0);
+    const quiet = felt.slice(from).findIndex((each) => each > 0);
+    expect(from > 0 && quiet > 200, `in a hang of 500 ms the force was zero for ${quiet} ms`);
     await closed(page);
   },
 
@@ -198,7 +198,8 @@ const tests = {
       await page.locator('#file').setInputFiles([name, 'minimal.bin', 'minimal.csv'].map((each) => join(folder, each)));
       await page.waitForFunction(() => document.body.dataset.failed !== undefined, null, { timeout: 20000 });
       const sentence = await page.evaluate(() => document.body.dataset.failed);
-      expect(sentence === expected, `${name}: the page says "${sentence}", the command "${expected}" (${run.stderr})`);
+      // The command adds what else it can do about a level.
+      expect(sentence.length > 20 && expected?.startsWith(sentence), `${name}: the page says "${sentence}", the command "${expected}" (${run.stderr})`);
     }
     await page.locator('#level').selectOption('minimal'); // and the page goes on
     await ready(page, /minimal/);
