@@ -80,7 +80,7 @@ void main() {
   vec3 film = normalize(mix(smooth_n, n, 0.25));
   float coat = gloss.z * fresnel(max(dot(film, v), 0.0), 0.04);
   radiance = mix(radiance, surroundings(reflect(-v, film), 0.06), coat);
-  float opacity = max(gloss.w, coat + fresnel(c, 0.04) * (1.0 - gloss.w));
+  float opacity = max(gloss.w, coat + pow(1.0 - c, 2.5) * (1.0 - gloss.w));
   vec3 x = 0.95 * radiance;
   x = clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
   pixel = vec4(pow(x, vec3(1.0 / 2.2)) * opacity, opacity);
@@ -237,7 +237,13 @@ export class Picture {
       const length = Math.min(0.45, 0.09 * strength) * size; // 11 N: half of the scene
       this.#draw(this.arrow, along(force, add(position, scale(force, r / strength)), 0.006 * size, length), solid, {});
     }
-    for (const object of this.order) if (!opaque.includes(object)) this.#draw(object.mesh, object.toWorld, object.material, object);
+    gl.enable(gl.CULL_FACE); // glass: its far side, then its near one
+    for (const object of this.order)
+      for (const side of opaque.includes(object) ? [] : [gl.FRONT, gl.BACK]) {
+        gl.cullFace(side);
+        this.#draw(object.mesh, object.toWorld, object.material, object);
+      }
+    gl.disable(gl.CULL_FACE);
   }
 
   // Whether something is drawn at a place [1] of the canvas from its upper left corner; `paint` draws it.
@@ -245,7 +251,7 @@ export class Picture {
     const { gl } = this, pixel = new Uint8Array(4);
     paint();
     gl.readPixels(Math.floor(x * this.canvas.width), Math.floor((1 - y) * this.canvas.height), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-    return pixel[3] > 100;
+    return pixel[3] > 30;
   }
 
   #draw(mesh, toWorld, material, { stream, color, relief, reach = 0 }) {

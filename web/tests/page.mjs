@@ -223,6 +223,36 @@ const tests = {
     await closed(page);
   },
 
+  async 'an emulated SpaceMouse moves a probe by the native driver'() {
+    const page = await opened('about:blank');
+    await page.addInitScript(() => {
+      const device = Object.assign(new EventTarget(), { vendorId: 0x256f, productId: 0xc635, productName: 'SpaceMouse Compact', opened: false, open: async () => {} });
+      const axes = (reportId, first) => ({ reportId, items: [{ usages: [0, 1, 2].map((i) => 0x10030 + first + i), logicalMinimum: -350, logicalMaximum: 350, reportSize: 16, reportCount: 3, isAbsolute: true }] });
+      const buttons = { reportId: 3, items: [{ isRange: true, usageMinimum: 0x90001, usageMaximum: 0x90010, logicalMinimum: 0, logicalMaximum: 1, reportSize: 1, reportCount: 16, isAbsolute: true }] };
+      device.collections = [{ usagePage: 1, usage: 8, inputReports: [axes(1, 0), axes(2, 3), buttons], outputReports: [], featureReports: [] }];
+      Object.defineProperty(navigator, 'hid', { value: Object.assign(new EventTarget(), { requestDevice: async () => [device] }) });
+      globalThis.push = (x) => { // to the right
+        const data = new DataView(new ArrayBuffer(6));
+        data.setInt16(0, x, true);
+        device.dispatchEvent(Object.assign(new Event('inputreport'), { reportId: 1, data }));
+      };
+    });
+    await page.goto(plain.at + '?level=minimal');
+    await ready(page, /minimal/);
+    await page.locator('#device').click();
+    await page.waitForTimeout(800);
+    const x = () => page.evaluate(() => globalThis.pliantPage.readings()[0].position[0]);
+    const before = await x();
+    await page.evaluate(() => new Promise((done) => {
+      let sent = 0;
+      const timer = setInterval(() => (globalThis.push(350), ++sent > 60 && (clearInterval(timer), done())), 10);
+    }));
+    await page.waitForTimeout(500);
+    const after = await x();
+    expect(after > before + 0.01, `the probe went from ${before} to ${after} m`);
+    await closed(page);
+  },
+
   async 'memory stays flat'() {
     const page = await opened(plain.at), cdp = await page.context().newCDPSession(page);
     await ready(page);
