@@ -1,113 +1,42 @@
-// Surfaces by their stream, bodies by their vertices, probes and forces, with WebGL 2. Light: a sky with soft boxes, a
-// wet coat over tissue, the colours of glTF's metallic-roughness.
+// Surfaces by their stream, bodies by their vertices, probes and forces, with WebGL 2.
+import { kFragment, kStreamWidth, kVertex } from './shade.js';
 import { add, along, norm, scale } from './vec.js';
-
-const kStreamWidth = 1024; // [texels] of the stream's texture
-
-const kVertex = `#version 300 es
-layout(location = 0) in vec3 P0;
-layout(location = 1) in vec3 N0;
-layout(location = 2) in vec3 shading;
-layout(location = 3) in vec2 uv;
-layout(location = 4) in uint streamVertex;
-uniform highp sampler2D stream;
-uniform bool streamed;
-uniform mat4 toWorld, viewProjection;
-out vec3 position, normal;
-out vec2 at;
-out float height;
-void main() {
-  int i = int(streamVertex);
-  vec4 s = streamed ? texelFetch(stream, ivec2(i % ${kStreamWidth}, i / ${kStreamWidth}), 0) : vec4(0.0);
-  vec4 world = toWorld * vec4(P0 + s.w * N0, 1.0);  // P1's two lines
-  normal = mat3(toWorld) * (shading + s.xyz);
-  position = world.xyz;
-  at = uv;
-  height = s.w;
-  gl_Position = viewProjection * world;
-}`;
-
-const kFragment = `#version 300 es
-precision highp float;
-in vec3 position, normal;
-in vec2 at;
-in float height;
-uniform vec3 eye, color, scatter;
-uniform vec4 gloss;  // roughness, metallic, wet coat, opacity
-uniform float sky, reach;
-uniform bool hasColor, hasRelief;
-uniform sampler2D colorMap, reliefMap;
-out vec4 pixel;
-
-float lobe(vec3 d, vec3 to, float r) {  // a round lamp, blurred by the roughness
-  float k = 2.0 / (0.012 + 2.0 * r * r);
-  return exp(k * (dot(d, to) - 1.0)) * min(k, 30.0) * 0.12;
-}
-float panel(vec3 d, float r) {  // a window above, in front
-  vec2 p = d.xz / max(d.y, 0.05) - vec2(-0.35, 0.75);
-  float soft = 0.04 + r;
-  vec2 inside = smoothstep(vec2(0.42, 0.26) + soft, vec2(0.42, 0.26) - min(soft, 0.2), abs(p));
-  return d.y > 0.0 ? inside.x * inside.y : 0.0;
-}
-vec3 surroundings(vec3 d, float r) {
-  vec3 c = mix(vec3(0.13, 0.10, 0.10), vec3(0.40, 0.44, 0.52), smoothstep(-0.6 - r, 0.7 + r, d.y)) * sky;
-  c += vec3(1.0, 0.93, 0.84) * (1.1 * lobe(d, normalize(vec3(0.7, 0.6, 0.5)), r) + 3.2 * panel(d, r) * (1.0 - 0.93 * sqrt(r)));
-  return c + vec3(0.45, 0.6, 1.0) * 0.7 * lobe(d, normalize(vec3(-0.8, 0.25, -0.5)), r);
-}
-vec3 relief(vec3 n) {  // the normal map, in the frame of the picture's derivatives
-  vec3 px = dFdx(position), py = dFdy(position);
-  vec2 ux = dFdx(at), uy = dFdy(at);
-  vec3 a = cross(py, n), b = cross(n, px);
-  vec3 t = a * ux.x + b * uy.x, w = a * ux.y + b * uy.y;
-  float size = inversesqrt(max(max(dot(t, t), dot(w, w)), 1e-20));
-  vec3 m = texture(reliefMap, at).xyz * 2.0 - 1.0;
-  return normalize(mat3(t * size, w * size, n) * m);
-}
-float fresnel(float c, float f0) { return f0 + (1.0 - f0) * pow(1.0 - c, 5.0); }
-void main() {
-  vec3 v = normalize(eye - position), smooth_n = normalize(gl_FrontFacing ? normal : -normal);
-  vec3 n = hasRelief ? relief(smooth_n) : smooth_n;
-  vec3 base = color * (hasColor ? texture(colorMap, at).rgb : vec3(1.0));
-  float dent = reach > 0.0 ? clamp(-height / (0.35 * reach), 0.0, 1.0) : 0.0;
-  base *= mix(vec3(1.0), vec3(0.80, 0.62, 0.60), dent);  // pressed tissue
-  float shade = 1.0 - 0.35 * dent;
-  vec3 light = surroundings(n, 1.0), wrapped = surroundings(normalize(n + 0.5 * v), 1.0);
-  vec3 diffuse = base * (1.0 - gloss.y) * mix(light, wrapped, scatter) * shade;
-  float c = max(dot(n, v), 0.0);
-  vec3 f0 = mix(vec3(0.04), base, gloss.y);
-  vec3 mirrored = f0 + (max(vec3(1.0 - gloss.x), f0) - f0) * pow(1.0 - c, 5.0);
-  vec3 radiance = diffuse + mirrored * surroundings(reflect(-v, n), gloss.x) * shade;
-  vec3 film = normalize(mix(smooth_n, n, 0.25));
-  float coat = gloss.z * fresnel(max(dot(film, v), 0.0), 0.04);
-  radiance = mix(radiance, surroundings(reflect(-v, film), 0.06), coat);
-  float opacity = max(gloss.w, coat + pow(1.0 - c, 2.5) * (1.0 - gloss.w));
-  vec3 x = 0.95 * radiance;
-  x = clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
-  pixel = vec4(pow(x, vec3(1.0 / 2.2)) * opacity, opacity);
-}`;
 
 // A body of revolution about +Y from its profile [radius, y]; corners have both normals.
 function lathe(profile, sides = 20) {
-  const position = [], normal = [], index = [];
+  const position = [],
+    normal = [],
+    index = [];
   for (let i = 0; i + 1 < profile.length; ++i) {
     const [[r0, y0], [r1, y1]] = [profile[i], profile[i + 1]];
     const slope = Math.hypot(y1 - y0, r0 - r1) || 1;
     for (let k = 0; k <= sides; ++k) {
       const [c, s] = [Math.cos((2 * Math.PI * k) / sides), Math.sin((2 * Math.PI * k) / sides)];
       position.push(r0 * c, y0, r0 * s, r1 * c, y1, r1 * s);
-      for (let twice = 0; twice < 2; ++twice) normal.push((c * (y1 - y0)) / slope, (r0 - r1) / slope, (s * (y1 - y0)) / slope);
-      const at = (2 * (sides + 1)) * i + 2 * k;
+      for (let twice = 0; twice < 2; ++twice)
+        normal.push((c * (y1 - y0)) / slope, (r0 - r1) / slope, (s * (y1 - y0)) / slope);
+      const at = 2 * (sides + 1) * i + 2 * k;
       if (k < sides) index.push(at, at + 1, at + 2, at + 2, at + 1, at + 3);
     }
   }
   return { position: new Float32Array(position), normal: new Float32Array(normal), index: new Uint32Array(index) };
 }
 const kBall = (() => {
-  const steps = 14, profile = Array.from({ length: steps + 1 }, (_, i) => [Math.sin((Math.PI * i) / steps), -Math.cos((Math.PI * i) / steps)]);
+  const steps = 14,
+    profile = Array.from({ length: steps + 1 }, (_, i) => [
+      Math.sin((Math.PI * i) / steps),
+      -Math.cos((Math.PI * i) / steps),
+    ]);
   const ball = lathe(profile, 24);
   return { ...ball, normal: ball.position };
 })();
-const kArrow = lathe([[0, 0], [0.5, 0], [0.5, 0.72], [1.25, 0.72], [0, 1]]);
+const kArrow = lathe([
+  [0, 0],
+  [0.5, 0],
+  [0.5, 0.72],
+  [1.25, 0.72],
+  [0, 1],
+]);
 const kIdentity = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
 
 export class Picture {
@@ -116,7 +45,10 @@ export class Picture {
     if (!gl) throw new Error('this browser has no WebGL 2; take a newer one, or turn hardware acceleration on');
     this.canvas = canvas;
     const program = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, kVertex], [gl.FRAGMENT_SHADER, kFragment]]) {
+    for (const [kind, text] of [
+      [gl.VERTEX_SHADER, kVertex],
+      [gl.FRAGMENT_SHADER, kFragment],
+    ]) {
       const shader = gl.createShader(kind);
       gl.shaderSource(shader, text);
       gl.compileShader(shader);
@@ -124,7 +56,12 @@ export class Picture {
     }
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS))
-      throw new Error(`shader: ${gl.getAttachedShaders(program).map((each) => gl.getShaderInfoLog(each)).join(' ')}`);
+      throw new Error(
+        `shader: ${gl
+          .getAttachedShaders(program)
+          .map((each) => gl.getShaderInfoLog(each))
+          .join(' ')}`,
+      );
     gl.useProgram(program);
     this.at = new Proxy({}, { get: (known, name) => (known[name] ??= gl.getUniformLocation(program, name)) });
     gl.uniform1i(this.at.colorMap, 1);
@@ -139,7 +76,8 @@ export class Picture {
   }
 
   #mesh({ position, normal, shadingNormal, uv, streamVertex, index }) {
-    const { gl } = this, buffers = [];
+    const { gl } = this,
+      buffers = [];
     const array = gl.createVertexArray();
     gl.bindVertexArray(array);
     [position, normal, shadingNormal ?? normal, uv, streamVertex].forEach((values, place) => {
@@ -158,7 +96,8 @@ export class Picture {
     return { array, buffers: [...buffers, indices], count: index.length };
   }
   #texture(image, inner) {
-    const { gl } = this, texture = gl.createTexture();
+    const { gl } = this,
+      texture = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, texture);
     gl.texImage2D(gl.TEXTURE_2D, 0, inner, gl.RGBA, gl.UNSIGNED_BYTE, image);
     gl.generateMipmap(gl.TEXTURE_2D);
@@ -177,7 +116,11 @@ export class Picture {
       const material = materials.get(name);
       const object = { surface, count, material, toWorld: kIdentity, reach: keys.reach ?? 0 };
       const empty = new Float32Array(3 * count);
-      object.mesh = this.#mesh(surface ? geometry : { position: empty, normal: empty, index, uv: material.uv?.length === 2 * count ? material.uv : null });
+      object.mesh = this.#mesh(
+        surface
+          ? geometry
+          : { position: empty, normal: empty, index, uv: material.uv?.length === 2 * count ? material.uv : null },
+      );
       if (surface || material.uv?.length === 2 * count) {
         if (material.colorImage) object.color = this.#texture(material.colorImage, gl.SRGB8_ALPHA8);
         if (material.reliefImage) object.relief = this.#texture(material.reliefImage, gl.RGBA);
@@ -186,7 +129,8 @@ export class Picture {
         object.stream = gl.createTexture();
         gl.bindTexture(gl.TEXTURE_2D, object.stream);
         gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, kStreamWidth, Math.ceil(count / kStreamWidth));
-        for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+        for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
+          gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
       }
       return object;
     });
@@ -197,7 +141,8 @@ export class Picture {
   update(frame, places) {
     const { gl } = this;
     this.objects.forEach((object, i) => {
-      const at = places[i], n = object.count;
+      const at = places[i],
+        n = object.count;
       if (!object.surface) {
         const write = (place, values) => {
           gl.bindBuffer(gl.ARRAY_BUFFER, object.mesh.buffers[place]);
@@ -209,8 +154,10 @@ export class Picture {
         return;
       }
       gl.bindTexture(gl.TEXTURE_2D, object.stream);
-      const rows = Math.floor(n / kStreamWidth), rest = n % kStreamWidth, write = (y, width, height, from) =>
-        gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, y, width, height, gl.RGBA, gl.FLOAT, frame, at + from);
+      const rows = Math.floor(n / kStreamWidth),
+        rest = n % kStreamWidth,
+        write = (y, width, height, from) =>
+          gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, y, width, height, gl.RGBA, gl.FLOAT, frame, at + from);
       if (rows) write(0, kStreamWidth, rows, 0);
       if (rest) write(rows, rest, 1, 4 * rows * kStreamWidth);
       object.toWorld = frame.slice(at + 4 * n, at + 4 * n + 16);
@@ -230,7 +177,8 @@ export class Picture {
     for (const object of opaque) this.#draw(object.mesh, object.toWorld, object.material, object);
     for (const { position, force, radius, color, drawn } of effectors) {
       if (!drawn) continue;
-      const r = Math.max(radius, 0.008 * size), solid = { color, roughness: 0.25, metallic: 0, wet: 0.3, opacity: 1, scatter: [0, 0, 0] };
+      const r = Math.max(radius, 0.008 * size),
+        solid = { color, roughness: 0.25, metallic: 0, wet: 0.3, opacity: 1, scatter: [0, 0, 0] };
       this.#draw(this.ball, along([0, 1, 0], position, r, r), solid, {});
       const strength = norm(force);
       if (strength < 0.005) continue;
@@ -248,9 +196,18 @@ export class Picture {
 
   // Whether something is drawn at a place [1] of the canvas from its upper left corner; `paint` draws it.
   covers(x, y, paint) {
-    const { gl } = this, pixel = new Uint8Array(4);
+    const { gl } = this,
+      pixel = new Uint8Array(4);
     paint();
-    gl.readPixels(Math.floor(x * this.canvas.width), Math.floor((1 - y) * this.canvas.height), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    gl.readPixels(
+      Math.floor(x * this.canvas.width),
+      Math.floor((1 - y) * this.canvas.height),
+      1,
+      1,
+      gl.RGBA,
+      gl.UNSIGNED_BYTE,
+      pixel,
+    );
     return pixel[3] > 30;
   }
 

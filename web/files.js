@@ -21,7 +21,8 @@ export function named(bytes) {
     if (!value || typeof value !== 'object') return;
     for (const [key, each] of Object.entries(value))
       if (typeof each !== 'string') look(each);
-      else if (kNaming.has(key) && /\.\w+$/.test(each) && !/^(data:|[a-z]+:\/\/|\/)/i.test(each)) found.add(decode(each));
+      else if (kNaming.has(key) && /\.\w+$/.test(each) && !/^(data:|[a-z]+:\/\/|\/)/i.test(each))
+        found.add(decode(each));
   };
   look(gltf(bytes));
   return [...found];
@@ -43,16 +44,24 @@ async function bytesOf(response) {
 export async function open(source, { name, files = {} } = {}) {
   if (source instanceof ArrayBuffer) source = new Uint8Array(source);
   if (ArrayBuffer.isView(source))
-    return { name: name ?? 'level.glb', bytes: new Uint8Array(source.buffer, source.byteOffset, source.byteLength), files };
+    return {
+      name: name ?? 'level.glb',
+      bytes: new Uint8Array(source.buffer, source.byteOffset, source.byteLength),
+      files,
+    };
   if (source instanceof Blob) return { name: name ?? source.name ?? 'level.glb', bytes: await bytesOf(source), files };
   const url = new URL(source, globalThis.location?.href);
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url}: the server answers ${response.status}; check the address`);
   const bytes = await bytesOf(response);
   const companions = { ...files };
-  await Promise.all(named(bytes).filter((each) => !(each in companions)).map(async (each) => {
-    const answer = await fetch(new URL(each.split('/').map(encodeURIComponent).join('/'), url));
-    if (answer.ok) companions[each] = await bytesOf(answer); // otherwise the engine says what is missing
-  }));
+  await Promise.all(
+    named(bytes)
+      .filter((each) => !(each in companions))
+      .map(async (each) => {
+        const answer = await fetch(new URL(each.split('/').map(encodeURIComponent).join('/'), url));
+        if (answer.ok) companions[each] = await bytesOf(answer); // otherwise the engine says what is missing
+      }),
+  );
   return { name: name ?? decode(url.pathname.split('/').pop() || 'level.glb'), bytes, files: companions };
 }

@@ -1,14 +1,14 @@
-// Pointers and sticks that move effectors: a probe is pressed into what a ray meets, a tool is carried in the plane that
-// faces the eye. The numbers are those of the native pointer (viewer/hand/pointer.cpp).
+// Pointers and sticks that move effectors: a probe is pressed into what a ray meets, a tool is carried in the plane
+// that faces the eye. The numbers are those of the native pointer (viewer/hand/pointer.cpp).
 import { add, sub, scale, dot, norm } from './vec.js';
 
-const kStep = 0.05;      // [1] of the reach per step of depth
+const kStep = 0.05; // [1] of the reach per step of depth
 const kBodyReach = 0.12; // [1] of a body's diagonal: its reach
-const kHover = 0.03;     // [1] of the scene's size: height without contact
-const kPress = 0.12;     // [s] time constant of pressing in
-const kLift = 0.05;      // [s] of retracting
-const kFastest = 0.5;    // [m/s]
-const kFollow = 0.012;   // [s] time constant towards the newest ray, which arrives 60 times a second
+const kHover = 0.03; // [1] of the scene's size: height without contact
+const kPress = 0.12; // [s] time constant of pressing in
+const kLift = 0.05; // [s] of retracting
+const kFastest = 0.5; // [m/s]
+const kFollow = 0.012; // [s] time constant towards the newest ray, which arrives 60 times a second
 
 const inPlane = (ray, through) => {
   const along = dot(ray.along, ray.forward);
@@ -78,8 +78,17 @@ export class Hands {
     let radius = 0;
     try {
       radius = this.session.get(effector, 'radius');
-    } catch { /* a point */ }
-    const hand = { effector, radius, tool: this.tools.has(effector), driven: false, height: kHover * this.size, position: null };
+    } catch {
+      /* a point */
+    }
+    const hand = {
+      effector,
+      radius,
+      tool: this.tools.has(effector),
+      driven: false,
+      height: kHover * this.size,
+      position: null,
+    };
     if (velocity) hand.position = this.session.reading(effector).position;
     this.held.set(id, hand);
     return hand;
@@ -110,12 +119,15 @@ export class Hands {
       hand.goal = add(hand.goal, ray.forward, 0.01 * this.size * (ray.steps - 4));
       return;
     }
-    if (hand.down && !pressed && hand.body) { // a body yields: the place of the press goes on in a plane
+    if (hand.down && !pressed && hand.body) {
+      // a body yields: the place of the press goes on in a plane
       hand.at = { ...hand.at, position: inPlane(ray, hand.at.position) };
     } else {
       const surface = this.session.ray(ray.from, ray.along, { rest: true }) ?? null;
-      const now = surface && this.session.bodies[surface.object] && this.#isBody(surface.object)
-        ? this.session.ray(ray.from, ray.along) : surface;
+      const now =
+        surface && this.session.bodies[surface.object] && this.#isBody(surface.object)
+          ? this.session.ray(ray.from, ray.along)
+          : surface;
       if (!now) {
         if (!hand.down) hand.position = null;
         return;
@@ -123,7 +135,10 @@ export class Hands {
       hand.body = this.#isBody(now.object);
       if (hand.object !== now.object) hand.reach = this.#reach(now.object);
       hand.object = now.object;
-      hand.at = { position: now.position, normal: dot(now.normal, ray.along) > 0.5 ? scale(now.normal, -1) : now.normal };
+      hand.at = {
+        position: now.position,
+        normal: dot(now.normal, ray.along) > 0.5 ? scale(now.normal, -1) : now.normal,
+      };
     }
     hand.depth = kStep * ray.steps * hand.reach;
     if (pressed && hand.at) this.#drive(hand);
@@ -148,7 +163,8 @@ export class Hands {
   #drive(hand) {
     if (hand.driven) return;
     for (const each of hand.tool ? [hand.effector] : this.session.effectors.filter((each) => !this.tools.has(each)))
-      if (each === hand.effector || !this.driven.has(each) && ![...this.lent.values()].includes(each)) this.session.release(each);
+      if (each === hand.effector || (!this.driven.has(each) && ![...this.lent.values()].includes(each)))
+        this.session.release(each);
     hand.driven = true;
     this.driven.add(hand.effector);
     hand.height = kHover * this.size;

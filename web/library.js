@@ -84,12 +84,20 @@ export class Library {
   read(kind, at) {
     const data = this.data;
     switch (kind) {
-      case 'int32_t': return data.getInt32(at, true);
-      case 'uint32_t': case 'size_t': case 'pointer': return data.getUint32(at, true);
-      case 'uint64_t': return Number(data.getBigUint64(at, true));
-      case 'double': return data.getFloat64(at, true);
-      case 'float': return data.getFloat32(at, true);
-      case 'text': return this.text(data.getUint32(at, true));
+      case 'int32_t':
+        return data.getInt32(at, true);
+      case 'uint32_t':
+      case 'size_t':
+      case 'pointer':
+        return data.getUint32(at, true);
+      case 'uint64_t':
+        return Number(data.getBigUint64(at, true));
+      case 'double':
+        return data.getFloat64(at, true);
+      case 'float':
+        return data.getFloat32(at, true);
+      case 'text':
+        return this.text(data.getUint32(at, true));
     }
     if (vectors[kind]) return Array.from({ length: vectors[kind] }, (_, i) => data.getFloat64(at + 8 * i, true));
     const out = {};
@@ -101,12 +109,20 @@ export class Library {
   write(kind, at, value) {
     const data = this.data;
     switch (kind) {
-      case 'int32_t': return data.setInt32(at, value, true);
-      case 'uint32_t': case 'size_t': case 'pointer': return data.setUint32(at, value, true);
-      case 'uint64_t': return data.setBigUint64(at, BigInt(value), true);
-      case 'double': return data.setFloat64(at, value, true);
-      case 'float': return data.setFloat32(at, value, true);
-      case 'text': return data.setUint32(at, value == null ? 0 : this.put(value), true);
+      case 'int32_t':
+        return data.setInt32(at, value, true);
+      case 'uint32_t':
+      case 'size_t':
+      case 'pointer':
+        return data.setUint32(at, value, true);
+      case 'uint64_t':
+        return data.setBigUint64(at, BigInt(value), true);
+      case 'double':
+        return data.setFloat64(at, value, true);
+      case 'float':
+        return data.setFloat32(at, value, true);
+      case 'text':
+        return data.setUint32(at, value == null ? 0 : this.put(value), true);
     }
     if (vectors[kind]) {
       for (let i = 0; i < vectors[kind]; ++i) this.data.setFloat64(at + 8 * i, value[i] ?? 0, true);
@@ -127,7 +143,9 @@ export class Library {
   // Calls a function of the interface; text becomes a pointer.
   call(name, ...given) {
     const top = this.top;
-    const status = this.module['_pliant_' + name](...given.map((each) => (typeof each === 'string' ? this.put(each) : each)));
+    const status = this.module['_pliant_' + name](
+      ...given.map((each) => (typeof each === 'string' ? this.put(each) : each)),
+    );
     this.top = top;
     if (status) throw this.error();
   }
@@ -148,7 +166,9 @@ export class Library {
       if (!length) return [];
       const out = this.struct(kind, {}, length);
       this.call(name, ...given, out, length, count);
-      return Array.from({ length: this.read('size_t', count) }, (_, i) => this.read(kind, out + i * structs[kind].bytes));
+      return Array.from({ length: this.read('size_t', count) }, (_, i) =>
+        this.read(kind, out + i * structs[kind].bytes),
+      );
     });
   }
   // An array of numbers, `width` an element.

@@ -2,9 +2,17 @@
 import { gltf } from './files.js';
 import { unit } from './vec.js';
 
-const kPlain = { color: [0.62, 0.30, 0.26], roughness: 0.4, metallic: 0, wet: 0.6, opacity: 1, scatter: [0.7, 0.25, 0.2] };
+const kPlain = {
+  color: [0.62, 0.3, 0.26],
+  roughness: 0.4,
+  metallic: 0,
+  wet: 0.6,
+  opacity: 1,
+  scatter: [0.7, 0.25, 0.2],
+};
 
-// {get(name), words(name), camera, probes}: the material of a node; its law and shape; its camera {eye, target, yfov} or null; colours of probes by name.
+// {get(name), words(name), camera, probes}: the material of a node; its law and shape; the level's camera {eye, forward,
+// yfov} or null; {color, radius} of probes by name.
 export async function materials({ bytes, files }) {
   const level = gltf(bytes) ?? {};
   const binary = level.buffers && bytes[0] === 0x67 ? chunk(bytes) : null;
@@ -19,22 +27,50 @@ export async function materials({ bytes, files }) {
   for (const node of level.nodes ?? []) {
     const material = level.materials?.[level.meshes?.[node.mesh]?.primitives?.[0]?.material];
     if (!material) continue;
-    const { baseColorFactor = [1, 1, 1, 1], roughnessFactor = 1, metallicFactor = 1, baseColorTexture } = material.pbrMetallicRoughness ?? {};
-    const more = material.extensions ?? {}, behind = more.KHR_materials_diffuse_transmission;
+    const {
+      baseColorFactor = [1, 1, 1, 1],
+      roughnessFactor = 1,
+      metallicFactor = 1,
+      baseColorTexture,
+    } = material.pbrMetallicRoughness ?? {};
+    const more = material.extensions ?? {},
+      behind = more.KHR_materials_diffuse_transmission;
     const clear = more.KHR_materials_transmission?.transmissionFactor ?? 0;
     const tissue = metallicFactor < 0.5 && clear === 0;
     by.set(node.name, {
-      color: baseColorFactor.slice(0, 3), roughness: roughnessFactor, metallic: metallicFactor,
+      color: baseColorFactor.slice(0, 3),
+      roughness: roughnessFactor,
+      metallic: metallicFactor,
       wet: more.KHR_materials_clearcoat?.clearcoatFactor ?? (tissue && (behind || roughnessFactor < 0.4) ? 0.7 : 0),
       opacity: 1 - 0.7 * clear,
-      scatter: behind || roughnessFactor < 0.4 && tissue ? [0.7, 0.25, 0.2] : [0, 0, 0],
-      colorImage: await image(baseColorTexture), reliefImage: await image(material.normalTexture),
+      scatter: behind || (roughnessFactor < 0.4 && tissue) ? [0.7, 0.25, 0.2] : [0, 0, 0],
+      colorImage: await image(baseColorTexture),
+      reliefImage: await image(material.normalTexture),
     });
   }
-  const probes = new Map((level.nodes ?? []).filter((each) => each.extensions?.PLIANT_probe).map((each) =>
-    [each.name, { color: each.extensions.PLIANT_probe.color ?? [0.9, 0.35, 0.1], radius: each.extensions.PLIANT_probe.radius ?? 0 }]));
-  const words = (name) => ({ spring: 'linear', shape: 'volume', ...(level.nodes ?? []).find((each) => each.name === name)?.extensions?.PLIANT_deformable });
-  return { get: (name) => by.get(name) ?? kPlain, words, probes, camera: camera(level), about: level.asset?.extras?.about ?? '' };
+  const probes = new Map(
+    (level.nodes ?? [])
+      .filter((each) => each.extensions?.PLIANT_probe)
+      .map((each) => [
+        each.name,
+        {
+          color: each.extensions.PLIANT_probe.color ?? [0.9, 0.35, 0.1],
+          radius: each.extensions.PLIANT_probe.radius ?? 0,
+        },
+      ]),
+  );
+  const words = (name) => ({
+    spring: 'linear',
+    shape: 'volume',
+    ...(level.nodes ?? []).find((each) => each.name === name)?.extensions?.PLIANT_deformable,
+  });
+  return {
+    get: (name) => by.get(name) ?? kPlain,
+    words,
+    probes,
+    camera: camera(level),
+    about: level.asset?.extras?.about ?? '',
+  };
 }
 
 function chunk(bytes) {
@@ -45,7 +81,10 @@ function chunk(bytes) {
 async function decode(found, level, binary, files) {
   try {
     const view = level.bufferViews?.[found.bufferView];
-    const bytes = view && binary ? binary.subarray(view.byteOffset ?? 0, (view.byteOffset ?? 0) + view.byteLength) : files[found.uri];
+    const bytes =
+      view && binary
+        ? binary.subarray(view.byteOffset ?? 0, (view.byteOffset ?? 0) + view.byteLength)
+        : files[found.uri];
     const blob = bytes ? new Blob([bytes], { type: found.mimeType }) : await (await fetch(found.uri)).blob();
     return await createImageBitmap(blob, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
   } catch {

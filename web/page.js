@@ -8,11 +8,18 @@ import { Plot, Tone, gamepads, vibrate } from './senses.js';
 import { View } from './view.js';
 
 const $ = (id) => document.getElementById(id);
-const kPalette = [[0.95, 0.32, 0.14], [0.05, 0.55, 0.6], [0.95, 0.7, 0.1], [0.45, 0.4, 0.9], [0.3, 0.7, 0.3]];
+const kPalette = [
+  [0.95, 0.32, 0.14],
+  [0.05, 0.55, 0.6],
+  [0.95, 0.7, 0.1],
+  [0.45, 0.4, 0.9],
+  [0.3, 0.7, 0.3],
+];
 const kLaws = ['linear', 'cubic', 'exponential'];
 const kShapes = ['volume', 'punch', 'hertz', 'gaussian', 'wendland', 'kelvinlet'];
 const kHalfForce = 1; // [N] at which the drawn cursor moves half as far as the pointer (HeavyCursor)
-const kFirstSteps = 4, kMostSteps = 12; // of depth
+const kFirstSteps = 4,
+  kMostSteps = 12; // of depth
 
 const canvas = $('picture');
 const picture = new Picture(canvas);
@@ -26,7 +33,9 @@ const narrow = matchMedia('(max-width: 52rem)');
 let level = null; // what runs: {name, effectors, objects, places, length, materials, frame, spare}
 let steps = kFirstSteps;
 const pointers = new Map(); // of the mouse and fingers, in pixels: {id, x, y, tx, ty, down, turns}
-const settings = Object.fromEntries(new URLSearchParams(location.hash.slice(1).includes('=') ? location.hash.slice(1) : ''));
+const settings = Object.fromEntries(
+  new URLSearchParams(location.hash.slice(1).includes('=') ? location.hash.slice(1) : ''),
+);
 
 function colorOf(effector) {
   return level?.materials.probes.get(level.effectors[effector])?.color ?? kPalette[effector % kPalette.length];
@@ -45,7 +54,11 @@ function say(sentence, seconds = 8) {
 // ---- The worker
 
 const worker = globalThis.pliantWorker?.() ?? new Worker(new URL('worker.js', import.meta.url), { type: 'module' });
-worker.onerror = (event) => say(`The worker does not start: ${event.message || 'this browser lacks module workers or WebAssembly exceptions'}; take a newer one.`, 60);
+worker.onerror = (event) =>
+  say(
+    `The worker does not start: ${event.message || 'this browser lacks module workers or WebAssembly exceptions'}; take a newer one.`,
+    60,
+  );
 const told = {
   open: opened,
   frame({ frame }) {
@@ -65,7 +78,10 @@ const told = {
     hid[number]?.sendReport(bytes[0], bytes.subarray(1)).catch(() => {});
   },
   recorded({ text }) {
-    const link = Object.assign(document.createElement('a'), { href: URL.createObjectURL(new Blob([text], { type: 'text/csv' })), download: 'forces.csv' });
+    const link = Object.assign(document.createElement('a'), {
+      href: URL.createObjectURL(new Blob([text], { type: 'text/csv' })),
+      download: 'forces.csv',
+    });
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   },
@@ -75,7 +91,8 @@ const ask = (act, more = {}) => worker.postMessage({ do: act, ...more });
 
 // ---- Levels
 
-let pending = null, opens = 0;
+let pending = null,
+  opens = 0;
 async function show(source, options = {}) {
   const tag = ++opens;
   try {
@@ -91,15 +108,27 @@ async function show(source, options = {}) {
 }
 function showNamed(name) {
   const inlined = globalThis.pliantLevels?.[name];
-  return inlined ? show(inlined.bytes(), { name: inlined.name, files: inlined.files(), given: name })
-                 : show(new URL(`levels/${levels.find((each) => each.name === name)?.file ?? name}`, import.meta.url), { given: name });
+  return inlined
+    ? show(inlined.bytes(), { name: inlined.name, files: inlined.files(), given: name })
+    : show(new URL(`levels/${levels.find((each) => each.name === name)?.file ?? name}`, import.meta.url), {
+        given: name,
+      });
 }
 
 function opened({ tag, effectors, objects, bounds, notes, version }) {
   if (tag !== pending.tag) return;
   const buffer = (length) => new (globalThis.crossOriginIsolated ? SharedArrayBuffer : ArrayBuffer)(4 * length);
   const { places, trace, length } = layout(effectors.length, objects);
-  level = { ...pending, effectors, objects, places, trace, length, frame: null, spare: [buffer(length), buffer(length), buffer(length)] };
+  level = {
+    ...pending,
+    effectors,
+    objects,
+    places,
+    trace,
+    length,
+    frame: null,
+    spare: [buffer(length), buffer(length), buffer(length)],
+  };
   picture.open(objects, level.materials);
   view.open(bounds, level.materials.camera);
   pointers.clear();
@@ -119,14 +148,19 @@ function opened({ tag, effectors, objects, bounds, notes, version }) {
 const rounded = (value) => +value.toPrecision(3);
 function sliders() {
   const rows = [];
-  const surfaces = level.objects.filter((each) => each.surface), bodies = level.objects.filter((each) => each.keys.young > 0 && !each.surface);
+  const surfaces = level.objects.filter((each) => each.surface),
+    bodies = level.objects.filter((each) => each.keys.young > 0 && !each.surface);
   const slide = (key, label, unit, objects, factor = 1) => {
-    const start = objects[0].keys[key], row = document.createElement('label'), input = document.createElement('input'), out = document.createElement('output');
+    const start = objects[0].keys[key],
+      row = document.createElement('label'),
+      input = document.createElement('input'),
+      out = document.createElement('output');
     Object.assign(input, { type: 'range', min: -100, max: 100, step: 1, value: 0, name: key });
     const apply = (value) => {
       out.textContent = `${rounded(value * factor)} ${unit}`;
       if (value === start) return;
-      for (const each of objects) ask('set', { object: each.name, key, value: ((each.keys[key] ?? start) * value) / start });
+      for (const each of objects)
+        ask('set', { object: each.name, key, value: ((each.keys[key] ?? start) * value) / start });
       settings[key] = rounded(value);
     };
     input.oninput = () => apply(start * 10 ** (input.value / 100));
@@ -137,7 +171,8 @@ function sliders() {
     apply(value);
   };
   const choose = (key, label, words, first) => {
-    const row = document.createElement('label'), select = document.createElement('select');
+    const row = document.createElement('label'),
+      select = document.createElement('select');
     select.name = key;
     for (const word of new Set([first, ...words])) select.append(new Option(word, word));
     const apply = () => {
@@ -148,7 +183,7 @@ function sliders() {
     select.onchange = apply;
     row.append(label, select);
     rows.push(row);
-    if (words.includes(settings[key])) (select.value = settings[key]), apply();
+    if (words.includes(settings[key])) ((select.value = settings[key]), apply());
   };
   if (surfaces[0]?.keys.stiffness) slide('stiffness', 'Stiffness', 'N/m', surfaces);
   if (bodies.length) slide('young', "Young's modulus", 'kPa', bodies, 1e-3);
@@ -176,7 +211,8 @@ const place = (event) => {
 const idOf = (event) => (event.pointerType === 'mouse' ? 'mouse' : `touch${event.pointerId}`);
 
 canvas.addEventListener('pointerdown', (event) => {
-  const at = place(event), id = idOf(event);
+  const at = place(event),
+    id = idOf(event);
   tone.wake();
   canvas.setPointerCapture(event.pointerId);
   const presses = event.button === 0 && picture.covers(at.tx / canvas.clientWidth, at.ty / canvas.clientHeight, paint);
@@ -185,7 +221,9 @@ canvas.addEventListener('pointerdown', (event) => {
   event.preventDefault();
 });
 canvas.addEventListener('pointermove', (event) => {
-  const at = place(event), id = idOf(event), pointer = pointers.get(id);
+  const at = place(event),
+    id = idOf(event),
+    pointer = pointers.get(id);
   if (!pointer) {
     if (id === 'mouse') pointers.set(id, { id, ...at, x: at.tx, y: at.ty, down: false, turns: false });
     return;
@@ -194,15 +232,17 @@ canvas.addEventListener('pointermove', (event) => {
   if (pointer.turns) {
     const other = [...pointers.values()].find((each) => each !== pointer && each.turns);
     if (other) {
-      const before = Math.hypot(pointer.tx - other.tx, pointer.ty - other.ty), after = Math.hypot(at.tx - other.tx, at.ty - other.ty);
+      const before = Math.hypot(pointer.tx - other.tx, pointer.ty - other.ty),
+        after = Math.hypot(at.tx - other.tx, at.ty - other.ty);
       view.zoom(before / Math.max(1, after));
     } else view.turn(dx, dy);
   }
   Object.assign(pointer, at);
-  pointer.x += dx * pointer.gain || 0, pointer.y += dy * pointer.gain || 0;
+  ((pointer.x += dx * pointer.gain || 0), (pointer.y += dy * pointer.gain || 0));
 });
 const up = (event) => {
-  const id = idOf(event), pointer = pointers.get(id);
+  const id = idOf(event),
+    pointer = pointers.get(id);
   canvas.classList.remove('turns');
   if (id === 'mouse' && pointer && event.type === 'pointerup') Object.assign(pointer, { down: false, turns: false });
   else pointers.delete(id);
@@ -211,28 +251,45 @@ canvas.addEventListener('pointerup', up);
 canvas.addEventListener('pointercancel', up);
 canvas.addEventListener('pointerleave', (event) => !pointers.get(idOf(event))?.down && pointers.delete(idOf(event)));
 canvas.addEventListener('contextmenu', (event) => event.preventDefault());
-canvas.addEventListener('wheel', (event) => {
-  const presses = [...pointers.values()].some((each) => each.down);
-  if (!presses && !event.ctrlKey && narrow.matches) return;
-  event.preventDefault();
-  if (presses) steps = Math.min(kMostSteps, Math.max(1, steps - Math.sign(event.deltaY)));
-  else view.zoom(1.0015 ** event.deltaY);
-}, { passive: false });
+canvas.addEventListener(
+  'wheel',
+  (event) => {
+    const presses = [...pointers.values()].some((each) => each.down);
+    if (!presses && !event.ctrlKey && narrow.matches) return;
+    event.preventDefault();
+    if (presses) steps = Math.min(kMostSteps, Math.max(1, steps - Math.sign(event.deltaY)));
+    else view.zoom(1.0015 ** event.deltaY);
+  },
+  { passive: false },
+);
 
 // ---- Every picture
 
 const effector = (i) => {
-  const at = kHeader + i * kEffector, f = level.values;
-  return { position: f.subarray(at, at + 3), force: f.subarray(at + 3, at + 6), touching: f[at + 10], drawn: f[at + 14],
-           color: colorOf(i), radius: level.materials.probes.get(level.effectors[i])?.radius ?? 0 };
+  const at = kHeader + i * kEffector,
+    f = level.values;
+  return {
+    position: f.subarray(at, at + 3),
+    force: f.subarray(at + 3, at + 6),
+    touching: f[at + 10],
+    drawn: f[at + 14],
+    color: colorOf(i),
+    radius: level.materials.probes.get(level.effectors[i])?.radius ?? 0,
+  };
 };
 function paint() {
   view.update(...(narrow.matches ? [0, -0.1] : [Math.min(0.35, 340 / innerWidth), 0.12]));
   if (!level?.values) return;
-  picture.draw({ ...view, sky: dark.matches ? 1 : 1.25 }, level.effectors.map((_, i) => effector(i)), view.size);
+  picture.draw(
+    { ...view, sky: dark.matches ? 1 : 1.25 },
+    level.effectors.map((_, i) => effector(i)),
+    view.size,
+  );
 }
 
-let before = performance.now(), shownForce = 0, plotted = 0;
+let before = performance.now(),
+  shownForce = 0,
+  plotted = 0;
 function frame(now) {
   requestAnimationFrame(frame);
   const dt = Math.min(0.1, (now - before) / 1000);
@@ -242,13 +299,15 @@ function frame(now) {
     level.fresh = false;
     level.values = new Float32Array(level.frame);
     picture.update(level.values, level.places);
-    for (let i = 0; i < level.values[3]; ++i) plot.add(...level.values.subarray(level.trace + i * kTraceRow, level.trace + (i + 1) * kTraceRow));
+    for (let i = 0; i < level.values[3]; ++i)
+      plot.add(...level.values.subarray(level.trace + i * kTraceRow, level.trace + (i + 1) * kTraceRow));
   }
-  for (const pointer of pointers.values()) { // the drawn cursor becomes heavy with the force, then returns
+  for (const pointer of pointers.values()) {
+    // the drawn cursor becomes heavy with the force, then returns
     pointer.gain = pointer.down ? 1 / (1 + shownForce / kHalfForce) : 1;
     if (pointer.down) continue;
     const rejoin = 1 - Math.exp(-dt / 0.08);
-    pointer.x += rejoin * (pointer.tx - pointer.x), pointer.y += rejoin * (pointer.ty - pointer.y);
+    ((pointer.x += rejoin * (pointer.tx - pointer.x)), (pointer.y += rejoin * (pointer.ty - pointer.y)));
   }
   view.pace(dt);
   paint();
@@ -259,13 +318,16 @@ function frame(now) {
 // Pointers go on their own clock: pictures may be slow, hands may not.
 setInterval(() => {
   if (!level || !view.forward || document.hidden) return;
-  const rays = [...pointers.values()].filter((each) => !each.turns).map(({ id, x, y, down }) => ({ id, down, steps, ...view.ray(x, y) }));
+  const rays = [...pointers.values()]
+    .filter((each) => !each.turns)
+    .map(({ id, x, y, down }) => ({ id, down, steps, ...view.ray(x, y) }));
   ask('hands', { pointers: [...rays, ...gamepads(view)] });
 }, 16);
 
 function feel(now) {
   const forces = level.effectors.map((_, i) => Math.hypot(...effector(i).force));
-  const driving = level.values[5] > 0, most = Math.max(0, ...forces);
+  const driving = level.values[5] > 0,
+    most = Math.max(0, ...forces);
   shownForce = most;
   tone.play(driving ? forces : forces.map(() => 0)); // a script's own motion is not heard
   if (driving) vibrate(most, now);
@@ -273,10 +335,12 @@ function feel(now) {
   if (now - plotted > 120) {
     plotted = now;
     const [, tick, speed] = level.values;
-    $('rate').textContent = `${tick.toFixed(0)} µs a tick${speed < 0.95 ? `, ${Math.round(100 * speed)} % of real time` : ''}`;
+    $('rate').textContent =
+      `${tick.toFixed(0)} µs a tick${speed < 0.95 ? `, ${Math.round(100 * speed)} % of real time` : ''}`;
     plot.draw();
   }
-  const mouse = pointers.get('mouse'), over = mouse && !mouse.turns && [0, 1, 2].some((k) => effector(0).drawn && level.values[kHeader + k] !== 0);
+  const mouse = pointers.get('mouse'),
+    over = mouse && !mouse.turns && [0, 1, 2].some((k) => effector(0).drawn && level.values[kHeader + k] !== 0);
   $('cursor').hidden = !(mouse && mouse.down);
   canvas.classList.toggle('over', Boolean(mouse?.down && over));
   if (mouse) $('cursor').style.transform = `translate(${mouse.x}px, ${mouse.y}px)`;
@@ -328,7 +392,8 @@ $('device').onclick = async () => {
 // ---- Files
 
 async function take(list) {
-  const all = [...list], main = all.find((each) => /\.(glb|gltf|obj|stl|ply)$/i.test(each.name)) ?? all[0];
+  const all = [...list],
+    main = all.find((each) => /\.(glb|gltf|obj|stl|ply)$/i.test(each.name)) ?? all[0];
   if (!main) return;
   const files = {};
   for (const each of all) if (each !== main) files[each.name] = new Uint8Array(await each.arrayBuffer());

@@ -7,6 +7,7 @@
 //
 // SI units, right-handed, Y up, world frame; rotations are [x, y, z, w]. Types: pliant.d.ts. The C interface behind it
 // has the rest of the words: include/pliant.h.
+import { Body } from './body.js';
 import { Library, PliantError, constants, misused } from './library.js';
 import { open } from './files.js';
 
@@ -60,11 +61,14 @@ export class Pliant {
     for (const [file, content] of Object.entries(files)) write(file, content);
     const remove = () => removeTree(FS, above);
     try {
-      const scene = new Scene(this.library, this.library.within(() => {
-        const out = this.library.struct('pointer');
-        this.library.call('scene_load', `${folder}/${name}`, 0, out);
-        return this.library.read('pointer', out);
-      }));
+      const scene = new Scene(
+        this.library,
+        this.library.within(() => {
+          const out = this.library.struct('pointer');
+          this.library.call('scene_load', `${folder}/${name}`, 0, out);
+          return this.library.read('pointer', out);
+        }),
+      );
       try {
         let session = scene.open(set);
         if (!session.effectors.length) {
@@ -150,13 +154,24 @@ export class Scene {
     const fields = { vertexCount: position.length / 3, indexCount: index.length };
     const lend = ([[key, array], ...rest], then) =>
       l.lend(array, (pointer) => ((fields[key] = pointer), rest.length ? lend(rest, then) : then()));
-    lend(Object.entries(arrays), () => l.within(() =>
-      l.call(`scene_add_${kind}`, this.#at, name, l.struct('pliant_mesh', fields),
-             at ? l.struct('pliant_placement', placed(at)) : 0)));
+    lend(Object.entries(arrays), () =>
+      l.within(() =>
+        l.call(
+          `scene_add_${kind}`,
+          this.#at,
+          name,
+          l.struct('pliant_mesh', fields),
+          at ? l.struct('pliant_placement', placed(at)) : 0,
+        ),
+      ),
+    );
   }
 }
 
-const placed = ({ position = [0, 0, 0], rotation = [0, 0, 0, 0], scale = [0, 0, 0] }) => ({ pose: { position, rotation }, scale });
+const placed = ({ position = [0, 0, 0], rotation = [0, 0, 0, 0], scale = [0, 0, 0] }) => ({
+  pose: { position, rotation },
+  scale,
+});
 
 // A level that runs in lockstep: time goes on in tick, step and run only, and the same poses give the same bits.
 export class Session {
@@ -166,13 +181,16 @@ export class Session {
   constructor(library, at) {
     this.#library = library;
     this.#at = at;
-    const names = (kind) => Array.from({ length: library.get('uint32_t', `session_${kind}_count`, at) },
-                                       (_, i) => library.get('text', `session_${kind}`, at, i));
+    const names = (kind) =>
+      Array.from({ length: library.get('uint32_t', `session_${kind}_count`, at) }, (_, i) =>
+        library.get('text', `session_${kind}`, at, i),
+      );
     this.effectors = names('effector'); // probes, then tools
-    this.objects = names('object');     // surfaces, soft and rigid bodies
+    this.objects = names('object'); // surfaces, soft and rigid bodies
     this.bodies = Object.fromEntries(this.objects.map((name) => [name, new Body(library, at, name)]));
-    this.notes = Array.from({ length: library.get('size_t', 'session_note_count', at) },
-                            (_, i) => library.get('text', 'session_note', at, i));
+    this.notes = Array.from({ length: library.get('size_t', 'session_note_count', at) }, (_, i) =>
+      library.get('text', 'session_note', at, i),
+    );
     this.#poses = library.module._malloc(104 * Math.max(1, this.effectors.length));
   }
   close() {
@@ -198,8 +216,9 @@ export class Session {
     if (typeof x !== 'object') {
       if (this.effectors.length !== 1)
         throw misused('tick', `the level has ${this.effectors.length} effectors`, 'say which: tick({NAME: [x, y, z]})');
-      const data = this.#library.data, at = this.#poses;
-      data.setFloat64(at, x, true), data.setFloat64(at + 8, y, true), data.setFloat64(at + 16, z, true);
+      const data = this.#library.data,
+        at = this.#poses;
+      (data.setFloat64(at, x, true), data.setFloat64(at + 8, y, true), data.setFloat64(at + 16, z, true));
       for (let i = 24; i < 56; i += 8) data.setFloat64(at + i, 0, true);
       this.#call('tick', at, at + 56, 1);
       const felt = this.#library.data;
@@ -215,8 +234,12 @@ export class Session {
   // A tick a row of [x, y, z, x, y, z, ...]; arrays of the same length.
   run(path, effector = this.effectors[0]) {
     const rows = path.length / 3;
-    const out = { time: new Float64Array(rows), force: new Float64Array(3 * rows), depth: new Float64Array(rows),
-                  touching: new Uint8Array(rows) };
+    const out = {
+      time: new Float64Array(rows),
+      force: new Float64Array(3 * rows),
+      depth: new Float64Array(rows),
+      touching: new Uint8Array(rows),
+    };
     for (let i = 0; i < rows; ++i) {
       this.move(effector, [path[3 * i], path[3 * i + 1], path[3 * i + 2]]);
       this.step(1);
@@ -271,9 +294,12 @@ export class Session {
   }
   // Layers that broke, tissue that yielded, detents that were crossed, since the last call.
   events() {
-    const l = this.#library, out = [];
+    const l = this.#library,
+      out = [];
     l.within(() => {
-      const count = l.struct('size_t'), room = 64, at = l.struct('pliant_event', {}, room);
+      const count = l.struct('size_t'),
+        room = 64,
+        at = l.struct('pliant_event', {}, room);
       do {
         l.write('pliant_event', at, {});
         this.#call('take_events', at, room, count, 0);
@@ -316,7 +342,8 @@ export class Session {
   bounds(query = {}) {
     const l = this.#library;
     return l.within(() => {
-      const min = l.struct('pliant_vec3', []), max = l.struct('pliant_vec3', []);
+      const min = l.struct('pliant_vec3', []),
+        max = l.struct('pliant_vec3', []);
       this.#call('bounds', l.struct('pliant_query', { ...query, rest: query.rest ? 1 : 0 }), min, max);
       return [l.read('pliant_vec3', min), l.read('pliant_vec3', max)];
     });
@@ -325,8 +352,12 @@ export class Session {
     const l = this.#library;
     return l.within(() => {
       const out = l.struct('pliant_hit');
-      this.#call(name, ...points.map((each) => l.struct('pliant_vec3', each)),
-                 l.struct('pliant_query', { ...query, rest: query.rest ? 1 : 0 }), out);
+      this.#call(
+        name,
+        ...points.map((each) => l.struct('pliant_vec3', each)),
+        l.struct('pliant_query', { ...query, rest: query.rest ? 1 : 0 }),
+        out,
+      );
       const { found, ...hit } = l.read('pliant_hit', out);
       return found ? { ...hit, object: this.objects[hit.object] } : null;
     });
@@ -345,7 +376,8 @@ export class Session {
   save() {
     const l = this.#library;
     return l.within(() => {
-      const bytes = l.struct('pointer'), count = l.struct('size_t');
+      const bytes = l.struct('pointer'),
+        count = l.struct('size_t');
       this.#call('save_state', bytes, count);
       const at = l.read('pointer', bytes);
       return l.bytes.slice(at, at + l.read('size_t', count));
@@ -353,80 +385,5 @@ export class Session {
   }
   restore(state) {
     this.#library.lend(state, (at) => this.#call('restore_state', at, state.byteLength));
-  }
-}
-
-// A surface, soft or rigid body of a session.
-export class Body {
-  #library;
-  #at;
-  constructor(library, at, name) {
-    this.#library = library;
-    this.#at = at;
-    this.name = name;
-  }
-  #numbers(Type, width, name) {
-    return this.#library.numbers(Type, width, 'session_' + name, this.#at, this.name);
-  }
-  // [m], [1], [N]: x, y, z a vertex, world frame.
-  positions() {
-    return this.#numbers(Float32Array, 3, 'vertices');
-  }
-  normals() {
-    return this.#numbers(Float32Array, 3, 'normals');
-  }
-  forces() {
-    return this.#numbers(Float32Array, 3, 'vertex_forces');
-  }
-  triangles() {
-    return this.#numbers(Uint32Array, 1, 'triangles');
-  }
-
-  // Of a deformable surface, for a renderer: {position, normal, shadingNormal, uv, streamVertex, index}, at rest.
-  geometry() {
-    const l = this.#library;
-    const g = l.get('pliant_geometry', 'session_geometry', this.#at, this.name);
-    const copy = (Type, at, count) => (at ? new Type(l.bytes.slice(at, at + 4 * count).buffer) : null);
-    const n = g.vertexCount;
-    return { position: copy(Float32Array, g.position, 3 * n), normal: copy(Float32Array, g.normal, 3 * n),
-             shadingNormal: copy(Float32Array, g.shadingNormal, 3 * n), uv: copy(Float32Array, g.uv, 2 * n),
-             streamVertex: copy(Uint32Array, g.streamVertex, n), index: copy(Uint32Array, g.index, g.indexCount) };
-  }
-  // {values, changed}: nx, ny, nz and height a vertex of the stream, and the ranges [first, count] that changed since
-  // the last call. `values` is the engine's memory: draw or copy it before the next call.
-  //   position = P0 + stream.w * N0;  normal = N0 + stream.xyz
-  stream() {
-    const l = this.#library;
-    return l.within(() => {
-      const [values, count, ranges, rangeCount] = Array.from({ length: 4 }, () => l.struct('pointer'));
-      l.call('session_stream', this.#at, this.name, values, count, ranges, rangeCount);
-      const at = l.read('pointer', ranges);
-      return { values: l.floats(l.read('pointer', values), 4 * l.read('size_t', count)),
-               changed: Array.from({ length: l.read('size_t', rangeCount) }, (_, i) =>
-                 [l.read('uint32_t', at + 8 * i), l.read('uint32_t', at + 8 * i + 4)]) };
-    });
-  }
-  // Object frame to world: 16 numbers, column by column.
-  toWorld() {
-    const l = this.#library;
-    return l.within(() => {
-      const at = l.room(64);
-      l.call('session_to_world', this.#at, this.name, at);
-      return l.floats(at, 16).slice();
-    });
-  }
-
-  get stiffness() {
-    return this.get('stiffness');
-  }
-  set stiffness(value) {
-    this.set('stiffness', value);
-  }
-  get(key) {
-    return this.#library.get('double', 'session_get', this.#at, this.name, key);
-  }
-  set(key, value) {
-    const l = this.#library;
-    l.call(typeof value === 'string' ? 'session_set_word' : 'session_set', this.#at, this.name, key, value);
   }
 }

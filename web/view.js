@@ -5,7 +5,13 @@ export class View {
   constructor(canvas) {
     this.canvas = canvas;
     this.detail = 1; // [1] of the screen's pixels along each side
-    this.open([[-0.1, -0.1, -0.1], [0.1, 0.1, 0.1]], null);
+    this.open(
+      [
+        [-0.1, -0.1, -0.1],
+        [0.1, 0.1, 0.1],
+      ],
+      null,
+    );
   }
   // `camera` {eye, forward, yfov} of the level; null: one that shows `bounds`.
   open([min, max], camera) {
@@ -36,12 +42,17 @@ export class View {
   }
   // `shift` [1] of the picture's half width to the left, and half height up: room for panel and words.
   update(shift, rise) {
-    const { clientWidth, clientHeight } = this.canvas, ratio = Math.min(devicePixelRatio, 2) * this.detail;
+    const { clientWidth, clientHeight } = this.canvas,
+      ratio = Math.min(devicePixelRatio, 2) * this.detail;
     const [w, h] = [Math.round(clientWidth * ratio), Math.round(clientHeight * ratio)];
     if (this.canvas.width !== w || this.canvas.height !== h) Object.assign(this.canvas, { width: w, height: h });
-    const aspect = clientWidth / Math.max(1, clientHeight), c = Math.cos(this.elevation);
+    const aspect = clientWidth / Math.max(1, clientHeight),
+      c = Math.cos(this.elevation);
     const away = this.distance * Math.max(1.08 + 0.5 * rise, 1.25 / (aspect * (1 - shift)));
-    this.eye = add(this.target, scale([c * Math.sin(this.azimuth), Math.sin(this.elevation), c * Math.cos(this.azimuth)], away));
+    this.eye = add(
+      this.target,
+      scale([c * Math.sin(this.azimuth), Math.sin(this.elevation), c * Math.cos(this.azimuth)], away),
+    );
     this.forward = unit(sub(this.target, this.eye));
     this.right = unit(cross(this.forward, [0, 1, 0]));
     this.up = cross(this.right, this.forward);
@@ -54,7 +65,8 @@ export class View {
   }
   // Through a point of the canvas [CSS pixel].
   ray(x, y) {
-    const u = (2 * x) / this.canvas.clientWidth - 1 + this.shift, v = 1 - (2 * y) / this.canvas.clientHeight - this.rise;
+    const u = (2 * x) / this.canvas.clientWidth - 1 + this.shift,
+      v = 1 - (2 * y) / this.canvas.clientHeight - this.rise;
     const along = unit(add(add(this.forward, this.right, u * this.slope[0]), this.up, v * this.slope[1]));
     return { from: this.eye, along, forward: this.forward };
   }

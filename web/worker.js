@@ -6,11 +6,11 @@ import { kHeader, kEffector, kTraceRow, kTraceRows, layout } from './frame.js';
 
 const kSilence = 100; // [ms]
 const kHidden = 1000; // [ms]
-const kBehind = 100;  // [ms] that are caught up; more is left out, and the speed shown is below 1
+const kBehind = 100; // [ms] that are caught up; more is left out, and the speed shown is below 1
 const kRecorded = 600000; // [rows] that a recording keeps: ten minutes of one probe
 
 let pliant, level; // the engine; what runs in it
-let heard = 0;     // [ms] when the page was last heard of
+let heard = 0; // [ms] when the page was last heard of
 
 class Level {
   constructor(session) {
@@ -60,25 +60,50 @@ class Level {
     if (!this.rows || this.rows.length >= kRecorded) return;
     this.readings.forEach((r, i) => this.rows.push({ ...r, probe: session.effectors[i] }));
     if (this.rows.length >= kRecorded)
-      postMessage({ did: 'failed', during: 'record', sentence: `recording: ${kRecorded} rows are kept, the rest is left out; download them`, code: '' });
+      postMessage({
+        did: 'failed',
+        during: 'record',
+        sentence: `recording: ${kRecorded} rows are kept, the rest is left out; download them`,
+        code: '',
+      });
   }
 
   // Into the page's Float32Array.
   fill(out) {
     const { session, trace } = this;
     this.readings ??= session.effectors.map((name) => session.reading(name));
-    out.set([session.time, this.tickTime, this.speed, trace.length, this.rows?.length ?? 0, this.hands.driving ? 1 : 0,
-             pliant.library.bytes.length]);
+    out.set([
+      session.time,
+      this.tickTime,
+      this.speed,
+      trace.length,
+      this.rows?.length ?? 0,
+      this.hands.driving ? 1 : 0,
+      pliant.library.bytes.length,
+    ]);
     this.readings.forEach((r, i) => {
       const hover = this.hands.hovering(session.effectors[i]);
       const fn = r.force[0] * r.normal[0] + r.force[1] * r.normal[1] + r.force[2] * r.normal[2];
-      out.set([...(hover ?? r.position), ...r.force, ...r.normal, r.depth, r.touching, r.object, r.ready, fn, hover || r.ready ? 1 : 0],
-              kHeader + i * kEffector);
+      out.set(
+        [
+          ...(hover ?? r.position),
+          ...r.force,
+          ...r.normal,
+          r.depth,
+          r.touching,
+          r.object,
+          r.ready,
+          fn,
+          hover || r.ready ? 1 : 0,
+        ],
+        kHeader + i * kEffector,
+      );
     });
     trace.forEach((row, i) => out.set(row, this.layout.trace + i * kTraceRow));
     trace.length = 0;
     this.drawn.forEach(({ surface, count }, i) => {
-      const body = session.bodies[session.objects[i]], at = this.layout.places[i];
+      const body = session.bodies[session.objects[i]],
+        at = this.layout.places[i];
       if (surface) {
         out.set(body.stream().values, at);
         out.set(body.toWorld(), at + 4 * count);
@@ -112,7 +137,10 @@ let loading = null;
 async function start({ source, options, tag }) {
   level?.session.close();
   level = null;
-  loading ??= Pliant.load({ module: globalThis.pliantModule, log: (sentence) => postMessage({ did: 'note', sentence }) });
+  loading ??= Pliant.load({
+    module: globalThis.pliantModule,
+    log: (sentence) => postMessage({ did: 'note', sentence }),
+  });
   pliant = await loading;
   const session = await pliant.session(source, options);
   const next = new Level(session);
@@ -120,8 +148,19 @@ async function start({ source, options, tag }) {
   const transfer = new Set();
   for (const { geometry, index } of next.drawn)
     for (const array of [...Object.values(geometry ?? {}), index]) if (array) transfer.add(array.buffer);
-  postMessage({ did: 'open', tag, effectors: session.effectors, tools: [...next.hands.tools], objects: next.drawn, notes: session.notes,
-                bounds: [min, max], version: pliant.version }, [...transfer]);
+  postMessage(
+    {
+      did: 'open',
+      tag,
+      effectors: session.effectors,
+      tools: [...next.hands.tools],
+      objects: next.drawn,
+      notes: session.notes,
+      bounds: [min, max],
+      version: pliant.version,
+    },
+    [...transfer],
+  );
   heard = performance.now();
   next.began = performance.now();
   level = next;
@@ -134,7 +173,21 @@ function csv(rows, objects) {
   for (const r of rows) {
     const fn = r.force[0] * r.normal[0] + r.force[1] * r.normal[1] + r.force[2] * r.normal[2];
     const ft = Math.sqrt(Math.max(0, r.force[0] ** 2 + r.force[1] ** 2 + r.force[2] ** 2 - fn * fn));
-    lines.push([r.tick, r.time, r.probe, ...r.position, r.touching, objects[r.object] ?? '', r.depth, ...r.normal, ...r.force, fn, ft].join());
+    lines.push(
+      [
+        r.tick,
+        r.time,
+        r.probe,
+        ...r.position,
+        r.touching,
+        objects[r.object] ?? '',
+        r.depth,
+        ...r.normal,
+        ...r.force,
+        fn,
+        ft,
+      ].join(),
+    );
   }
   return lines.join('\n') + '\n';
 }
@@ -167,9 +220,14 @@ const acts = {
   },
   // A HID device of the page: its reports go to the native driver, which moves the first free effector.
   plug({ number, driver, vendor, product, name, descriptor, features }) {
-    const { library } = pliant, { module } = library;
+    const { library } = pliant,
+      { module } = library;
     library.call('register_all_drivers');
-    library.within(() => library.lend(descriptor, (at) => module._pliant_web_hid_add(number, vendor, product, library.put(name), at, descriptor.length)));
+    library.within(() =>
+      library.lend(descriptor, (at) =>
+        module._pliant_web_hid_add(number, vendor, product, library.put(name), at, descriptor.length),
+      ),
+    );
     for (const [report, bytes] of features)
       library.lend(bytes, (at) => module._pliant_web_hid_feature(number, report, at, bytes.length));
     plugged.set(number, driver);
@@ -199,7 +257,8 @@ function sendReports() {
   const { library } = pliant;
   for (const number of plugged.keys())
     library.within(() => {
-      const room = 128, at = library.room(room);
+      const room = 128,
+        at = library.room(room);
       for (let count; (count = library.module._pliant_web_hid_take(number, at, room)) > 0;)
         postMessage({ did: 'report', number, bytes: library.bytes.slice(at, at + count) });
     });
@@ -222,7 +281,8 @@ function clock() {
   if (level)
     try {
       if (now - heard > kSilence) level.hands.lose();
-      if (now - heard > kHidden) level.began = now; // a page that is not seen stands still
+      if (now - heard > kHidden)
+        level.began = now; // a page that is not seen stands still
       else level.run(now);
       sendReports();
     } catch (error) {
