@@ -175,7 +175,6 @@ const tests = {
     );
     await page.waitForTimeout(1000);
     await page.screenshot({ path: join(shots, 'phone.png') });
-    await page.screenshot({ path: join(shots, 'phone_all.png'), fullPage: true });
     await closed(page);
   },
 
