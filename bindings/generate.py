@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Text made from include/pliant.h. Usage: generate.py csharp|layout|prototypes HEADER
+"""Text made from include/pliant.h. Usage: generate.py csharp|javascript|layout|prototypes HEADER
 
-csharp: declarations for C# (bindings/unity/PliantNative.cs). layout: a C program that prints the size and the offsets
+csharp: declarations for C# (bindings/unity/PliantNative.cs). javascript: layouts and constants for web/pliant.js, of
+a WebAssembly module. layout: a C program that prints the size and the offsets
 of every struct. prototypes: the functions, one a line. The last two are the ABI (tests/c/abi.txt)."""
 import sys
 
@@ -77,6 +78,27 @@ def csharp(header):
     return "\n".join(lines + ["    }", "}"])
 
 
+WASM_BYTES = {"int32_t": 4, "uint32_t": 4, "uint64_t": 8, "size_t": 4, "double": 8, "float": 4}  # anything else: a pointer
+
+
+def javascript(header):
+    lines = ["// Made from include/pliant.h by bindings/generate.py.", "export const structs = {"]
+    sizes = {kind: (size, size) for kind, size in WASM_BYTES.items()}
+    for name, fields in header.structs:
+        at, align, places = 0, 1, []
+        for kind, field in fields:
+            size, needs = sizes.get(kind, (4, 4))
+            at = -(-at // needs) * needs
+            shown = kind if kind in sizes else "text" if kind == "const char*" else "pointer"
+            places.append(f"{field}: [{at}, '{shown}']")
+            at, align = at + size, max(align, needs)
+        sizes[name] = (-(-at // align) * align, align)
+        lines.append(f"  {name}: {{bytes: {sizes[name][0]}, fields: {{{', '.join(places)}}}}},")
+    lines += ["};", "export const constants = {"]
+    lines += [f"  {name}: {value.rstrip('u')}," for name, value in header.constants]
+    return "\n".join(lines + ["};"])
+
+
 def layout(header):
     lines = ["#include <pliant.h>", "#include <stdio.h>", "int main(void) {"]
     for name, fields in header.structs:
@@ -93,7 +115,7 @@ def prototypes(header):
 
 
 if __name__ == "__main__":
-    makers = {"csharp": csharp, "layout": layout, "prototypes": prototypes}
+    makers = {"csharp": csharp, "javascript": javascript, "layout": layout, "prototypes": prototypes}
     if len(sys.argv) != 3 or sys.argv[1] not in makers:
         sys.exit(__doc__)
     print(makers[sys.argv[1]](Header(sys.argv[2])))

@@ -6,9 +6,10 @@
 namespace pliant::c {
 namespace {
 
-static_assert(sizeof(void*) == sizeof(std::uint64_t), "a handle holds kind, generation and slot in 64 bits");
-constexpr std::uint32_t kPerChunk = 4096, kMostChunks = 4096;
-constexpr int kIndexBits = 24, kGenerationBits = 32;
+// A handle holds kind, generation and slot: in 64 bits, or in the 32 of WebAssembly.
+constexpr bool kWide = sizeof(void*) == sizeof(std::uint64_t);
+constexpr std::uint32_t kPerChunk = kWide ? 4096 : 64, kMostChunks = kPerChunk;
+constexpr int kIndexBits = kWide ? 24 : 12, kGenerationBits = kWide ? 32 : 16;
 
 // Chunks are allocated as needed, and read without a lock. Leaked on purpose: handles are valid until the process ends.
 struct Table {
@@ -30,7 +31,7 @@ Slot* slot_at(std::uint32_t index) {
 
 std::uint64_t token_of(HandleKind kind, std::uint32_t generation, std::uint32_t index) {
   return std::uint64_t{static_cast<std::uint8_t>(kind)} << (kIndexBits + kGenerationBits) |
-         std::uint64_t{generation} << kIndexBits | index;
+         std::uint64_t{generation} % (std::uint64_t{1} << kGenerationBits) << kIndexBits | index;
 }
 
 std::uint32_t index_of(std::uint64_t token) {
@@ -59,11 +60,11 @@ void* make_handle(HandleKind kind, std::unique_ptr<Handle> object) {
   }
   const std::uint64_t token = token_of(kind, ++slot.generation, index);
   slot.token.store(token, std::memory_order_release);
-  return reinterpret_cast<void*>(token);
+  return reinterpret_cast<void*>(static_cast<std::uintptr_t>(token));
 }
 
 Slot* find_slot(const void* handle, HandleKind kind) {
-  const auto token = reinterpret_cast<std::uint64_t>(handle);
+  const std::uint64_t token = reinterpret_cast<std::uintptr_t>(handle);
   if (token >> (kIndexBits + kGenerationBits) != static_cast<std::uint8_t>(kind)) return nullptr;
   Slot* const slot = slot_at(index_of(token));
   return slot && slot->token.load(std::memory_order_acquire) == token ? slot : nullptr;
@@ -107,7 +108,7 @@ void for_each_idle(HandleKind kind, void (*act)(Handle&)) {
   const std::lock_guard lock(table().change);
   for (std::uint32_t i = 0; i < table().count; ++i) {
     const auto token = slot_at(i)->token.load();
-    const Held held(reinterpret_cast<void*>(token), kind);
+    const Held held(reinterpret_cast<void*>(static_cast<std::uintptr_t>(token)), kind);
     if (token && held.failure() == Held::Failure::kNone) act(*held.slot().object);
   }
 }

@@ -1,7 +1,10 @@
 # Compiler flags of this project. Targets that link to the libraries inherit none of them, in the same build tree or
 # installed.
 include_directories(${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
-if(PROJECT_IS_TOP_LEVEL)
+# In WebAssembly sizes have 32 bits: other conversions, of which the native builds know nothing.
+if(EMSCRIPTEN)
+  add_compile_options(-w)
+elseif(PROJECT_IS_TOP_LEVEL)
   add_compile_options(-Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Werror)
 endif()
 # No contraction into fused multiply-add, so that results have the same bits on every machine (lockstep). No code reads
@@ -113,7 +116,7 @@ function(pliant_library name)
     list(APPEND sources ${more})
   endforeach()
   add_library(pliant_${name} ${sources})  # BUILD_SHARED_LIBS selects static or shared
-  set_target_properties(pliant_${name} PROPERTIES EXPORT_NAME internal_${name} POSITION_INDEPENDENT_CODE ON
+  set_target_properties(pliant_${name} PROPERTIES EXPORT_NAME internal_${name} POSITION_INDEPENDENT_CODE ${PLIANT_RELOCATABLE}
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN"
     CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
   target_link_libraries(pliant_${name} PUBLIC pliant_options ${ARG_DEPENDS})

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "content/files/assimp_import.h"
+#include "content/files/mesh_import.h"
 #include "fuzz/sound_level.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "content/files/assimp_import.h"
+#include "content/files/mesh_import.h"
 #include "fuzz/obj_buffer.h"
 #include "fuzz/sound_level.h"
 

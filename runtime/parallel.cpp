@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/has_threads.h"
 #include "runtime/long_work.h"
 
 namespace pliant {
@@ -19,6 +20,7 @@ void set_thread_count(unsigned count) {
 }
 
 unsigned thread_count() {
+  if (!kHasThreads) return 1;
   const unsigned wanted = g_thread_count;
   return wanted ? wanted : std::max(1u, std::thread::hardware_concurrency());
 }

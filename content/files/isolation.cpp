@@ -187,10 +187,6 @@ Ended wait_for(pid_t pid, int end, Clock::time_point deadline, bool watch) {
 
 }  // namespace
 
-double reading_time(std::size_t input_bytes) {
-  return static_cast<double>(input_bytes) / 4e6;
-}
-
 Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<Bytes>()>& work, double seconds,
                            double wall, double* used) {
   const double allowed = (seconds + reading_time(input_bytes)) * std::max(limit_factor(), 1.0);  // [s] of CPU time
@@ -226,18 +222,6 @@ Result<Bytes> in_isolation(std::size_t input_bytes, const std::function<Result<B
   answer.erase(answer.begin());
   if (verdict == kDone) return std::move(answer);
   return refusal(answer);
-}
-
-void append_bytes(Bytes& out, const void* data, std::size_t size) {
-  const auto* begin = static_cast<const std::uint8_t*>(data);
-  out.insert(out.end(), begin, begin + size);
-}
-
-bool Taker::take(void* data, std::size_t size) {
-  if (size > bytes_.size()) return false;
-  if (size > 0) std::memcpy(data, bytes_.data(), size);
-  bytes_ = bytes_.subspan(size);
-  return true;
 }
 
 }  // namespace pliant

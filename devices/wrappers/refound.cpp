@@ -3,6 +3,8 @@
 #include <chrono>
 #include <mutex>
 
+#include "runtime/has_threads.h"
+
 namespace pliant {
 namespace {
 
@@ -23,7 +25,8 @@ Status Refound::open(const std::string& id) {
   can_ = inner_->capabilities();
   phase_ = Phase::kHeld;
   // A device whose loop is the vendor's library's can only be found by that library.
-  if (can_.loop != DeviceLoop::kCallback) thread_ = std::jthread([this](const std::stop_token& stop) { look(stop); });
+  if (kHasThreads && can_.loop != DeviceLoop::kCallback)
+    thread_ = std::jthread([this](const std::stop_token& stop) { look(stop); });
   return Done{};
 }
 
@@ -65,9 +68,13 @@ void Refound::end() {
 
 void Refound::look(const std::stop_token& end) {
   std::mutex mutex;
+  const std::stop_callback wake(end, [&] {
+    const std::lock_guard ended(mutex);
+    asked_.notify_all();
+  });
   std::unique_lock lock(mutex);
   while (!end.stop_requested()) {
-    asked_.wait_for(lock, end, std::chrono::duration<double>(kLookEvery), [] { return false; });
+    asked_.wait_for(lock, std::chrono::duration<double>(kLookEvery), [&] { return end.stop_requested(); });
     if (end.stop_requested() || held()) continue;
     if (open_again()) phase_.store(Phase::kHeld, std::memory_order_release);
   }

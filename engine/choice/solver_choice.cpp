@@ -65,7 +65,8 @@ std::vector<SolverFigures> measure_solvers(const TetMesh& tets, const TissueMate
   Tissue tissue(tets, material, tets.free_count);
   tissue.assemble(T, dvec3(0));
   const BlockMatrix& a = tissue.inner();
-  Vector right = Vector::Zero(3 * Eigen::Index{tissue.moving()}), truth = right, residual = right, more = right;
+  const auto numbers = 3 * static_cast<Eigen::Index>(tissue.moving());
+  Vector right = Vector::Zero(numbers), truth = right, residual = right, more = right;
   for (std::uint32_t i = 0; i < tissue.moving(); ++i)
     right.segment<3>(3 * i) = T * Eigen::Vector3d(load[i].x, load[i].y, load[i].z);
   BlockCholesky direct;

@@ -12,6 +12,7 @@
 #include "devices/wrappers/chain.h"
 #include "engine/run/sources.h"
 #include "engine/run/stiffness_note.h"
+#include "runtime/has_threads.h"
 #include "systems/device/devices.h"
 #include "systems/device/hands.h"
 
@@ -33,8 +34,9 @@ struct Opening {
   Status done = Done{};
 };
 
-// Runs `work` on a separate thread. Returns false if `stop` became true first.
+// Runs `work` on a separate thread, where there are threads. Returns false if `stop` became true first.
 bool does(const std::function<void()>& work, const std::function<bool()>& stop) {
+  if (!kHasThreads) return work(), true;
   std::packaged_task<void()> task(work);
   std::future<void> done = task.get_future();
   std::thread(std::move(task)).detach();

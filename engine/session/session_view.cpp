@@ -35,8 +35,8 @@ void SessionView::add(const Snapshot& snapshot) {
     const auto shown = of(object.object);
     if (shown == shown_.end()) continue;
     for (std::uint32_t i = 0; i < object.zone_count; ++i) {
-      std::copy_n(object.stream.begin() + std::ptrdiff_t{i} * kZoneSize, kZoneSize,
-                  shown->stream.begin() + std::ptrdiff_t{object.zones[i]} * kZoneSize);
+      std::copy_n(object.stream.begin() + static_cast<std::ptrdiff_t>(i) * kZoneSize, kZoneSize,
+                  shown->stream.begin() + static_cast<std::ptrdiff_t>(object.zones[i]) * kZoneSize);
       shown->changed[object.zones[i]] = 1;
     }
   }

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "content/files/assimp_import.h"
+#include "content/files/mesh_import.h"
 #include "content/gltf/form/gltf_draco.h"
 
 namespace pliant::test {

@@ -14,7 +14,7 @@
 #include <numbers>
 #include <random>
 
-#include "content/files/assimp_import.h"
+#include "content/files/mesh_import.h"
 
 namespace pliant::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "content/files/assimp_import.h"
+#include "content/files/mesh_import.h"
 #include "content/gltf/form/gltf_document.h"
 #include "content/gltf/read/gltf_animation.h"
 #include "content/gltf/read/gltf_appearance.h"

@@ -66,7 +66,7 @@ struct MeetingFilter : PairFilter {
     });
     for (auto first = met.begin(); first != met.end();) {
       const auto last = std::find_if(first, met.end(), [&](const auto& m) { return m.vertex != first->vertex; });
-      take_vertex(a, b, {first, last});
+      take_vertex(a, b, {&*first, static_cast<std::size_t>(last - first)});
       first = last;
     }
   }

@@ -1,0 +1,105 @@
+// Every shipped level for 1.5 s in lockstep, by the WebAssembly module and by the native library: forces and torques
+// agree within 1e-6 of the largest of the run, and a table says where readings have the same bits.
+//   node web/tests/forces.mjs [LEVEL...]     needs build/web (./dev web) and build/web/native_forces (./dev test web)
+import {execFileSync} from 'node:child_process';
+import {readFileSync, readdirSync} from 'node:fs';
+
+const kTicks = 1500, kBytes = 144, kForce = 64, kTorque = 88;  // pliant_reading of include/pliant.h
+const kTolerance = 1e-6;                                       // [1] of the largest force, or torque, of an effector
+const root = new URL('../../', import.meta.url).pathname;
+const levels = root + 'content/levels/';
+
+const {default: createPliant} = await import(root + 'build/web/pliant.js');
+const pliant = await createPliant({wasmBinary: readFileSync(root + 'build/web/pliant.wasm')});
+for (const file of readdirSync(levels)) pliant.FS.writeFile('/' + file, readFileSync(levels + file));
+
+function text(string) {
+  const size = pliant.lengthBytesUTF8(string) + 1, at = pliant._malloc(size);
+  pliant.stringToUTF8(string, at, size);
+  return at;
+}
+
+function check(status) {
+  if (status !== 0) throw new Error(pliant.UTF8ToString(pliant._pliant_error_message()));
+}
+
+// The readings of every effector and tick, as native_forces writes them, and the durations of a tick.
+function run(level) {
+  const out = pliant._malloc(64), u32 = at => pliant.HEAPU32[at >> 2];
+  check(pliant._pliant_scene_load(text('/' + level), 0, out));
+  const scene = u32(out);
+  check(pliant._pliant_session_open(scene, 0, 0, out));
+  const session = u32(out);
+  check(pliant._pliant_session_keep_readings(session, BigInt(kTicks)));
+  check(pliant._pliant_session_step(session, BigInt(kTicks)));
+  check(pliant._pliant_session_effector_count(session, out));
+  const effectors = u32(out), rows = pliant._malloc(kTicks * kBytes), all = [];
+  for (let e = 0; e < effectors; ++e) {
+    check(pliant._pliant_session_effector(session, e, out));
+    const name = u32(out);
+    pliant.HEAPU8.fill(0, rows, rows + kTicks * kBytes);
+    pliant.HEAPU32[rows >> 2] = kBytes;
+    check(pliant._pliant_session_take_readings(session, name, rows, kTicks, out, out + 8));
+    if (u32(out) !== kTicks) throw new Error(`${level}: ${u32(out)} readings of ${kTicks}`);
+    all.push(pliant.HEAPU8.slice(rows, rows + kTicks * kBytes));
+  }
+  pliant.HEAPU32[out >> 2] = 56;  // sizeof(pliant_figures)
+  check(pliant._pliant_session_figures(session, out));
+  const p50 = pliant.HEAPF64[(out >> 3) + 2];
+  check(pliant._pliant_session_destroy(session));
+  check(pliant._pliant_scene_destroy(scene));
+  pliant._free(rows);
+  pliant._free(out);
+  return {all, p50};
+}
+
+function native(level, effectors) {
+  const file = root + 'build/web/native.bin';
+  const said = execFileSync(root + 'build/web/native_forces', [levels + level, String(kTicks), file], {encoding: 'utf8'});
+  const bytes = new Uint8Array(readFileSync(file));
+  if (bytes.length !== effectors * kTicks * kBytes) throw new Error(`${level}: the native run has other effectors`);
+  const size = kTicks * kBytes;
+  return {all: Array.from({length: effectors}, (_, e) => bytes.subarray(e * size, (e + 1) * size)), p50: Number(said.split(' ')[0])};
+}
+
+// The largest difference of a vector, over the largest vector.
+function difference(a, b, offset) {
+  const of = bytes => new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength), x = of(a), y = of(b);
+  let most = 0, apart = 0;
+  for (let row = 0; row < kTicks; ++row) {
+    let size = 0, between = 0;
+    for (let c = 0; c < 3; ++c) {
+      const at = row * kBytes + offset + 8 * c, mine = x.getFloat64(at, true), theirs = y.getFloat64(at, true);
+      size += theirs * theirs, between += (mine - theirs) ** 2;
+    }
+    if (Number.isNaN(size + between)) return NaN;
+    most = Math.max(most, Math.sqrt(size)), apart = Math.max(apart, Math.sqrt(between));
+  }
+  return apart === 0 ? 0 : apart / most;
+}
+
+const asked = process.argv.slice(2);
+const names = readdirSync(levels).filter(file => /\.(glb|gltf)$/.test(file) && (asked.length === 0 || asked.includes(file)));
+let failed = 0;
+console.log('level               effectors  difference  same bits   tick wasm/native [us]');
+for (const level of names) {
+  const here = run(level), there = native(level, here.all.length);
+  let most = 0, same = 0;
+  here.all.forEach((mine, e) => {
+    const theirs = there.all[e];
+    for (const offset of [kForce, kTorque]) {
+      const apart = difference(mine, theirs, offset);
+      most = Number.isNaN(apart) ? apart : Math.max(most, apart);
+    }
+    for (let row = 0; row < kTicks; ++row)
+      same += Buffer.compare(mine.subarray(row * kBytes, (row + 1) * kBytes), theirs.subarray(row * kBytes, (row + 1) * kBytes)) === 0;
+  });
+  const ok = most <= kTolerance, share = same / (here.all.length * kTicks);
+  failed += !ok;
+  console.log(`${level.padEnd(20)}${String(here.all.length).padStart(9)}  ${most.toExponential(1).padStart(10)}  ` +
+              `${(share === 1 ? 'all' : (100 * share).toFixed(1) + ' %').padStart(9)}   ${here.p50.toFixed(1)}/${there.p50.toFixed(1)}${ok ? '' : '   FAILED'}`);
+}
+if (names.length === 0 || failed > 0) {
+  console.error(names.length === 0 ? 'forces.mjs: no such level' : `forces.mjs: ${failed} of ${names.length} levels differ by more than ${kTolerance}`);
+  process.exit(1);
+}

@@ -1,0 +1,40 @@
+// native_forces LEVEL TICKS OUT: the readings of every effector and tick of a level in lockstep, by the native library,
+// as bytes of pliant_reading, effector after effector; the durations of a tick go to stdout. forces.mjs compares.
+#include <pliant.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int failed(const char* what) {
+  fprintf(stderr, "native_forces: %s: %s\n", what, pliant_error_message());
+  return 1;
+}
+
+int main(int count, char** words) {
+  if (count != 4) return 2;
+  const size_t ticks = (size_t)atol(words[2]);
+  pliant_scene* scene;
+  pliant_session* session;
+  uint32_t effectors;
+  if (pliant_scene_load(words[1], NULL, &scene) || pliant_session_open(scene, NULL, NULL, &session)) return failed(words[1]);
+  if (pliant_session_keep_readings(session, ticks) || pliant_session_step(session, ticks)) return failed("ticks");
+  if (pliant_session_effector_count(session, &effectors)) return failed("effectors");
+  pliant_reading* const rows = calloc(ticks, sizeof *rows);
+  FILE* const out = fopen(words[3], "wb");
+  if (!rows || !out) return 1;
+  for (uint32_t e = 0; e < effectors; ++e) {
+    const char* name;
+    size_t taken = 0;
+    uint64_t lost = 0;
+    memset(rows, 0, ticks * sizeof *rows);
+    rows[0].size = sizeof *rows;
+    if (pliant_session_effector(session, e, &name) ||
+        pliant_session_take_readings(session, name, rows, ticks, &taken, &lost) || taken != ticks)
+      return failed("readings");
+    fwrite(rows, sizeof *rows, ticks, out);
+  }
+  pliant_figures figures = {.size = sizeof figures};
+  if (pliant_session_figures(session, &figures)) return failed("figures");
+  printf("%.3f %.3f %llu\n", figures.p50_us, figures.p99_us, (unsigned long long)figures.soft_steps);
+  return fclose(out) == 0 ? 0 : 1;
+}
