@@ -248,7 +248,7 @@ TEST(Joints, BreakBeyondTheirStrength) {
   }
 }
 
-// What it held falls on as if it had never been there.
+// Its load falls on as if it had never been there.
 TEST(Joints, ARopeThatBreaksLeavesVelocitiesAsTheyAre) {
   Jointed scene(1.0 / 60.0);
   const Entity free = scene.box(dvec3(0.04), dvec3(1, 0, 0)), tied = scene.box(dvec3(0.04), dvec3(0));

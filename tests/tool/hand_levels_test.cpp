@@ -71,9 +71,9 @@ TEST(HandLevels, ForcepsLiftAVesselAndPeelItOffItsBed) {
     for (const dvec3& x : scene.body("vessel").surface_position) y = std::max(y, x.y);
     return y;
   };
-  scene.run(1.8);
+  scene.run(1.2);
   const double lay = free_end();
-  EXPECT_EQ(bonds(), std::string(13, '=')) << "whole until it is pulled";
+  EXPECT_EQ(bonds(), std::string(13, '=')) << "whole until it is taken";
   scene.run(3.3);
   EXPECT_EQ(bonds().substr(0, 5), "-----") << "peeled at the jaws";
   EXPECT_EQ(bonds().substr(9), "====") << "and not yet far from them";
