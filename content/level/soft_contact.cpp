@@ -35,6 +35,7 @@ std::string why_plain(const Level& level, const LevelNode& node) {
   if (std::any_of(level.nodes.begin(), level.nodes.end(),
                   [](const LevelNode& n) { return n.in_scene && n.soft_body && n.handle; }))
     return "the tissue of a tool has many contacts, and split ones would take twice the time of a step";
+  if (!body.rigid.empty()) return "it has rigid parts, which their dents do not move";
   if (body.law != TissueLaw::kCorotational) return "`law` is for large strain, and their dents are for small";
   if (!(body.friction_sliding > 0.0))
     return "it has no friction, and a stroke to where the tissue is stiffer then gives some 1e-6 J";
