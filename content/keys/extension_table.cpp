@@ -111,13 +111,14 @@ Key box(std::string name, Access access, std::string doc) {
       });
 }
 
-Key double_box(std::string name, DBox Effect::*member, std::string doc) {
+template <class Access>
+Key double_box(std::string name, Access access, std::string doc) {
   const auto corner = [](dvec3 p) { return Json::array({p.x, p.y, p.z}); };
   const auto point = [](const Json& json) {
     return dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
   };
   return key(
-      std::move(name), "m", KeyType::kBox, std::move(doc), at(&LevelNode::effect, member),
+      std::move(name), "m", KeyType::kBox, std::move(doc), access,
       [corner](const DBox& value) {
         return value.empty() ? Json() : Json{{"min", corner(value.min)}, {"max", corner(value.max)}};
       },
@@ -274,6 +275,18 @@ Key cavities_key() {
       "cavities", "closed hollows filled with gas or liquid", std::move(keys), "pressure",
       [](const LevelNode& node) -> const std::vector<Cavity>& { return node.soft_body->cavities; },
       [](LevelNode& node, std::vector<Cavity> cavities) { node.soft_body->cavities = std::move(cavities); });
+}
+
+Key rigid_key() {
+  std::vector<Key> keys;
+  keys.push_back(text("name", KeyType::kText, of_item(&RigidPart::name), "name, for joints"));
+  keys.push_back(double_box("box", of_item(&RigidPart::box), "its nodes, in the object frame"));
+  Key out = items_key<RigidPart>(
+      "rigid", fmt::format("rigid parts besides a handle: bones, at most {}", kMostRigidParts), std::move(keys), "name",
+      [](const LevelNode& node) -> const std::vector<RigidPart>& { return node.soft_body->rigid; },
+      [](LevelNode& node, std::vector<RigidPart> parts) { node.soft_body->rigid = std::move(parts); });
+  out.most = kMostRigidParts;
+  return out;
 }
 
 void add_fibre_keys(std::vector<Key>& keys) {
@@ -566,6 +579,7 @@ std::vector<Key> soft_body_keys() {
   keys.push_back(pair("rayleigh", "1/s, s", s(&S::rayleigh), "Rayleigh damping: alpha on mass, beta on stiffness"));
   keys.push_back(prony_key());
   keys.push_back(cavities_key());
+  keys.push_back(rigid_key());
   add_fibre_keys(keys);
   keys.push_back(number("cell", "m", {SoftBodyRange::kCell, {1e-4, 0.2}}, s(&S::cell),
                         fmt::format("lattice cell; 0: sized for some {} tetrahedra", kUsualTets)));
@@ -672,7 +686,7 @@ std::vector<Key> effect_keys() {
       [](const Json& json) { return json.get<std::vector<std::string>>(); }));
   keys.push_back(choice("region", e(&E::region), "where it acts; `half_space`: below the node's XZ plane"));
   keys.push_back(number("radius", "m", {R::kWidth, {1e-3, 1.0}}, e(&E::radius), "radius of the sphere"));
-  keys.push_back(double_box("box", &E::box, "the box, in the node's frame"));
+  keys.push_back(double_box("box", e(&E::box), "the box, in the node's frame"));
   keys.push_back(number("edge", "m", {R::kWidth, {1e-3, 0.1}}, e(&E::edge),
                         "depth below the region's border over which the effect comes in, at most to its middle; of "
                         "detents around, the radius within which they fade"));
@@ -710,6 +724,9 @@ std::vector<Key> joint_keys() {
                         "leaves free: nothing, turning, turning about +Y, sliding along +Y, all but stretching"));
   keys.push_back(text("a", KeyType::kText, j(&J::a), "name of the soft or rigid body that it holds"));
   keys.push_back(text("b", KeyType::kText, j(&J::b), "name of the body that holds it; left out: the world"));
+  const char* const part = "rigid part of that body, by its name; `handle`: a tool's handle; left out: its tissue";
+  keys.push_back(text("part_a", KeyType::kText, j(&J::part_a), part));
+  keys.push_back(text("part_b", KeyType::kText, j(&J::part_b), part));
   Key limits = pair("limits", "rad, m", j(&J::limits),
                     "least and largest angle or travel of a against b, from the beginning; equal: none");
   limits.range = R::kLimits;
@@ -735,7 +752,7 @@ std::vector<Key> joint_keys() {
 
 std::optional<Note> settle_joint(void* owner) {
   const Joint& it = *static_cast<LevelNode*>(owner)->joint;
-  if (!it.a.empty() && it.a == it.b)
+  if (!it.a.empty() && it.a == it.b && it.part_a == it.part_b)
     return Note{"names the same body twice", "name two, or leave out `b`", "key.value", "b"};
   if (it.limits[0] > it.limits[1])
     return Note{"has a least limit above its largest", "exchange them", "key.value", "limits"};

@@ -136,6 +136,10 @@ const UnusedRow kRows[] = {
      [](const LevelNode& n) { return n.handle.has_value(); },
      {"is of bodies that are pinned, and a tool always begins as it rests in the hand", "remove the key"}},
     {"soft_body",
+     "under_gravity",
+     [](const LevelNode& n) { return !n.soft_body->rigid.empty(); },
+     {"is of tissue without `rigid` parts, which fall into place by themselves", "remove the key"}},
+    {"soft_body",
      "velocity",
      [](const LevelNode& n) { return n.handle.has_value(); },
      {"is of bodies without a handle: a tool moves with its device", "remove the key"}},
@@ -207,7 +211,7 @@ std::optional<UnusedWords> unused_of_joint(const Joint& joint, const std::string
     if (has) return std::nullopt;
     return UnusedWords{fmt::format("is read with `{}` only", what), "set that, or remove the key"};
   };
-  if (key == "kind" || key == "a" || key == "b" || key == "strength") return std::nullopt;
+  if (key == "kind" || key == "a" || key == "b" || key == "strength" || key.starts_with("part_")) return std::nullopt;
   if (reads(static_cast<std::size_t>(joint.kind)))
     return key == "closed" ? needs(!joint.grip.empty(), "grip")
                            : needs(key != "max_force" || joint.stiffness > 0.0 || joint.damping > 0.0, "stiffness");

@@ -35,6 +35,7 @@ std::string why_plain(const Level& level, const LevelNode& node) {
   if (std::any_of(level.nodes.begin(), level.nodes.end(),
                   [](const LevelNode& n) { return n.in_scene && n.soft_body && n.handle; }))
     return "the tissue of a tool has many contacts, and split ones would take twice the time of a step";
+  if (!body.rigid.empty()) return "it has rigid parts, which their dents do not move";
   if (body.law != TissueLaw::kCorotational) return "`law` is for large strain, and their dents are for small";
   if (body.prony.count > 0) return "their dents do not relax, and the tissue does (`prony`)";
   if (body.fibres.young > 0.0) return "their dents have no fibres";

@@ -207,6 +207,9 @@ std::optional<Note> law_fault(const LevelNode& node) {
   if (body.mesh.empty() && body.elements == Elements::kHexahedra && body.law != TissueLaw::kCorotational)
     return Note{"has a `law` for large strain, and hexahedra are co-rotational",
                 "leave out `law`, or take `elements` `tetrahedra`", "level.law_of_hexahedra", node.name};
+  if (!body.rigid.empty() && body.law != TissueLaw::kCorotational)
+    return Note{"has `rigid` parts and a `law` for large strain, whose step would not be passive with them",
+                "leave out one of them", "level.not_with_rigid", node.name};
   if (body.mesh.empty() && body.elements == Elements::kHexahedra && (body.fibres.young > 0.0 || !body.cavities.empty()))
     return Note{"has `fibres` or `cavities`, which are of tetrahedra", "leave out `elements` `hexahedra`",
                 "level.not_of_hexahedra", node.name};
@@ -220,11 +223,40 @@ std::optional<Note> law_fault(const LevelNode& node) {
   return std::nullopt;
 }
 
+namespace {
+
+// What tissue with rigid parts cannot have.
+std::optional<Note> rigid_fault(const LevelNode& node) {
+  const SoftBody& body = *node.soft_body;
+  if (body.rigid.empty()) return std::nullopt;
+  for (std::size_t i = 0; i < body.rigid.size(); ++i) {
+    const std::string& name = body.rigid[i].name;
+    if (name.empty() || name == kHandlePart)
+      return Note{"has a rigid part named `" + name + "`", "name it otherwise", "level.rigid_name", node.name};
+    for (std::size_t k = 0; k < i; ++k)
+      if (body.rigid[k].name == name)
+        return Note{"has two rigid parts named `" + name + "`", "rename one", "level.rigid_name", node.name};
+    if (body.rigid[i].box.empty())
+      return Note{"has a rigid part `" + name + "` without a `box`", "give it one", "level.rigid_box", node.name};
+  }
+  const auto fault = [&](const char* what) {
+    return Note{std::string("has `rigid` parts and ") + what, "leave out one of them", "level.not_with_rigid",
+                node.name};
+  };
+  if (body.integrator != StepMethod::kEuler) return fault("an `integrator`, which only free tissue has");
+  if (!body.cavities.empty()) return fault("`cavities`");
+  if (contact_of(node) == SoftContact::kSplit) return fault("split contacts, which act on tissue alone");
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<Note> soft_fault(const LevelNode& node) {
   const auto fault = [&](const char* code, const char* what, const char* cure) {
     return Note{what, cure, code, node.name};
   };
   if (std::optional<Note> of_law = law_fault(node)) return of_law;
+  if (std::optional<Note> of_rigid = node.soft_body ? rigid_fault(node) : std::nullopt) return of_rigid;
   if (node.soft_body && node.rigid_body)
     return fault("level.soft_and_rigid", "has both PLIANT_soft_body and PLIANT_rigid_body",
                  "keep one, or mark the rigid part with PLIANT_handle");

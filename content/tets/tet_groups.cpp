@@ -52,6 +52,37 @@ bool claim(const std::vector<dvec3>& nodes, const BuiltMesh& surface, const Box&
   return std::find(group.begin(), group.end(), which) != group.end();
 }
 
+// Puts the nodes of a rigid part's box into its group.
+Status claim_rigid(const std::vector<dvec3>& nodes, const BuiltMesh& surface, const SoftBody& body, std::size_t part,
+                   std::vector<NodeGroup>& group) {
+  const RigidPart& asked = body.rigid[part];
+  const std::string where = "PLIANT_soft_body/rigid `" + asked.name + "`";
+  const dvec3 slack(kRounding * static_cast<double>(surface.mesh.box.diagonal()));
+  bool any = false;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (!glm::all(glm::greaterThanEqual(nodes[n], asked.box.min - slack)) ||
+        !glm::all(glm::lessThanEqual(nodes[n], asked.box.max + slack)))
+      continue;
+    if (group[n] != NodeGroup::kFree && group[n] != NodeGroup::kPinned)
+      return Error{
+          where,
+          "overlaps " +
+              (group[n] == NodeGroup::kHandle
+                   ? std::string("the handle")
+                   : "`" +
+                         body.rigid[static_cast<std::size_t>(group[n]) - static_cast<std::size_t>(NodeGroup::kRigid)]
+                             .name +
+                         "`"),
+          "leave tissue between them"};
+    group[n] = rigid_group(part);
+    any = true;
+  }
+  if (!any)
+    return Error{where, "holds no node of the tetrahedra",
+                 "move or widen its box: the tissue reaches from " + text_of(surface.mesh.box)};
+  return Done{};
+}
+
 }  // namespace
 
 std::string text_of(const Box& box) {
@@ -75,9 +106,11 @@ Result<std::vector<NodeGroup>> group_nodes(const std::vector<dvec3>& nodes, cons
       return Error{"PLIANT_handle/box", "holds no node of the tetrahedra",
                    (handle->box.empty() ? "paint _HANDLE over more than a cell" : "move or widen it: " + extent)};
   }
+  for (std::size_t part = 0; part < body.rigid.size(); ++part)
+    if (Status s = claim_rigid(nodes, surface, body, part, group); !s) return s.error();
   if (std::find(group.begin(), group.end(), NodeGroup::kFree) == group.end())
-    return Error{"PLIANT_soft_body", "has no free node: every node is pinned or on the handle",
-                 "make `pinned` or the handle's box smaller, or use PLIANT_rigid_body"};
+    return Error{"PLIANT_soft_body", "has no free node: every node is pinned, on the handle or on a rigid part",
+                 "make `pinned`, the handle's box or those of `rigid` smaller, or use PLIANT_rigid_body"};
   return group;
 }
 

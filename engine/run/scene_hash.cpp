@@ -48,8 +48,9 @@ void add_animation(Hash& hash, const LevelAnimation& animation) {
 
 // Keeps the hash of scenes older than these keys.
 bool is_newer_default(const Extension& extension, const Key& key, const Json& value) {
-  if (key.name == "prony" || key.name == "cavities" || key.name.starts_with("fibres.") ||
-      (extension.name == "joint" && (key.name == "closed" || key.name == "grip" || key.name == "max_force"))) {
+  if (key.name == "prony" || key.name == "cavities" || key.name == "rigid" || key.name.starts_with("fibres.") ||
+      (extension.name == "joint" &&
+       (key.name == "closed" || key.name == "grip" || key.name == "max_force" || key.name.starts_with("part_")))) {
     LevelNode fresh;
     extension.add(&fresh);
     return value == key.get(&fresh);

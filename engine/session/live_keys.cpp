@@ -29,6 +29,7 @@ constexpr Fixed kFixed[] = {
     {"soft_body.materials", "the tissue's elements are weighed when the session opens"},
     {"soft_body.prony", "the memory of its arms is laid out when the session opens"},
     {"soft_body.cavities", "their walls are found when the session opens"},
+    {"soft_body.rigid", "the tissue's unknowns are laid out when the session opens"},
     {"soft_body.focus", "the tetrahedra are made with it"},
     {"soft_body.fill", "the tetrahedra are made with it"},
     {"soft_body.thickness", "the tetrahedra are made with it"},

@@ -58,25 +58,27 @@ TEST(KeyTable, EveryRangeOfADeformableIsThatOfTheTouchClock) {
 
 // A valid value of the key that differs from `other`; no number for a vector, which would be accepted.
 Json other_value(const Key& key, const Json& other) {
-  const std::vector<Json> candidates{0.5,
-                                     1.0,
-                                     20.0,
-                                     0.25,
-                                     0.001,
-                                     !other.is_boolean() || !other.get<bool>(),
-                                     "some text",
-                                     Json::array({0.5, 0.25}),
-                                     Json::array({0.5, 0.25, 0.125}),
-                                     Json::array({Json::array({0.5, 0.25, 0.125})}),
-                                     Json::array({{{"thickness", 0.5}, {"force", 0.25}}}),
-                                     Json::array({Json::array({0.0, 0.0}), Json::array({0.5, 0.25})}),
-                                     Json::array({{{"name", "a"}, {"young", 9}, {"density", 8}, {"damping", 7}}}),
-                                     Json::array({{{"share", 0.5}, {"time", 0.25}}}),
-                                     Json::array({{{"name", "a"}, {"pressure", 9.0}, {"bulk", 8.0}}}),
-                                     {{"min", {0, 0, 0}}, {"max", {0.5, 1, 2}}},
-                                     Json::array({"some text"}),
-                                     !key.choices ? Json() : Json(key.choices().front()),
-                                     !key.choices ? Json() : Json(key.choices().back())};
+  const std::vector<Json> candidates{
+      0.5,
+      1.0,
+      20.0,
+      0.25,
+      0.001,
+      !other.is_boolean() || !other.get<bool>(),
+      "some text",
+      Json::array({0.5, 0.25}),
+      Json::array({0.5, 0.25, 0.125}),
+      Json::array({Json::array({0.5, 0.25, 0.125})}),
+      Json::array({{{"thickness", 0.5}, {"force", 0.25}}}),
+      Json::array({Json::array({0.0, 0.0}), Json::array({0.5, 0.25})}),
+      Json::array({{{"name", "a"}, {"young", 9}, {"density", 8}, {"damping", 7}}}),
+      Json::array({{{"share", 0.5}, {"time", 0.25}}}),
+      Json::array({{{"name", "a"}, {"pressure", 9.0}, {"bulk", 8.0}}}),
+      Json::parse(R"([{"name": "a", "box": {"min": [0.0, 0.0, 0.0], "max": [0.5, 1.0, 2.0]}}])"),
+      {{"min", {0, 0, 0}}, {"max", {0.5, 1, 2}}},
+      Json::array({"some text"}),
+      !key.choices ? Json() : Json(key.choices().front()),
+      !key.choices ? Json() : Json(key.choices().back())};
   for (const Json& each : candidates)
     if (each != other && !check_value(key, each) && each.is_array() == other.is_array()) return each;
   return {};

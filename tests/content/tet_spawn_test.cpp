@@ -111,6 +111,32 @@ TEST(SpawnSoft, NodesStandInTheOrderFreeHandlePinnedByTheirBoxes) {
   EXPECT_TRUE(world.registry.has<Handle6>(find_by_name(world, "thing")));
 }
 
+TEST(SpawnSoft, RigidPartsHaveTheNodesOfTheirBoxesAndMayNotOverlap) {
+  Level level = ball();
+  SoftBody& body = *level.nodes[0].soft_body;
+  body.pinned = {{-1, -1, -1}, {1, 1, 1}};  // they win over pins
+  body.rigid = {{"left", {{-1, -1, -1}, {-0.015, 1, 1}}}, {"right", {{0.015, -1, -1}, {1, 0, 1}}}};
+  body.pinned.max.y = -0.03f;
+  level.nodes[0].handle = Handle6{};
+  level.nodes[0].handle->box = {{-0.01f, 0.0f, -1}, {0.01f, 1, 1}};
+  const World world = spawned_tets(level);
+  const TetMesh& tets = world.tet_meshes[world.registry.get<SoftBody>(find_by_name(world, "thing")).tets];
+  ASSERT_EQ(tets.rigid_counts.size(), 2u);
+  const std::uint32_t right = tets.rigid_begin() + tets.rigid_counts[0];
+  for (std::uint32_t n = 0; n < tets.node_count(); ++n) {
+    EXPECT_EQ(n >= tets.rigid_begin() && n < right, tets.nodes[n].x < -0.015);
+    const bool of_right = n >= right && n < tets.pinned_begin();
+    EXPECT_EQ(of_right, tets.nodes[n].x > 0.015 && tets.nodes[n].y < 1e-6);  // a box holds the nodes on its faces
+  }
+  const auto refused = [&](DBox box) {
+    body.rigid[1].box = box;
+    return refusal(level);
+  };
+  EXPECT_NE(refused({{-1, -1, -1}, {0, 1, 1}}).find("`right`: overlaps `left`"), std::string::npos);
+  EXPECT_NE(refused({{-0.01, 0, -1}, {0.01, 1, 1}}).find("`right`: overlaps the handle"), std::string::npos);
+  EXPECT_NE(refused({{2, 2, 2}, {3, 3, 3}}).find("`right`: holds no node"), std::string::npos);
+}
+
 TEST(SpawnSoft, PaintHoldsTheNodesBeneathIt) {
   Level level = ball();
   Primitive& collision_mesh = level.meshes[0].primitives[0];

@@ -1,5 +1,5 @@
-// `prony`, `cavities` and `fibres` of PLIANT_soft_body: what is wrong is one sentence, saving keeps every key, and a
-// hollow is found in tetrahedra.
+// `prony`, `cavities`, `rigid` and `fibres` of PLIANT_soft_body: what is wrong is one sentence, saving keeps every key,
+// and a hollow is found in tetrahedra.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,12 +54,23 @@ TEST(TissueKeys, WhatExcludesEachOtherIsAFault) {
             "level.not_with_integrator");
   EXPECT_EQ(fault(R"({"fibres": {"young": 1000}, "elements": "hexahedra"})"), "level.not_of_hexahedra");
   EXPECT_EQ(fault(R"({"cavities": [{"pressure": 1000}], "elements": "hexahedra"})"), "level.not_of_hexahedra");
+  const auto of_bone = [&](const std::string& name, const std::string& rest) {
+    return fault(R"({"rigid": [{"name": ")" + name + R"(", "box": {"min": [0, 0, 0], "max": [1, 1, 1]}}])" + rest +
+                 "}");
+  };
+  EXPECT_EQ(of_bone("tip", ""), "");
+  EXPECT_EQ(of_bone("handle", ""), "level.rigid_name");
+  EXPECT_EQ(of_bone("tip\"}, {\"name\": \"tip", ""), "level.rigid_box");
+  for (const char* other : {R"("law": "neo_hookean")", R"("integrator": "second_order")", R"("contact": "split")",
+                            R"("cavities": [{"pressure": 1000}])"})
+    EXPECT_EQ(of_bone("tip", std::string(", ") + other), "level.not_with_rigid") << other;
 }
 
 TEST(TissueKeys, SavingKeepsEveryKey) {
   const Json given = Json::parse(R"({"PLIANT_soft_body": {
       "prony": [{"share": 0.25, "time": 0.125}, {"share": 0.5, "time": 2.0}],
       "cavities": [{"pressure": 1500.0, "bulk": 1e9}, {"name": "gall", "pressure": 0.0, "bulk": 1e6}],
+      "rigid": [{"name": "tip", "box": {"min": [0.0, 0.125, 0.0], "max": [1.0, 1.0, 2.0]}}, {"name": "bare"}],
       "fibres": {"young": 3e4, "direction": [0.0, 1.0, 0.0], "only_tension": true, "contraction": 0.125, "period": 0.5}}})");
   LevelNode node;
   ASSERT_TRUE(parse_node_extensions(given, "", {}, node).ok());
@@ -72,6 +83,8 @@ TEST(TissueKeys, SavingKeepsEveryKey) {
   ASSERT_TRUE(parse_node_extensions(saved, "", {}, again).ok()) << saved.dump();
   EXPECT_TRUE(again.soft_body->prony == node.soft_body->prony);
   EXPECT_TRUE(again.soft_body->cavities == node.soft_body->cavities);
+  EXPECT_EQ(node.soft_body->rigid[0].box.min.y, 0.125);
+  EXPECT_TRUE(again.soft_body->rigid == node.soft_body->rigid);
   EXPECT_TRUE(again.soft_body->fibres == node.soft_body->fibres);
 }
 
