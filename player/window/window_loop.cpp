@@ -60,19 +60,18 @@ float tint_of(const World& world) {
   return reach > 0 ? kTintShare * static_cast<float>(reach) : 0.01f;
 }
 
-// The shipped ones, and those beside the level.
+// The levels beside this one, then the shipped ones.
 std::vector<std::string> levels_to_open(const std::string& level) {
-  std::vector<std::string> all, beside;
-  for (const std::filesystem::path& each : shipped_levels()) all.push_back(each.string());
-  std::error_code failed;
+  std::vector<std::string> all;
   const std::filesystem::path folder = std::filesystem::path(level).parent_path();
+  std::error_code failed;
   for (std::filesystem::directory_iterator it(folder.empty() ? "." : folder, failed), end; !failed && it != end;
        it.increment(failed))
     if (has_ending(it->path(), level_endings()))
-      beside.push_back(folder.empty() ? it->path().filename().string() : it->path().string());
-  std::sort(beside.begin(), beside.end());
-  for (const std::string& each : beside)
-    if (std::find(all.begin(), all.end(), each) == all.end()) all.push_back(each);
+      all.push_back(folder.empty() ? it->path().filename().string() : it->path().string());
+  std::sort(all.begin(), all.end());
+  for (const std::filesystem::path& each : shipped_levels())
+    if (std::find(all.begin(), all.end(), each.string()) == all.end()) all.push_back(each.string());
   return all;
 }
 

@@ -65,8 +65,8 @@ TEST_F(ShellWindowTest, MenusOpenByHoveringAndCloseByEscAndAreLedThroughByArrows
               "expect-no Menu/Save as…\nclick Menu/Edit\nexpect Menu/Undo\nkey Esc\nexpect-no Menu/Undo\n"
               "click Menu/File\nkey Right\nexpect Menu/Undo\nkey Left\nexpect Menu/Save as…\nkey Esc\n"
               "click Menu/File\nclick Menu/File\nexpect-no Menu/Save as…\n"
-              "click Menu/Add\nkey Down\nkey Enter\nexpect Scene/probe/row\n"
-              "key Ctrl+Q\nkey Esc\nexpect Scene/probe/row\nkey Ctrl+Q\nclick Unsaved/Discard\n");
+              "click Menu/Add\nkey Down\nkey Enter\nexpect Scene/sphere/row\n"
+              "key Ctrl+Q\nkey Esc\nexpect Scene/sphere/row\nkey Ctrl+Q\nclick Unsaved/Discard\n");
 }
 
 TEST_F(ShellWindowTest, ArrowKeysLeadThroughTheTreeAndF2Renames) {

@@ -236,12 +236,16 @@ TEST_F(WindowTest, ADroppedMeshTakesTheLevelsPlace) {
 }
 
 TEST_F(WindowTest, ThePanelOfLevelsOpensAnother) {
-  fs::copy_file(fs::path(PLIANT_SOURCE_DIR) / "content/levels/palpation.glb", folder / "beside.glb");
-  fs::copy_file(fs::path(PLIANT_SOURCE_DIR) / "content/levels/palpation.csv", folder / "palpation.csv");
-  fs::copy_file(fs::path(PLIANT_SOURCE_DIR) / "content/environments/sky.exr", folder / "sky.exr");
-  const Said said = shown({"plate.obj"}, "0.1,key,L\n0.5,click,Levels/beside\n20.0,close,\n");
-  ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_EQ(report("out/beside")["level"], "beside") << said.err;
+  const fs::path levels = fs::path(PLIANT_SOURCE_DIR) / "content/levels";
+  fs::copy_file(levels / "minimal.gltf", folder / "beside.gltf");
+  for (const char* part : {"minimal.bin", "minimal.csv"}) fs::copy_file(levels / part, folder / part);
+  for (const std::string close : {"3.0", "40.0"}) {  // as above
+    fs::remove_all(folder / "out");
+    const Said said = shown({"plate.obj"}, "0.1,key,L\n0.5,click,Levels/beside\n" + close + ",close,\n");
+    ASSERT_EQ(said.status, 0) << said.err;
+    if (fs::exists(folder / "out" / "beside" / "report.json")) break;
+  }
+  EXPECT_EQ(report("out/beside")["level"], "beside");
 }
 
 TEST_F(WindowTest, TheSameLevelAnewIsWrittenBesideWhatWasWrittenOfIt) {
