@@ -72,7 +72,7 @@ Result<Markers> Markers::make(const World& world, std::vector<Box> boxes) {
     for (const std::uint32_t index : meshes[kind].indices) all.indices.push_back(base + index);
   }
   made.vertices_ = gpu::Buffer::fixed<MarkerVertex>(all.vertices);
-  made.indices_ = gpu::Buffer::fixed<std::uint32_t>(all.indices);
+  made.indices_ = gpu::Buffer::indices(all.indices);
   for ([[maybe_unused]] auto [entity, handle] : world.registry.view<Handle6>()) ++made.most_handles_;
   for ([[maybe_unused]] auto [entity, soft] : world.registry.view<SoftBody>()) made.most_contacts_ = kMaxShownContacts;
   for ([[maybe_unused]] auto [entity, rigid] : world.registry.view<RigidBody>())

@@ -174,10 +174,10 @@ Surfaces::Item Surfaces::make_item(const World& world, Entity entity, const Draw
     for (std::size_t v = 0; v < vertices.size(); ++v) vertices[v].touch_normal *= carried->share[v];
   }
   item.vertices = gpu::Buffer::fixed<Vertex>(vertices);
-  item.indices = gpu::Buffer::fixed<std::uint32_t>(draw.indices);
+  item.indices = gpu::Buffer::indices(draw.indices);
   item.layout = layout_of(item.vertices, item.indices);
   if (gpu::is_es()) {
-    item.edges = gpu::Buffer::fixed<std::uint32_t>(triangle_edges(draw.indices));
+    item.edges = gpu::Buffer::indices(triangle_edges(draw.indices));
     item.edge_layout = layout_of(item.vertices, item.edges);
   }
   item.rest = box_of(draw);

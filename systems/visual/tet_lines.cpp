@@ -38,7 +38,7 @@ Result<TetLines> TetLines::make(const World& world) {
     for (const dvec3 node : mesh.nodes) item.nodes.push_back(vec3(pose ? pose->to_world(node) : node));
     const std::vector<std::uint32_t> ends = edges_of(mesh);
     item.edge_ends = static_cast<GLsizei>(ends.size());
-    item.edges = gpu::Buffer::fixed<std::uint32_t>(ends);
+    item.edges = gpu::Buffer::indices(ends);
     item.on_gpu = gpu::Buffer::writable(nullptr, item.nodes.size() * sizeof(vec3));
     item.layout = gpu::VertexArray::make();
     item.layout.source(item.on_gpu, sizeof(vec3));

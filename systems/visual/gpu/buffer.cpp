@@ -11,19 +11,26 @@ const void* at_byte(std::size_t offset) {
 
 }  // namespace
 
-// Contents pass through GL_COPY_WRITE_BUFFER, which belongs to no vertex array and gives WebGL's buffers no kind.
-Buffer::Buffer(const void* data, std::size_t size, GLenum usage) : size_(size) {
+// Contents pass through GL_COPY_WRITE_BUFFER, which belongs to no vertex array.
+Buffer::Buffer(const void* data, std::size_t size, GLenum usage, GLenum target) : size_(size) {
   GLuint id = 0;
   glGenBuffers(1, &id);
   object_ = Object<DestroyBuffer>(id);
   // OpenGL has no empty buffers: a few bytes are allocated, so that an empty mesh needs no special case.
   const std::size_t at_least_some = size ? size : 16;
-  glBindBuffer(GL_COPY_WRITE_BUFFER, id);
-  glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(at_least_some), size ? data : nullptr, usage);
+  glBindBuffer(target, id);
+  glBufferData(target, static_cast<GLsizeiptr>(at_least_some), size ? data : nullptr, usage);
 }
 
 Buffer Buffer::fixed(const void* data, std::size_t size) {
   return {data, size, GL_STATIC_DRAW};
+}
+
+// In WebGL the first target decides whether a buffer may hold indices.
+Buffer Buffer::indices(std::span<const std::uint32_t> items) {
+  if (!is_es()) return fixed(items);
+  glBindVertexArray(0);
+  return {items.data(), items.size_bytes(), GL_STATIC_DRAW, GL_ELEMENT_ARRAY_BUFFER};
 }
 
 Buffer Buffer::writable(const void* data, std::size_t size) {

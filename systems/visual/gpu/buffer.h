@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "systems/visual/gpu/object.h"
@@ -26,13 +27,16 @@ class Buffer {
     return fixed(items.data(), items.size_bytes());
   }
 
+  // Of a vertex array. Browsers want to know it when the buffer is made.
+  static Buffer indices(std::span<const std::uint32_t> items);
+
   // Replaces bytes [offset, offset + size); returns `size`, for summing up uploads.
   std::size_t write(std::size_t offset, const void* data, std::size_t size);
   std::size_t size() const { return size_; }
   GLuint id() const { return object_.id(); }
 
  private:
-  Buffer(const void* data, std::size_t size, GLenum usage);
+  Buffer(const void* data, std::size_t size, GLenum usage, GLenum target = GL_COPY_WRITE_BUFFER);
   Object<DestroyBuffer> object_;
   std::size_t size_ = 0;  // [bytes]
 };
