@@ -7,7 +7,7 @@ import {readFileSync, readdirSync} from 'node:fs';
 
 const kTicks = 1500, kBytes = 144, kForce = 64, kTorque = 88;  // pliant_reading of include/pliant.h
 const kTolerance = 1e-6;                                       // [1] of the largest force, or torque, of an effector
-const kUntil = {'grasp.glb': 1200, 'hand_squeeze.glb': 300};  // [ticks]
+const kUntil = {'grasp.glb': 1300, 'hand_squeeze.glb': 1300};  // [ticks]
 const root = new URL('../../', import.meta.url).pathname;
 const levels = root + 'content/levels/';
 
