@@ -37,6 +37,10 @@ extern "C" inline int pthread_setschedparam(pthread_t, int, const sched_param*) 
   return ENOSYS;
 }
 
+// Eigen: as on x86-64, which has 16 registers, and without assembly.
+#define EIGEN_ARCH_DEFAULT_NUMBER_OF_REGISTERS 16
+#define EIGEN_OPTIMIZATION_BARRIER(value)
+
 namespace std {
 
 double cyl_bessel_j(double order, double x);  // bessel.cpp

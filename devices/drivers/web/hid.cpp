@@ -1,5 +1,5 @@
-// HID devices of a browser (WebHID), in place of ports/hid_port.cpp: JavaScript opens them, and carries their reports in
-// and out by the functions below (web/hid.js). A report begins with its number, 0 where the device has none.
+// HID devices of a browser (WebHID), in place of ports/hid_port.cpp: JavaScript opens them, and carries their reports
+// in and out by the functions below (web/hid.js). A report begins with its number, 0 where the device has none.
 #include <emscripten/emscripten.h>
 
 #include <algorithm>
@@ -104,7 +104,9 @@ Result<std::unique_ptr<PacketPort>> open_hid(std::span<const HidMatch> matches, 
 }
 
 // JavaScript sends a packet when it has time, so that no thread is needed.
-std::unique_ptr<PacketPort> newest_port(std::unique_ptr<PacketPort> line) { return line; }
+std::unique_ptr<PacketPort> newest_port(std::unique_ptr<PacketPort> line) {
+  return line;
+}
 
 }  // namespace pliant
 
@@ -121,7 +123,9 @@ EMSCRIPTEN_KEEPALIVE void pliant_web_hid_add(int number, int vendor, int product
             {},
             {}};
 }
-EMSCRIPTEN_KEEPALIVE void pliant_web_hid_remove(int number) { pliant::devices().erase(number); }
+EMSCRIPTEN_KEEPALIVE void pliant_web_hid_remove(int number) {
+  pliant::devices().erase(number);
+}
 
 EMSCRIPTEN_KEEPALIVE void pliant_web_hid_report(int number, const std::uint8_t* bytes, std::size_t count) {
   const auto found = pliant::devices().find(number);
@@ -129,8 +133,7 @@ EMSCRIPTEN_KEEPALIVE void pliant_web_hid_report(int number, const std::uint8_t* 
   if (found->second.in.size() >= pliant::kMostWaiting) found->second.in.pop_front();
   found->second.in.emplace_back(bytes, bytes + count);
 }
-EMSCRIPTEN_KEEPALIVE void pliant_web_hid_feature(int number, int report, const std::uint8_t* bytes,
-                                                 std::size_t count) {
+EMSCRIPTEN_KEEPALIVE void pliant_web_hid_feature(int number, int report, const std::uint8_t* bytes, std::size_t count) {
   const auto found = pliant::devices().find(number);
   if (found != pliant::devices().end())
     found->second.features[static_cast<std::uint8_t>(report)] = {bytes, bytes + count};

@@ -1,0 +1,1 @@
+// MMX, which emscripten lacks and Eigen only includes.
