@@ -42,7 +42,7 @@ export class Hands {
   }
 
   // The state of every pointer, once a picture: {id, from, along, forward, down, steps} of a ray, or {id, velocity}.
-  // What is left out has gone.
+  // Left out values are removed.
   set(pointers) {
     for (const id of this.held.keys()) if (!pointers.some((each) => each.id === id)) this.leave(id);
     for (const pointer of pointers) {

@@ -115,7 +115,7 @@ class Level {
   }
 }
 
-// What the page needs to draw an object, and its sliders' first values.
+// All that the page needs to draw an object, and its sliders' first values.
 function describe(body) {
   const get = (key) => {
     try {
@@ -252,7 +252,7 @@ function connect(number, driver) {
   level.session.connect(effector, `${driver}:${number}`);
 }
 
-// What the drivers send to their devices.
+// The drivers' reports to their devices.
 function sendReports() {
   const { library } = pliant;
   for (const number of plugged.keys())

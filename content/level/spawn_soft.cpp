@@ -225,7 +225,7 @@ std::optional<Note> law_fault(const LevelNode& node) {
 
 namespace {
 
-// What tissue with rigid parts cannot have.
+// Keys that tissue with rigid parts cannot have.
 std::optional<Note> rigid_fault(const LevelNode& node) {
   const SoftBody& body = *node.soft_body;
   if (body.rigid.empty()) return std::nullopt;

@@ -11,9 +11,8 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kCreaseGrain = 1 << 13;
-// [rad] Triangles around a vertex, all of which are turned by more than this from their mean normal, meet in a point.
-// A patch through the mean normal would bulge between its edges, so that a cone would be felt fluted.
-constexpr double kPoint = 0.785;
+constexpr double kLeastPoint = 0.4;   // [rad] half-angles of cones to 67 degrees
+constexpr double kMostOfPoint = 0.1;  // [1] on a dome it is a half
 
 dvec3 face_normal(const Mesh& mesh, std::uint32_t triangle) {
   const uvec3 t = mesh.triangles[triangle];
@@ -94,16 +93,86 @@ class Fans {
   std::vector<std::uint32_t> root_;
 };
 
-bool at_crease_or_point(const Mesh& mesh, const Corners& corners, std::uint32_t vertex) {
-  const dvec3 mean(mesh.normal(vertex));
-  bool point = true;
+bool at_crease(const Mesh& mesh, const Corners& corners, std::uint32_t vertex) {
+  for (std::uint32_t c = corners.first[vertex]; c < corners.first[vertex + 1]; ++c) {
+    const std::uint32_t i = corners.corner[c] % 3;
+    if (mesh.crease[corners.corner[c] / 3] & (1u << i | 1u << (i + 2) % 3)) return true;
+  }
+  return false;
+}
+
+void split_fans(const Corners& corners, Mesh& mesh) {
+  std::vector<std::uint8_t> creased(mesh.vertex_count, 0);
+  parallel_for(mesh.vertex_count, kCreaseGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) creased[v] = at_crease(mesh, corners, static_cast<std::uint32_t>(v));
+  });
+
+  // Each triangle at such a vertex gets an entry, filled with the normals of its vertices.
+  mesh.split_normals.assign(mesh.triangles.size(), kNotSplit);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const uvec3 corner = mesh.triangles[t];
+    if (!creased[corner.x] && !creased[corner.y] && !creased[corner.z]) continue;
+    mesh.split_normals[t] = static_cast<std::uint32_t>(mesh.corner_normal.size());
+    for (int i = 0; i < 3; ++i) mesh.corner_normal.push_back(mesh.normal(corner[i]));
+  }
+  parallel_for(mesh.vertex_count, kCreaseGrain, [&](std::size_t begin, std::size_t end) {
+    Fans fans;
+    std::vector<NormalSum> sums;
+    for (std::size_t v = begin; v < end; ++v) {
+      if (!creased[v]) continue;
+      fans.find(mesh, corners, static_cast<std::uint32_t>(v));
+      sums.assign(fans.count(), {});
+      for (std::uint32_t c = 0; c < fans.count(); ++c) sums[fans.fan(c)].add(mesh, fans.corner(c));
+      for (std::uint32_t c = 0; c < fans.count(); ++c) {
+        const std::uint32_t corner = fans.corner(c);
+        mesh.corner_normal[mesh.split_normals[corner / 3] + corner % 3] = sums[fans.fan(c)].normal();
+      }
+    }
+  });
+}
+
+// Whether the triangles around a vertex are the sides of a cone: all of them are turned from its normal, and from the
+// mean normal of their other corners much less. On a dome they lie halfway between.
+bool at_point(const Mesh& mesh, const Corners& corners, std::uint32_t vertex) {
+  if (corners.first[vertex] == corners.first[vertex + 1]) return false;
   for (std::uint32_t c = corners.first[vertex]; c < corners.first[vertex + 1]; ++c) {
     const std::uint32_t t = corners.corner[c] / 3;
-    const int i = static_cast<int>(corners.corner[c] % 3);
-    if (mesh.is_crease(t, i) || mesh.is_crease(t, (i + 2) % 3)) return true;
-    point = point && turn(face_normal(mesh, t), mean) > kPoint;
+    const int i = static_cast<int>(corners.corner[c] % 3), j = (i + 1) % 3, k = (i + 2) % 3;
+    if (mesh.is_crease(t, i) || mesh.is_crease(t, k)) return false;
+    const dvec3 n = face_normal(mesh, t);
+    const double turned = turn(n, dvec3(mesh.normal(t, i)));
+    if (turned < kLeastPoint || turn(n, dvec3(mesh.normal(t, j)) + dvec3(mesh.normal(t, k))) > kMostOfPoint * turned)
+      return false;
   }
-  return point;
+  return true;
+}
+
+// Around the point of a cone each triangle keeps its own normal: a patch through their mean would bulge between the
+// edges, and the cone would be felt fluted.
+void split_at_points(const Corners& corners, Mesh& mesh) {
+  std::vector<std::uint8_t> point(mesh.vertex_count, 0);
+  std::atomic<bool> any{false};
+  parallel_for(mesh.vertex_count, kCreaseGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      if (at_point(mesh, corners, static_cast<std::uint32_t>(v))) {
+        point[v] = 1;
+        any.store(true, std::memory_order_relaxed);
+      }
+  });
+  if (!any) return;
+  if (mesh.split_normals.empty()) mesh.split_normals.assign(mesh.triangles.size(), kNotSplit);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const uvec3 corner = mesh.triangles[t];
+    if (!point[corner.x] && !point[corner.y] && !point[corner.z]) continue;
+    if (mesh.split_normals[t] == kNotSplit) {
+      mesh.split_normals[t] = static_cast<std::uint32_t>(mesh.corner_normal.size());
+      for (int i = 0; i < 3; ++i) mesh.corner_normal.push_back(mesh.normal(corner[i]));
+    }
+    for (std::uint32_t i = 0; i < 3; ++i)
+      if (point[corner[static_cast<int>(i)]])
+        mesh.corner_normal[mesh.split_normals[t] + i] =
+            vec3(normalize(face_normal(mesh, static_cast<std::uint32_t>(t))));
+  }
 }
 
 }  // namespace
@@ -148,41 +217,9 @@ void find_creases(std::span<const Primitive> primitives, const mat4& to_object, 
 }
 
 void split_at_creases(const Corners& corners, Mesh& mesh) {
-  std::vector<std::uint8_t> split(mesh.vertex_count, 0);
-  parallel_for(mesh.vertex_count, kCreaseGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      split[v] = at_crease_or_point(mesh, corners, static_cast<std::uint32_t>(v));
-  });
-
-  // Each triangle at such a vertex gets an entry, filled with the normals of its vertices.
-  mesh.split_normals.assign(mesh.triangles.size(), kNotSplit);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const uvec3 corner = mesh.triangles[t];
-    if (!split[corner.x] && !split[corner.y] && !split[corner.z]) continue;
-    mesh.split_normals[t] = static_cast<std::uint32_t>(mesh.corner_normal.size());
-    for (int i = 0; i < 3; ++i) mesh.corner_normal.push_back(mesh.normal(corner[i]));
-  }
-  parallel_for(mesh.vertex_count, kCreaseGrain, [&](std::size_t begin, std::size_t end) {
-    Fans fans;
-    std::vector<NormalSum> sums;
-    std::vector<std::uint8_t> point;
-    for (std::size_t v = begin; v < end; ++v) {
-      if (!split[v]) continue;
-      fans.find(mesh, corners, static_cast<std::uint32_t>(v));
-      sums.assign(fans.count(), {});
-      for (std::uint32_t c = 0; c < fans.count(); ++c) sums[fans.fan(c)].add(mesh, fans.corner(c));
-      point.assign(fans.count(), 1);
-      for (std::uint32_t c = 0; c < fans.count(); ++c)
-        if (turn(face_normal(mesh, fans.corner(c) / 3), dvec3(sums[fans.fan(c)].normal())) <= kPoint)
-          point[fans.fan(c)] = 0;
-      for (std::uint32_t c = 0; c < fans.count(); ++c) {
-        const std::uint32_t corner = fans.corner(c), fan = fans.fan(c);
-        mesh.corner_normal[mesh.split_normals[corner / 3] + corner % 3] =
-            point[fan] ? vec3(normalize(face_normal(mesh, corner / 3))) : sums[fan].normal();
-      }
-    }
-  });
-  keep_split_normals(mesh);
+  if (!mesh.crease.empty()) split_fans(corners, mesh);
+  split_at_points(corners, mesh);
+  if (!mesh.split_normals.empty()) keep_split_normals(mesh);
 }
 
 void keep_split_normals(Mesh& mesh) {

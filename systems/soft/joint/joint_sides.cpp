@@ -1,4 +1,4 @@
-// What a joint joins: rigid bodies, rigid parts of soft bodies, and points of tissue.
+// The sides that a joint can have: rigid bodies, rigid parts of soft bodies, and points of tissue.
 #include <fmt/format.h>
 
 #include "components/soft_body.h"
