@@ -14,11 +14,10 @@ static int failed(const char* what) {
 
 enum { kWidth = 320, kHeight = 180, kRoom = 4 * kWidth * kHeight };
 
-static int draw(pliant_session* session, const char* file) {
+static int draw(pliant_pictures* pictures, const char* file) {
   static uint8_t rgba[kRoom];
   pliant_view view = {.size = sizeof view};
-  pliant_pictures* pictures;
-  if (pliant_pictures_headless(session, &pictures) || pliant_pictures_view(pictures, &view) ||
+  if (pliant_pictures_view(pictures, &view) ||
       pliant_pictures_picture(pictures, &view, kWidth, kHeight, rgba, kRoom))
     return failed("picture");
   FILE* const out = fopen(file, "wb");
@@ -32,6 +31,8 @@ int main(int count, char** words) {
   pliant_session* session;
   uint32_t effectors;
   if (pliant_scene_load(words[1], NULL, &scene) || pliant_session_open(scene, NULL, NULL, &session)) return failed(words[1]);
+  pliant_pictures* pictures = NULL;
+  if (count == 5 && pliant_pictures_headless(session, &pictures)) return failed("pictures");
   const clock_t begin = clock();
   if (pliant_session_keep_readings(session, ticks) || pliant_session_step(session, ticks)) return failed("ticks");
   const double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
@@ -54,5 +55,5 @@ int main(int count, char** words) {
   if (pliant_session_figures(session, &figures)) return failed("figures");
   printf("%.3f %.3f\n", figures.p50_us, seconds);
   if (fclose(out)) return 1;
-  return count == 5 ? draw(session, words[4]) : 0;
+  return count == 5 ? draw(pictures, words[4]) : 0;
 }

@@ -27,7 +27,7 @@ const native = join(root, 'build/release/bin/pliant'),
 const { chromium } = playwright();
 const kDrawn = ['three_probes', 'glass_heart', 'palpation', 'inclusion'],
   kDrawnAt = 600, // [ticks]
-  kMeanApart = 1; // of 255
+  kMeanApart = 0.5; // of 255
 const kTypes = {
   '.html': 'text/html',
   '.js': 'text/javascript',
