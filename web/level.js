@@ -1,4 +1,4 @@
-// What the page shows of a level's glTF beside its picture.
+// A level's glTF beside its picture: words of laws, colours of probes, its own description.
 import { gltf } from './files.js';
 
 // {words(name), probes, about}: law and shape of a surface; colours of probes by name; what the level says of itself.

@@ -61,7 +61,7 @@ const told = {
   frame({ frame }) {
     if (!level) return;
     level.values = frame;
-    view.pace((performance.now() - level.asked) / 1000);
+    view.pace(Math.min(0.1, (performance.now() - level.asked) / 1000)); // it may have been hidden
     level.asked = 0;
     const at = traceAt(level.effectors.length);
     for (let i = 0; i < frame[3]; ++i) plot.add(...frame.subarray(at + i * kTraceRow, at + (i + 1) * kTraceRow));

@@ -138,7 +138,7 @@ class Level {
   }
 }
 
-// What the page's sliders need of an object.
+// An object, for the page's sliders.
 function describe(body) {
   const get = (act) => {
     try {

@@ -232,12 +232,18 @@ const tests = {
     await closed(page);
   },
 
-  async 'an isolated page runs'() {
+  async 'an isolated page runs, and begins again'() {
     const page = await opened(isolated.at);
     await ready(page);
     expect(await page.evaluate(() => crossOriginIsolated), 'the page is not isolated');
     await pressed(page);
     await untilForce(page);
+    await page.mouse.up();
+    await page.locator('#restart').click(); // with pictures of its own
+    await pressed(page);
+    await untilForce(page);
+    const failed = await page.evaluate(() => document.body.dataset.failed);
+    expect(!failed, `after a restart the page says "${failed}"`);
     await closed(page);
   },
 
