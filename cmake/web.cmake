@@ -25,9 +25,11 @@ target_include_directories(OpenEXR::OpenEXR SYSTEM INTERFACE ${libraries}/prefix
                                                              ${libraries}/prefix/include/Imath)
 web_library(PkgConfig::stb)
 target_include_directories(PkgConfig::stb SYSTEM INTERFACE ${libraries}/headers/stb)
+# OpenGL ES is emscripten's own, upon WebGL 2.
+web_library(PkgConfig::epoxy)
+web_library(OpenGL::EGL)
 
-# No window, no command: the C interface as a module. Its renderer needs OpenGL ES: PLIANT_PICTURES turns it on.
-set(PLIANT_PICTURES OFF)
+# No window, no command: the C interface as a module.
 set(PLIANT_RELOCATABLE OFF)
 foreach(part COMMAND TESTS BENCH INSTALL PYTHON FUZZ)
   set(PLIANT_${part} OFF)

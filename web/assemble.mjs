@@ -11,7 +11,7 @@ const web = dirname(fileURLToPath(import.meta.url)),
   built = resolve(process.argv[2] ?? join(root, 'build/web')),
   site = join(built, 'site');
 const kFirst = 'three_probes'; // the level of page one, and of the single file
-const kPage = ['index.html', 'style.css', 'page.js', 'view.js', 'senses.js', 'draw.js', 'shade.js', 'materials.js', 'hid.js'];
+const kPage = ['index.html', 'style.css', 'page.js', 'view.js', 'senses.js', 'level.js', 'hid.js'];
 const kPackage = [
   'package.json',
   'pliant.js',
@@ -22,6 +22,7 @@ const kPackage = [
   'worker.js',
   'hands.js',
   'frame.js',
+  'pictures.js',
   'vec.js',
 ];
 

@@ -1,20 +1,8 @@
-// A picture's numbers, from the worker to the page, in one Float32Array: header, effectors, trace, objects.
+// A picture's numbers, from the worker to the page, in one Float32Array: header, effectors, trace.
 export const kHeader = 8; // time [s], duration of a tick [us], speed [1], rows of the trace, recorded
 // rows, a hand moves an effector, the module's memory [bytes]
 export const kEffector = 16; // position 3 [m], force 3 [N], normal 3, depth [m], touching, object, ready, normal
                              // force [N], drawn
 export const kTraceRows = 512;
 export const kTraceRow = 3; // effector, depth [m], normal force [N]: of every tick in contact
-
-// Offsets and length [floats] of a level's frame. A surface: its stream, four values a vertex, then object-to-world. A
-// body: positions, then normals.
-export function layout(effectors, objects) {
-  const trace = kHeader + kEffector * effectors;
-  let at = trace + kTraceRow * kTraceRows;
-  const places = objects.map(({ surface, count }) => {
-    const place = at;
-    at += surface ? 4 * count + 16 : 6 * count;
-    return place;
-  });
-  return { trace, places, length: at };
-}
+export const traceAt = (effectors) => kHeader + kEffector * effectors;

@@ -26,6 +26,7 @@ export class Library {
     this.module = module;
     this.bottom = this.top = module._malloc(kArena);
     this.view = new DataView(new ArrayBuffer(0));
+    this.contexts = new WeakMap(); // by canvas (pictures.js)
   }
 
   // The memory; another buffer after it has grown.

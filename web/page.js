@@ -1,9 +1,8 @@
 // The page: opens levels, passes pointers to the worker, draws what comes back, and lets one feel it.
 import { open } from './files.js';
-import { kHeader, kEffector, kTraceRow, layout } from './frame.js';
+import { kHeader, kEffector, kTraceRow, traceAt } from './frame.js';
 import { available, connect } from './hid.js';
-import { materials } from './materials.js';
-import { Picture } from './draw.js';
+import { describe } from './level.js';
 import { Plot, Tone, gamepads, vibrate } from './senses.js';
 import { View } from './view.js';
 
@@ -22,15 +21,13 @@ const kFirstSteps = 4,
   kMostSteps = 12; // of depth
 
 const canvas = $('picture');
-const picture = new Picture(canvas);
 const view = new View(canvas);
 const tone = new Tone();
 const css = (color) => `rgb(${color.map((each) => Math.round(255 * each ** (1 / 2.2))).join()})`;
 const plot = new Plot($('plot'), (effector) => css(colorOf(effector)));
-const dark = matchMedia('(prefers-color-scheme: dark)');
 const narrow = matchMedia('(max-width: 52rem)');
 
-let level = null; // what runs: {name, effectors, objects, places, length, materials, frame, spare}
+let level = null; // what runs: {name, words, probes, about, effectors, objects, values, asked}
 let steps = kFirstSteps;
 const pointers = new Map(); // of the mouse and fingers, in pixels: {id, x, y, tx, ty, down, turns}
 const settings = Object.fromEntries(
@@ -38,7 +35,7 @@ const settings = Object.fromEntries(
 );
 
 function colorOf(effector) {
-  return level?.materials.probes.get(level.effectors[effector])?.color ?? kPalette[effector % kPalette.length];
+  return level?.probes.get(level.effectors[effector]) ?? kPalette[effector % kPalette.length];
 }
 
 // ---- Sentences
@@ -62,10 +59,18 @@ worker.onerror = (event) =>
 const told = {
   open: opened,
   frame({ frame }) {
-    if (!level || frame.byteLength !== 4 * level.length) return;
-    if (level.frame) level.spare.push(level.frame);
-    level.frame = frame;
-    level.fresh = true;
+    if (!level) return;
+    level.values = frame;
+    view.pace(Math.min(0.1, (performance.now() - level.asked) / 1000)); // it may have been hidden
+    level.asked = 0;
+    const at = traceAt(level.effectors.length);
+    for (let i = 0; i < frame[3]; ++i) plot.add(...frame.subarray(at + i * kTraceRow, at + (i + 1) * kTraceRow));
+  },
+  meets({ id, meets }) {
+    const pointer = pointers.get(id);
+    if (!pointer?.asks) return;
+    Object.assign(pointer, { asks: false, down: meets, turns: !meets });
+    canvas.classList.toggle('turns', !meets);
   },
   events: ({ events }) => say(events.at(-1).sentence, 4),
   note: ({ sentence }) => console.info(sentence),
@@ -87,7 +92,11 @@ const told = {
   },
 };
 worker.onmessage = ({ data }) => told[data.did]?.(data);
-const ask = (act, more = {}) => worker.postMessage({ do: act, ...more });
+const ask = (act, more = {}, transfer = []) => worker.postMessage({ do: act, ...more }, transfer);
+if (canvas.transferControlToOffscreen) {
+  const offscreen = canvas.transferControlToOffscreen();
+  ask('canvas', { canvas: offscreen }, [offscreen]);
+} else say('This browser draws no pictures in a worker (OffscreenCanvas); take a newer one.', 60);
 
 // ---- Levels
 
@@ -97,7 +106,7 @@ async function show(source, options = {}) {
   const tag = ++opens;
   try {
     const { name, bytes, files } = await open(source, options);
-    const next = { tag, name, materials: await materials({ bytes, files }), given: options.given };
+    const next = { tag, name, ...describe(bytes), given: options.given };
     if (tag !== opens) return; // another one was chosen
     pending = next;
     delete document.body.dataset.failed;
@@ -115,26 +124,14 @@ function showNamed(name) {
       });
 }
 
-function opened({ tag, effectors, objects, bounds, notes, version }) {
+function opened({ tag, effectors, objects, bounds, view: camera, notes, version }) {
   if (tag !== pending.tag) return;
-  const buffer = (length) => new (globalThis.crossOriginIsolated ? SharedArrayBuffer : ArrayBuffer)(4 * length);
-  const { places, trace, length } = layout(effectors.length, objects);
-  level = {
-    ...pending,
-    effectors,
-    objects,
-    places,
-    trace,
-    length,
-    frame: null,
-    spare: [buffer(length), buffer(length), buffer(length)],
-  };
-  picture.open(objects, level.materials);
-  view.open(bounds, level.materials.camera);
+  level = { ...pending, effectors, objects, values: null, asked: 0 };
+  view.open(bounds, camera);
   pointers.clear();
   plot.clear();
   steps = kFirstSteps;
-  if (level.given !== levels[0].name) $('about').textContent = level.materials.about || `${level.name}: press it.`;
+  if (level.given !== levels[0].name) $('about').textContent = level.about || `${level.name}: press it.`;
   $('version').textContent = `Pliant ${version}`;
   if (level.given) $('level').value = level.given;
   else $('level').selectedIndex = -1;
@@ -188,7 +185,7 @@ function sliders() {
   if (surfaces[0]?.keys.stiffness) slide('stiffness', 'Stiffness', 'N/m', surfaces);
   if (bodies.length) slide('young', "Young's modulus", 'kPa', bodies, 1e-3);
   if (surfaces.length) {
-    const words = level.materials.words(surfaces[0].name);
+    const words = level.words(surfaces[0].name);
     choose('spring', 'Law', kLaws, words.spring);
     choose('shape', 'Shape', kShapes, words.shape);
   }
@@ -215,9 +212,10 @@ canvas.addEventListener('pointerdown', (event) => {
     id = idOf(event);
   tone.wake();
   canvas.setPointerCapture(event.pointerId);
-  const presses = event.button === 0 && picture.covers(at.tx / canvas.clientWidth, at.ty / canvas.clientHeight, paint);
-  pointers.set(id, { id, ...at, x: at.tx, y: at.ty, down: presses, turns: !presses });
-  canvas.classList.toggle('turns', !presses);
+  const asks = event.button === 0; // whether it presses
+  pointers.set(id, { id, ...at, x: at.tx, y: at.ty, down: false, turns: !asks, asks });
+  canvas.classList.toggle('turns', !asks);
+  if (asks) ask('meets', { id, ...view.ray(at.tx, at.ty) });
   event.preventDefault();
 });
 canvas.addEventListener('pointermove', (event) => {
@@ -244,7 +242,8 @@ const up = (event) => {
   const id = idOf(event),
     pointer = pointers.get(id);
   canvas.classList.remove('turns');
-  if (id === 'mouse' && pointer && event.type === 'pointerup') Object.assign(pointer, { down: false, turns: false });
+  if (id === 'mouse' && pointer && event.type === 'pointerup')
+    Object.assign(pointer, { down: false, turns: false, asks: false });
   else pointers.delete(id);
 };
 canvas.addEventListener('pointerup', up);
@@ -273,20 +272,8 @@ const effector = (i) => {
     force: f.subarray(at + 3, at + 6),
     touching: f[at + 10],
     drawn: f[at + 14],
-    color: colorOf(i),
-    radius: level.materials.probes.get(level.effectors[i])?.radius ?? 0,
   };
 };
-function paint() {
-  view.update(...(narrow.matches ? [0, -0.1] : [Math.min(0.35, 340 / innerWidth), 0.12]));
-  if (!level?.values) return;
-  picture.draw(
-    { ...view, sky: dark.matches ? 1 : 1.25 },
-    level.effectors.map((_, i) => effector(i)),
-    view.size,
-  );
-}
-
 let before = performance.now(),
   shownForce = 0,
   plotted = 0;
@@ -295,13 +282,6 @@ function frame(now) {
   const dt = Math.min(0.1, (now - before) / 1000);
   before = now;
   if (!level) return;
-  if (level.fresh) {
-    level.fresh = false;
-    level.values = new Float32Array(level.frame);
-    picture.update(level.values, level.places);
-    for (let i = 0; i < level.values[3]; ++i)
-      plot.add(...level.values.subarray(level.trace + i * kTraceRow, level.trace + (i + 1) * kTraceRow));
-  }
   for (const pointer of pointers.values()) {
     // the drawn cursor becomes heavy with the force, then returns
     pointer.gain = pointer.down ? 1 / (1 + shownForce / kHalfForce) : 1;
@@ -309,10 +289,11 @@ function frame(now) {
     const rejoin = 1 - Math.exp(-dt / 0.08);
     ((pointer.x += rejoin * (pointer.tx - pointer.x)), (pointer.y += rejoin * (pointer.ty - pointer.y)));
   }
-  view.pace(dt);
-  paint();
-  const buffer = level.spare.pop();
-  if (buffer) worker.postMessage({ do: 'frame', frame: buffer }, buffer instanceof ArrayBuffer ? [buffer] : []);
+  view.update(...(narrow.matches ? [0, -0.1] : [Math.min(0.35, 340 / innerWidth), 0.12]));
+  if (!level.asked) {
+    level.asked = performance.now();
+    ask('frame', { view: view.seen() });
+  }
   if (level.values) feel(now);
 }
 // Pointers go on their own clock: pictures may be slow, hands may not.

@@ -171,6 +171,8 @@ export class Session {
   readonly notes: string[];
   readonly time: number;
   close(): void;
+  /** They end with the session and at restart(): close them, and ask anew. */
+  pictures(canvas: HTMLCanvasElement | OffscreenCanvas): Pictures;
 
   /** Moves the only effector, runs 1 ms, returns the force on it [N]. */
   tick(x: number, y: number, z: number): Vec3;
@@ -207,6 +209,23 @@ export class Session {
 
   save(): Uint8Array;
   restore(state: Uint8Array): void;
+}
+
+export interface View {
+  eye: Vec3;
+  target: Vec3;
+  up: Vec3;
+  /** [rad] vertical field of view. */
+  yfov: number;
+}
+/** By the engine's renderer in WebGL 2. */
+export class Pictures {
+  readonly canvas: HTMLCanvasElement | OffscreenCanvas;
+  /** The level's camera, or one that shows every surface. */
+  readonly view: View;
+  /** As the session stands, over the whole canvas. */
+  draw(view?: View): void;
+  close(): void;
 }
 
 export interface Geometry {

@@ -10,6 +10,7 @@
 import { Body } from './body.js';
 import { Library, PliantError, constants, misused } from './library.js';
 import { open } from './files.js';
+import { Pictures } from './pictures.js';
 
 export { PliantError };
 
@@ -199,6 +200,10 @@ export class Session {
     this.#library.module._free(this.#poses);
     this.#at = 0;
     this.atClose?.();
+  }
+  // On a canvas or OffscreenCanvas. They end with the session and at restart(): close them, and ask anew.
+  pictures(canvas) {
+    return new Pictures(this.#library, this.#at, canvas);
   }
   #call(name, ...given) {
     this.#library.call('session_' + name, this.#at, ...given);

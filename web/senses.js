@@ -79,7 +79,7 @@ export class Plot {
     const y = (force) => height - bottom - (force / this.#top[1]) * (height - bottom - 14);
     c.clearRect(0, 0, width, height);
     c.font = '20px system-ui';
-    c.fillStyle = c.strokeStyle = style.getPropertyValue('--soft');
+    c.fillStyle = c.strokeStyle = style.color;
     c.globalAlpha = 0.9;
     for (const [top, unit, place] of [
       [this.#top[0] * 1000, 'mm', (v) => [x(v / 1000), height - bottom + 28, 'center']],

@@ -1,8 +1,9 @@
-// The session's owner: 1,000 ticks a second in batches that follow performance.now(), beside the page. The page says
-// 60 times a second where its pointers are; without a message for 100 ms every probe leaves, without force.
+// The session's owner: 1,000 ticks a second in batches that follow performance.now(), and its pictures, at most
+// one a frame of the screen. The page says 60 times a second where its pointers are; without a message for 100 ms every
+// probe leaves, without force.
 import { Pliant } from './pliant.js';
 import { Hands } from './hands.js';
-import { kHeader, kEffector, kTraceRow, kTraceRows, layout } from './frame.js';
+import { kHeader, kEffector, kTraceRow, kTraceRows, traceAt } from './frame.js';
 
 const kSilence = 100; // [ms]
 const kHidden = 1000; // [ms]
@@ -10,14 +11,14 @@ const kBehind = 100; // [ms] that are caught up; more is left out, and the speed
 const kRecorded = 600000; // [rows] that a recording keeps: ten minutes of one probe
 
 let pliant, level; // the engine; what runs in it
+let canvas = null; // the page's, as an OffscreenCanvas
 let heard = 0; // [ms] when the page was last heard of
 
 class Level {
   constructor(session) {
     this.session = session;
     this.hands = new Hands(session);
-    this.drawn = session.objects.map((name) => describe(session.bodies[name]));
-    this.layout = layout(session.effectors.length, this.drawn);
+    this.show();
     this.trace = [];
     this.tickTime = 0;
     this.speed = 1;
@@ -68,9 +69,41 @@ class Level {
       });
   }
 
-  // Into the page's Float32Array.
-  fill(out) {
-    const { session, trace } = this;
+  // Pictures of the session as it is now.
+  show() {
+    this.pictures = null;
+    if (canvas) this.#try('pictures', () => (this.pictures = this.session.pictures(canvas)));
+  }
+  draw({ width, height, ...view }) {
+    if (!this.pictures) return;
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    this.#try('draw', () => this.pictures.draw(view));
+  }
+  #try(during, act) {
+    try {
+      act();
+    } catch (error) {
+      this.pictures = null;
+      fail(error, during);
+    }
+  }
+  restart() {
+    this.hands.lose();
+    this.pictures?.close();
+    this.session.restart();
+    this.show();
+    this.began = performance.now();
+  }
+  close() {
+    this.pictures?.close();
+    this.session.close();
+  }
+
+  // The picture's numbers.
+  numbers() {
+    const { session, trace } = this,
+      at = traceAt(session.effectors.length),
+      out = new Float32Array(at + kTraceRow * kTraceRows);
     this.readings ??= session.effectors.map((name) => session.reading(name));
     out.set([
       session.time,
@@ -99,43 +132,28 @@ class Level {
         kHeader + i * kEffector,
       );
     });
-    trace.forEach((row, i) => out.set(row, this.layout.trace + i * kTraceRow));
+    trace.forEach((row, i) => out.set(row, at + i * kTraceRow));
     trace.length = 0;
-    this.drawn.forEach(({ surface, count }, i) => {
-      const body = session.bodies[session.objects[i]],
-        at = this.layout.places[i];
-      if (surface) {
-        out.set(body.stream().values, at);
-        out.set(body.toWorld(), at + 4 * count);
-      } else {
-        out.set(body.positions(), at);
-        out.set(body.normals(), at + 3 * count);
-      }
-    });
+    return out;
   }
 }
 
-// All that the page needs to draw an object, and its sliders' first values.
+// An object, for the page's sliders.
 function describe(body) {
-  const get = (key) => {
+  const get = (act) => {
     try {
-      return body.get(key);
+      return act();
     } catch {
       return null;
     }
   };
-  const keys = Object.fromEntries(['stiffness', 'young', 'reach'].map((key) => [key, get(key)]));
-  try {
-    const geometry = body.geometry();
-    return { name: body.name, surface: true, count: body.stream().values.length / 4, geometry, keys };
-  } catch {
-    return { name: body.name, surface: false, count: body.positions().length / 3, index: body.triangles(), keys };
-  }
+  const keys = Object.fromEntries(['stiffness', 'young'].map((key) => [key, get(() => body.get(key))]));
+  return { name: body.name, surface: get(() => body.stream()) !== null, keys };
 }
 
 let loading = null;
 async function start({ source, options, tag }) {
-  level?.session.close();
+  level?.close();
   level = null;
   loading ??= Pliant.load({
     module: globalThis.pliantModule,
@@ -145,22 +163,17 @@ async function start({ source, options, tag }) {
   const session = await pliant.session(source, options);
   const next = new Level(session);
   const [min, max] = session.bounds();
-  const transfer = new Set();
-  for (const { geometry, index } of next.drawn)
-    for (const array of [...Object.values(geometry ?? {}), index]) if (array) transfer.add(array.buffer);
-  postMessage(
-    {
-      did: 'open',
-      tag,
-      effectors: session.effectors,
-      tools: [...next.hands.tools],
-      objects: next.drawn,
-      notes: session.notes,
-      bounds: [min, max],
-      version: pliant.version,
-    },
-    [...transfer],
-  );
+  postMessage({
+    did: 'open',
+    tag,
+    effectors: session.effectors,
+    tools: [...next.hands.tools],
+    objects: session.objects.map((name) => describe(session.bodies[name])),
+    notes: session.notes,
+    bounds: [min, max],
+    view: next.pictures?.view ?? null,
+    version: pliant.version,
+  });
   heard = performance.now();
   next.began = performance.now();
   level = next;
@@ -198,20 +211,23 @@ const acts = {
     heard = performance.now();
     level?.hands.set(pointers);
   },
-  frame({ frame }) {
-    if (frame.byteLength !== 4 * level?.layout.length) return; // of the level before
-    level.fill(new Float32Array(frame));
-    postMessage({ did: 'frame', frame }, frame instanceof ArrayBuffer ? [frame] : []);
-    const events = level.session.events();
-    if (events.length) postMessage({ did: 'events', events });
+  canvas(data) {
+    ({ canvas } = data);
+  },
+  // Draws, at the screen's pace, and answers with the numbers.
+  frame({ view }) {
+    const of = level;
+    nextFrame(() => of && of === level && show(view));
+  },
+  // Whether a ray meets an object.
+  meets({ id, from, along }) {
+    postMessage({ did: 'meets', id, meets: Boolean(level?.session.ray(from, along)) });
   },
   set({ object, key, value }) {
     level?.session.set(object, key, value);
   },
   restart() {
-    level?.hands.lose();
-    level?.session.restart();
-    if (level) level.began = performance.now();
+    level?.restart();
   },
   record({ on }) {
     if (!level) return;
@@ -243,6 +259,20 @@ const acts = {
   },
 };
 
+function show(view) {
+  try {
+    level.draw(view);
+    const frame = level.numbers();
+    postMessage({ did: 'frame', frame }, [frame.buffer]);
+    const events = level.session.events();
+    if (events.length) postMessage({ did: 'events', events });
+  } catch (error) {
+    fail(error, 'frame');
+    level = null;
+  }
+}
+
+const nextFrame = globalThis.requestAnimationFrame?.bind(globalThis) ?? ((act) => act());
 const plugged = new Map(); // drivers of HID devices by number
 
 function connect(number, driver) {

@@ -25,6 +25,9 @@ const root = dirname(dirname(dirname(fileURLToPath(import.meta.url)))),
 const native = join(root, 'build/release/bin/pliant'),
   shots = join(built, 'shots');
 const { chromium } = playwright();
+const kDrawn = ['three_probes', 'glass_heart', 'palpation', 'inclusion'],
+  kDrawnAt = 600, // [ticks]
+  kMeanApart = 0.5; // of 255
 const kTypes = {
   '.html': 'text/html',
   '.js': 'text/javascript',
@@ -214,12 +217,33 @@ const tests = {
     await closed(page);
   },
 
-  async 'isolated pages share their pictures'() {
+  async 'pictures are those of the native library'() {
+    const page = await opened(plain.at + 'tests.html');
+    for (const level of kDrawn) {
+      const picture = join(site, `${level}.rgba`),
+        words = [join(root, `content/levels/${level}.glb`), String(kDrawnAt), join(built, 'native.bin'), picture];
+      execFileSync(join(built, 'native_forces'), words);
+      const found = await page.evaluate((all) => globalThis.drawn(...all), [level, kDrawnAt, `${level}.rgba`]);
+      rmSync(picture);
+      writeFileSync(join(shots, `${level}.png`), Buffer.from(found.png, 'base64'));
+      console.log(`    ${level}: ${found.mean.toFixed(2)} of 255 in the mean, ${found.most} at most`);
+      expect(found.mean <= kMeanApart && found.error === 0, `${level}: ${found.mean} apart, error ${found.error}`);
+    }
+    await closed(page);
+  },
+
+  async 'an isolated page runs, and begins again'() {
     const page = await opened(isolated.at);
     await ready(page);
     expect(await page.evaluate(() => crossOriginIsolated), 'the page is not isolated');
     await pressed(page);
     await untilForce(page);
+    await page.mouse.up();
+    await page.locator('#restart').click(); // with pictures of its own
+    await pressed(page);
+    await untilForce(page);
+    const failed = await page.evaluate(() => document.body.dataset.failed);
+    expect(!failed, `after a restart the page says "${failed}"`);
     await closed(page);
   },
 

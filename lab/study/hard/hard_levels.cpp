@@ -67,27 +67,24 @@ struct Judged {
   }
 };
 
-// Every probe and tool follows its orbit; counts the ticks in which any of their forces was withheld.
-void orbit(Judged& judged, const Level& level, const std::string& where) {
+// Counts the ticks in which any force of a probe or tool was withheld. Returns the share of the ticks in contact.
+double run(Judged& judged, const Level& level, const std::string& where) {
   HardFigure& worst = judged.worst;
   auto session = Session::open(Scene(level));
   worst.need(session.ok(), where + (session ? "" : ": " + session.error().message()));
-  if (!session) return;
+  if (!session) return 0.0;
   const World& world = world_of(*session);
   const auto ticks = static_cast<std::uint64_t>(kOrbit * world.simulation.touch_rate);
   std::uint64_t touching = 0;
   for (std::uint64_t i = 0; i < ticks; ++i) {
     if (!session->step()) {
       worst.need(false, where + ": it did not run");
-      return;
+      return 0.0;
     }
     bool any = false;
     for (const Entity held : hands(world)) any = any || reading(world, held).in_contact;
     touching += any;
   }
-  const double contact = static_cast<double>(touching) / static_cast<double>(ticks);
-  judged.least_contact = std::min(judged.least_contact, contact);
-  worst.need(contact >= kLeastContact, fmt::format("{}: in contact in {:.1f} % of the ticks", where, 100 * contact));
   double withheld = 0;
   for (const Entity held : hands(world)) {
     const HandSafety safety = find_safety(world, held);
@@ -95,6 +92,18 @@ void orbit(Judged& judged, const Level& level, const std::string& where) {
       if (state) withheld += static_cast<double>(state->tally.of(SafetyLimit::kWithheld).ticks);
   }
   worst.add(withheld, where);
+  return static_cast<double>(touching) / static_cast<double>(ticks);
+}
+
+// Every probe and tool follows its orbit, or, where that touches too little, its script. `orbits`: the devices.
+void run_in_contact(Judged& judged, Level level, const std::vector<std::size_t>& orbits, const std::string& where) {
+  const Level scripted = level;
+  for (const std::size_t node : orbits) level.nodes[node].device->driver = DriverKind::kOrbit;
+  double contact = run(judged, level, where);
+  if (contact < kLeastContact) contact = run(judged, scripted, where + ", by its scripts");
+  judged.least_contact = std::min(judged.least_contact, contact);
+  judged.worst.need(contact >= kLeastContact,
+                    fmt::format("{}: in contact in {:.1f} % of the ticks", where, 100 * contact));
 }
 
 // `sound`: the file must load; otherwise it may be rejected with a sentence that names it.
@@ -127,12 +136,14 @@ void judge(Judged& judged, const fs::path& file, bool sound, bool bodies) {
                        [&](const LevelNode& node) { return node.joint && node.joint->grip == hand.name; });
   };
   // A probe orbits over a surface; without one it follows its script, as does a hand that grips by it.
-  for (LevelNode& node : level.nodes)
-    if (node.device && !grips(node) && (surface || !node.probe)) node.device->driver = DriverKind::kOrbit;
+  std::vector<std::size_t> orbits;
+  for (std::size_t n = 0; n < level.nodes.size(); ++n)
+    if (const LevelNode& node = level.nodes[n]; node.device && !grips(node) && (surface || !node.probe))
+      orbits.push_back(n);
   ++judged.files;
-  orbit(judged, level, name);
+  run_in_contact(judged, level, orbits, name);
   without_friction(level);
-  orbit(judged, level, name + ", without friction");
+  run_in_contact(judged, level, orbits, name + ", without friction");
 }
 
 HardFigure shipped(const HardSetting& setting) {
