@@ -73,6 +73,7 @@ Result<Pictures> Pictures::Parts::make(Session& session, std::unique_ptr<Headles
   Renderer* const to = parts->renderer.get();
   of.view.seen = [to](const Snapshot& snapshot) { to->update(snapshot); };
   of.view.soft_seen = [to](const SoftSnapshot& snapshot) { to->update(snapshot); };
+  if (of.view.has_soft()) to->update(of.world.soft_snapshots->read());  // taken already
   return Pictures(std::move(parts));
 }
 

@@ -28,6 +28,7 @@ class SessionView {
   std::uint64_t version() const { return version_; }  // changes when something new was taken
   std::uint64_t tick() const { return tick_; }        // of the surfaces' newest snapshot
   bool complete() const { return complete_; }         // no changes up to that tick are left for a next snapshot
+  bool has_soft() const { return !soft_.empty(); }    // a soft snapshot was taken
   const std::vector<ContactMark>& contacts() const { return contacts_; }
   const std::vector<HandleMark>& handles() const { return handles_; }
 

@@ -41,6 +41,42 @@ std::size_t differing(const Picture& a, const Picture& b) {
   return count;
 }
 
+TEST(Pictures, MadeAfterTicksShowWhatThoseMadeBeforeThemShow) {
+  const PictureView above{{0, 0.1, 0.15}, {0, 0, 0}};
+  std::optional<Picture> shown[2];
+  for (const bool late : {false, true}) {
+    Scene scene;
+    scene.add_surface("skin", sheet(), {}, {.position = {0.06, 0, 0}});
+    MeshData block = sheet();
+    block.position = {{-0.03f, 0, -0.03f},     {0.03f, 0, -0.03f},     {0.03f, 0, 0.03f},     {-0.03f, 0, 0.03f},
+                      {-0.03f, 0.02f, -0.03f}, {0.03f, 0.02f, -0.03f}, {0.03f, 0.02f, 0.03f}, {-0.03f, 0.02f, 0.03f}};
+    block.index = {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6, 0, 4, 5, 0, 5, 1,
+                   1, 5, 6, 1, 6, 2, 2, 6, 7, 2, 7, 3, 3, 7, 4, 3, 4, 0};
+    scene.add_soft_body("block", block, {.young = 2000.0, .cell = 0.01}, {.position = {-0.06, 0, 0}});
+    scene.add_probe("finger", {.radius = 0.004});
+    auto session = Session::open(scene);
+    ASSERT_TRUE(session) << session.error().message();
+    std::optional<Pictures> pictures;
+    const auto make = [&] {
+      auto made = Pictures::headless(*session);
+      if (made) pictures.emplace(std::move(*made));
+      return made.ok();
+    };
+    if (!late && !make()) GTEST_SKIP() << "no OpenGL";
+    for (int i = 0; i <= 150; ++i) {
+      ASSERT_TRUE(session->move("finger", {0.06, 0.006 - 1e-4 * i, 0}));
+      ASSERT_TRUE(session->step());
+    }
+    std::vector<vec3> looked;
+    ASSERT_TRUE(session->vertices("skin", looked));  // takes what a picture would need
+    if (late) ASSERT_TRUE(make());
+    auto picture = pictures->picture(above, 320, 180);
+    ASSERT_TRUE(picture);
+    shown[late] = std::move(*picture);
+  }
+  EXPECT_EQ(differing(*shown[0], *shown[1]), 0u);
+}
+
 TEST(Pictures, SeesTheDentAndOutlivesNeitherARestartNorItsSession) {
   std::optional<Session> session(opened());
   auto pictures = Pictures::headless(*session);
