@@ -609,7 +609,7 @@ typedef struct pliant_view {
 
 // Without window and display: on the GPU, or by Mesa's software renderer.
 PLIANT_API pliant_status pliant_pictures_headless(pliant_session* session, pliant_pictures** out);
-// In the OpenGL 4.5 core context that is current on this thread, now and in every later call.
+// In the OpenGL 4.5 core or ES 3.0 context that is current on this thread, now and in every later call.
 PLIANT_API pliant_status pliant_pictures_in_current_context(pliant_session* session, pliant_pictures** out);
 PLIANT_API pliant_status pliant_pictures_destroy(pliant_pictures* pictures);
 // The level's camera, or one that shows every surface.

@@ -33,7 +33,7 @@ class Pictures {
  public:
   // With its own context and no window (EGL): on the GPU, or by Mesa's software renderer.
   static Result<Pictures> headless(Session& session);
-  // Uses the OpenGL 4.5 core context that is current on this thread, here and in every later call.
+  // Uses the OpenGL 4.5 core or ES 3.0 context that is current on this thread, here and in every later call.
   static Result<Pictures> in_current_context(Session& session);
   Pictures(Pictures&&) noexcept;
   Pictures& operator=(Pictures&&) noexcept;
