@@ -68,8 +68,13 @@ inline constexpr Limit kLatticeNodes{16777216, "nodes of a lattice", "each takes
 inline constexpr Limit kTetFileNodes{4e6, "nodes", "each takes 24 bytes, its tetrahedra 400"};
 inline constexpr Limit kTetFileEntries{5e7, "entries of a section", "each takes up to 32 bytes"};
 
-// Rows that wait to be written while a frame is drawn. Further rows are counted as lost.
+// Rows that wait to be written while a frame is drawn. Further rows are counted as lost. Also of the poses since time 0
+// that a saved state needs: a WebAssembly module does not give memory back, so its states end earlier.
+#ifdef __EMSCRIPTEN__
+inline constexpr Limit kJournal{4 * kMiB, "bytes of rows", "18 s of three probes at 1 kHz"};
+#else
 inline constexpr Limit kJournal{64 * kMiB, "bytes of rows", "8 s of thirty probes at 1 kHz"};
+#endif
 }  // namespace limits
 
 // [1] Range of set_limit_factor.

@@ -444,7 +444,7 @@ const tests = {
         await page.waitForTimeout(16);
       }
     };
-    await move(8);
+    await move(25);  // until a state can no longer be saved, which needs the poses since time 0
     const [heap, wasm] = await used();
     await move(Number(process.env.PLIANT_WEB_SECONDS ?? 10));
     const [heapAfter, wasmAfter] = await used();
