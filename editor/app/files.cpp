@@ -183,7 +183,7 @@ void Files::add(const fs::path& file) {
       Question unit{fmt::format("{} is {:.3g} m across. What is one unit of it?", name, box.diagonal()), {}, {}};
       for (const auto& [word, metres] : {std::pair{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}})
         unit.answers.push_back(
-            {word, "", [this, level, name, metres] { add_level(app_.editor, name, **level, metres); }});
+            {word, "", [this, level, name, metres = metres] { add_level(app_.editor, name, **level, metres); }});
       unit.answers.push_back({"Cancel", "", {}});
       app_.ask(std::move(unit));
     };

@@ -212,7 +212,8 @@ void draw_material_fields(Editor& editor, const DocumentNode& node, const std::s
       return void(editor.apply("Own material", with_own_material(state, node.id, part)));
   }
   if (search.empty()) draw_presets(editor, node, part, material.name);
-  if (draw_factors(material, search) | draw_textures(state, material, search))
+  const bool factors = draw_factors(material, search), textures = draw_textures(state, material, search);
+  if (factors || textures)
     editor.apply("Material", with_material(state, node.id, part, material),
                  fmt::format("material {} {}", node.id, part));
 }

@@ -72,7 +72,7 @@ TEST(HandLevels, ForcepsLiftAVesselAndPeelItOffItsBed) {
     return y;
   };
   scene.run(1.2);
-  const double lay = free_end();
+  [[maybe_unused]] const double lay = free_end();
   EXPECT_EQ(bonds(), std::string(13, '=')) << "whole until it is taken";
   scene.run(3.3);
   EXPECT_EQ(bonds().substr(0, 5), "-----") << "peeled at the jaws";
