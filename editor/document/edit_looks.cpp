@@ -11,7 +11,7 @@ std::int32_t add_material(State& next, Material material) {
   return static_cast<std::int32_t>(next.materials().size()) - 1;
 }
 
-// The parts of the node's mesh with material `from` get `to`: in a mesh of its own, with its paint.
+// Gives material `to` to the parts of the node's mesh that have `from`. Copies the mesh, with its paint.
 void paint_over(State& next, DocumentNode& node, std::int32_t from, std::int32_t to) {
   const auto before = static_cast<std::uint32_t>(node.node.mesh);
   LevelMesh mesh = *next.meshes[before];

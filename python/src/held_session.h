@@ -37,8 +37,8 @@ struct Vertices {
 
 class HeldSession;
 
-// A window on a session: a thread of its own draws it, and takes the session's lock for each picture. The clocks of
-// real time have no part in that lock. The OpenGL context is on the session's picture thread.
+// A window on a session. Its thread takes the session's lock for each picture; the clocks of real time never take that
+// lock. The OpenGL context is on the session's picture thread.
 class SessionWindow {
  public:
   SessionWindow(HeldSession& held, std::unique_ptr<ViewWindow> window) : held_(held), window_(std::move(window)) {}
