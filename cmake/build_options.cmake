@@ -64,6 +64,12 @@ function(pliant_compile_fast target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 36)
 endfunction()
 
+# Of a template's instances (Eigen's, for example) the linker keeps the first: the engine's, which are optimised, come
+# before those of a program.
+function(pliant_engine_first target)
+  target_link_options(${target} PRIVATE LINKER:--whole-archive $<TARGET_FILE:pliant_systems> LINKER:--no-whole-archive)
+endfunction()
+
 # A static library of one folder and its subfolders, of code outside the ticks:
 #   pliant_outer_library(NAME DEPENDS libraries... FULL folders or files...)
 # FULL: optimised as the engine is: loops over meshes, or loops of its own that a study times. Files that use Eigen's
