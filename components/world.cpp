@@ -52,7 +52,7 @@ std::vector<Note> explain_dropped(std::uint32_t dropped) {
        "clear",
        "press less deep there, or give the part thickness"},
       {kDroppedGain, "dropped.gain",
-       "tissue with a `law` for large strain would have gained energy in a soft step, and moved less than it should",
+       "a soft body would have gained energy in a soft step, and moved less than it should",
        "reduce `soft_step`"},
       {kDroppedSetBack, "dropped.set_back",
        "a tool separated from its device (more than 2 m, or faster than 50 m/s) and was reset to the device's pose",

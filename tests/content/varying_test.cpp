@@ -87,6 +87,20 @@ TEST(VaryingKeys, EveryInterpolationIsReadAndTheSurfaceBeginsWithTheFirstValue) 
   EXPECT_DOUBLE_EQ(at.stiffness, 300.0) << "it starts over";
 }
 
+TEST(VaryingKeys, TheRestOfAJointIsReadFromItsFile) {
+  Gltf gltf = touchable();
+  gltf.json["nodes"][0]["extensions"] = {{"PLIANT_joint", {{"kind", "hinge"}, {"a", "arm"}, {"stiffness", 2}}}};
+  gltf.json["nodes"].push_back(
+      {{"name", "arm"}, {"mesh", 0}, {"extensions", {{"PLIANT_rigid_body", {{"mass", 0.1}}}}}});
+  gltf.json["extensionsUsed"].insert(gltf.json["extensionsUsed"].end(), {"PLIANT_joint", "PLIANT_rigid_body"});
+  add_channel(gltf, "/nodes/0/extensions/PLIANT_joint/rest", {0, -1.5f, 1});
+  const Level level = loaded(gltf);
+  ASSERT_EQ(level.animations.size(), 1u);
+  EXPECT_EQ(level.animations[0].channels[0].key, "rest");
+  gltf.json["nodes"][0]["extensions"] = {{"PLIANT_deformable", Json::object()}};
+  EXPECT_THAT(gltf.refusal(), HasSubstr("PLIANT_joint of node 0, which has none"));
+}
+
 TEST(VaryingKeys, WhatIsWrongIsOneSentence) {
   const auto refused = [](const std::string& pointer, const std::vector<float>& values, const char* how = "LINEAR") {
     Gltf gltf = touchable();

@@ -72,7 +72,7 @@ class AnimationReader {
         note_other(pointer, aim);
         return Done{};
       }
-      if (Status s = check_node(pointer, found.node); !s) return s;
+      if (Status s = check_node(pointer, found); !s) return s;
       property = NodeProperty::kKey;
       node = found.node;
       key = found.key;
@@ -108,13 +108,15 @@ class AnimationReader {
     return document_.json["animations"][static_cast<std::size_t>(animation.source)]["channels"][channel]["target"];
   }
 
-  Status check_node(const std::string& pointer, std::int64_t node) const {
+  Status check_node(const std::string& pointer, const KeyPointer& to) const {
     const Json& nodes = array_of(document_.json, "nodes");
-    if (node >= static_cast<std::int64_t>(nodes.size()))
-      return Error{pointer + "/target", fmt::format("points to node {} of {}", node, nodes.size()),
+    if (to.node >= static_cast<std::int64_t>(nodes.size()))
+      return Error{pointer + "/target", fmt::format("points to node {} of {}", to.node, nodes.size()),
                    "name one of these"};
-    if (level_.nodes[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(node)])].deformable) return Done{};
-    return Error{pointer + "/target", fmt::format("points to PLIANT_deformable of node {}, which has none", node),
+    const auto its = static_cast<std::size_t>(node_of_[static_cast<std::size_t>(to.node)]);
+    if (has_extension(level_.nodes[its], to.key)) return Done{};
+    return Error{pointer + "/target",
+                 fmt::format("points to PLIANT_{} of node {}, which has none", extension_of_key(to.key), to.node),
                  "add the extension to the node, or remove the channel"};
   }
 
@@ -123,13 +125,17 @@ class AnimationReader {
     if (other_pointers_++ == 0) other_ = fmt::format("{} ({})", aim.substr(0, 100), pointer);
   }
 
+  static const char* extension_of_key(const std::string& key) {
+    return find_varying_key(key)->of_joint() ? "joint" : "deformable";
+  }
+
   // Returns "" or an error. Array sizes and the order of times have been checked.
   static std::string fill(LevelChannel& channel, const std::vector<float>& times, const std::vector<float>& values) {
     Track& track = channel.track;
     const bool turns = channel.property == NodeProperty::kRotation, key = channel.property == NodeProperty::kKey;
     const bool spline = track.interpolation == Interpolation::kCubicSpline;
     const std::size_t width = key ? 1 : turns ? 4 : 3;
-    const Key* const varied = key ? find_key(*find_extension("deformable"), channel.key) : nullptr;
+    const Key* const varied = key ? find_key(*find_extension(extension_of_key(channel.key)), channel.key) : nullptr;
     track.times.assign(times.begin(), times.end());
     if (track.times.back() > kFarthest) return fmt::format("lasts longer than {:g} s; shorten it", kFarthest);
     for (std::size_t i = 0; i + width <= values.size(); i += width)

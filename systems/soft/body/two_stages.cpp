@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "systems/soft/fem/passive_step.h"
+
 namespace pliant {
 namespace {
 
@@ -153,10 +155,11 @@ TwoStages::End TwoStages::finish(const Tissue& tissue, const Vector& w, double s
 
   // Motion into more elastic energy than there is is shortened, as in passive_step.h.
   const Vector drift = free ? drift_of(tissue, w) : Vector(Vector::Zero(w.size()));
+  const double rounding = kEnergyRounding * before + energy_rounding(tissue);
   double left = 0.0, scale = 1.0;  // [J] for the end's velocity
   for (int i = 0; i < kMostShortenings; ++i) {
     left = spare + push.dot(end.motion) - tissue.elastic_energy(moved(tissue, end.motion, share * T_));
-    if (left >= -kEnergyRounding * before) break;
+    if (left >= -rounding) break;
     scale *= 0.5;
     end.motion = drift + scale * (w - drift);
     end.shortened = true;

@@ -1,10 +1,13 @@
 #include "systems/soft/fem/passive_step.h"
 
+#include <numeric>
+
 namespace pliant {
 namespace {
 
 constexpr int kMostShorter = 20;       // 1e-6 of the motion
 constexpr double kEnergySlack = 1e-9;  // [1] of the energies: rounding
+constexpr double kRounding = 1e-14;    // [1] of Young's modulus times the volume: of the elastic energy at rest
 
 dvec3 at(const Vector& v, std::size_t node) {
   const Eigen::Index i = 3 * static_cast<Eigen::Index>(node);
@@ -12,6 +15,12 @@ dvec3 at(const Vector& v, std::size_t node) {
 }
 
 }  // namespace
+
+double energy_rounding(const Tissue& tissue) {
+  const TissueMaterial& its = tissue.material();
+  const double mass = std::accumulate(tissue.mass().begin(), tissue.mass().end(), 0.0);
+  return kRounding * its.young / (1 - 2 * its.poisson) * mass / its.density;
+}
 
 double passive_share(const Tissue& tissue, const std::vector<dvec3>& carried, const Vector& d, std::uint32_t weighed,
                      double T) {
@@ -31,7 +40,8 @@ double passive_share(const Tissue& tissue, const std::vector<dvec3>& carried, co
     if (i < weighed) elastic -= m * (1.0 + T * tissue.material().alpha) * dot(now, now);
   }
   const double work = T * d.dot(tissue.elastic_force().head(d.size()));
-  const double rest = tissue.elastic_energy(place(0.0)), slack = kEnergySlack * (rest + dMd + d0Md0);
+  const double rest = tissue.elastic_energy(place(0.0)),
+               slack = kEnergySlack * (rest + dMd + d0Md0) + energy_rounding(tissue);
   double s = 1.0;
   for (int i = 0; i < kMostShorter; ++i, s *= 0.5) {
     const double gain = tissue.elastic_energy(place(s)) - rest + s * work - s * elastic;

@@ -17,4 +17,7 @@ namespace pliant {
 double passive_share(const Tissue& tissue, const std::vector<dvec3>& carried, const Vector& d, std::uint32_t weighed,
                      double T);
 
+// [J] By which elastic_energy() of tissue at rest may be wrong.
+double energy_rounding(const Tissue& tissue);
+
 }  // namespace pliant

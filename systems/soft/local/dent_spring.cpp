@@ -12,6 +12,7 @@ constexpr int kDepthSteps = 100;       // of Newton's method within a bracket
 constexpr double kDepthExact = 1e-13;  // [1]
 constexpr double kLeastSphere = 1e-3;  // [1] of a tip's radius: depth of Hertz' first slope, which is 0 at none
 constexpr double kFirstDepth = 1e-6;   // [m] of a bracket
+constexpr double kHardening = 1e-3;    // [1] of a table's mean slope, beyond its last row, and at least within
 constexpr double kDeepestDent = 1e3;   // [m]: a softening law has no depth of this force
 
 double share_of_contact(const Deformable& it) {
@@ -25,6 +26,10 @@ DentSpring::DentSpring(const Deformable& it, double step)
       motion(pliant::motion(it, step)),
       shared(share_kernel(it.shape, it.reach, it.volume, share_of_contact(it))),
       damping(it.contact_damping_material ? free_damping(it) * it.stiffness : it.contact_damping) {
+  if (const ForceTable& table = it.table; table.count > 1) {
+    last = table.rows[table.count - 1][0];
+    hardening = kHardening * table.rows[table.count - 1][1] / last;
+  }
   deformable.layers = {};  // a probe breaks through a surface, not through tissue
 }
 
@@ -41,7 +46,8 @@ double DentSpringAt::share() const {
 }
 
 double DentSpringAt::force(double depth) const {
-  const double f = law().force(depth), rate = step > 0.0 ? of->damping * (depth - dented) / step : 0.0;
+  const double f = law().force(depth) + paint * of->hardening * std::max(0.0, depth - of->last),
+               rate = step > 0.0 ? of->damping * (depth - dented) / step : 0.0;
   return f + share() * decay() * (f - relaxed) + rate;
 }
 
@@ -49,7 +55,8 @@ double DentSpringAt::slope(double depth) const {
   ContactLaw it = law();
   it.arm = 0.0;
   const double least = radius > 0.0 ? kLeastSphere * radius : 0.0;
-  return (1 + share() * decay()) * it.slope(std::max(depth, least)) + (step > 0.0 ? of->damping / step : 0.0);
+  return (1 + share() * decay()) * std::max(it.slope(std::max(depth, least)), paint * of->hardening) +
+         (step > 0.0 ? of->damping / step : 0.0);
 }
 
 double DentSpringAt::depth(double wanted) const {

@@ -20,6 +20,9 @@ struct DentSpring {
   Motion motion;
   ShareKernel shared;    // phi
   double damping = 0.0;  // [N s/m] c, unpainted
+  // Beyond its last row a table stays constant on a surface, whose depth is given. In series with the lattice the depth
+  // follows from the force: it hardens by 0.1 % of the table's mean slope.
+  double last = 0.0, hardening = 0.0;  // [m] depth of the last row; [N/m]; 0: no table
 };
 
 // The painted factor below which nothing is softer. [1]

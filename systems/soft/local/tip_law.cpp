@@ -118,9 +118,26 @@ void make_positive(Eigen::MatrixXd& compliance) {
   compliance = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
+namespace {
+
+// By the spring's own depth, which a law that flattens has at every force.
+double spring_force(const DentSpringAt& spring, double compliance, double depth) {
+  double low = 0.0, high = depth, at = depth;
+  for (int i = 0; i < kTipSteps && compliance > 0.0; ++i) {
+    const double over = at + compliance * spring.force(at) - depth;
+    (over > 0.0 ? high : low) = at;
+    const double next = at - over / (1 + compliance * spring.slope(at)), last = at;
+    at = next > low && next < high ? next : 0.5 * (low + high);
+    if (std::abs(at - last) <= kTipExact * depth) break;
+  }
+  return std::max(0.0, spring.force(at));
+}
+
+}  // namespace
+
 double tip_force(const SmearedLoad& tip, double compliance, double depth, const LocalElasticity& tissue,
                  const LayerKernel& layer) {
-  if (tip.spring.of && compliance == 0.0) return tip.spring.force(depth);
+  if (tip.spring.of) return spring_force(tip.spring, compliance, depth);
   // delta is concave: from any start the next iterate is below the root, from there on they ascend.
   double force = 4.0 / 3.0 * tissue.reduced() * std::sqrt(tip.tip_radius) * std::pow(depth, 1.5);
   for (int i = 0; i < kTipSteps; ++i) {
