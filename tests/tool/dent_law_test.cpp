@@ -87,6 +87,16 @@ TEST(DentLaw, ASphereFeelsItInSeriesWithTheSmearedLattice) {
   }
 }
 
+// Its force is bounded: the probe is held by that force, however deep the dent.
+TEST(DentLaw, ATableThatFlattensHoldsAProbeThatIsPressedDeeper) {
+  SplitBlock block = dent_block();
+  block.law->spring = SpringLaw::kTable;
+  block.law->table = {.count = 3, .rows = {{{0.0, 0.0}, {2e-5, 0.004}, {4e-5, 0.0042}}}};
+  const SpherePress press = press_sphere(block, kTip, kShallow, dvec2(0.0013, 0.0021));
+  EXPECT_NEAR(press.force, 0.0042, 0.02 * 0.0042);
+  EXPECT_NEAR(press.felt, press.force, 0.01 * press.force);
+}
+
 TEST(DentLaw, APaintedLumpIsFeltAsStiffAsItIsPainted) {
   SplitBlock block = dent_block();
   block.squares = 48;

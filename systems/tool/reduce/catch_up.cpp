@@ -6,6 +6,21 @@ namespace pliant {
 namespace {
 
 constexpr SweepLimits kAgain{100, 1e-4, 0};
+constexpr double kFree = 1e-6;      // [1] (T omega)^2 of motion without elastic force
+constexpr double kMassless = 1e-2;  // [1] of such motion's inertia
+
+// [1/kg] `W` with bodies that move freely almost without inertia. They follow the handle's displacement, and no force
+// accelerates them: nothing would take it back, and a load below a light tool would fly instead of hang.
+Eigen::MatrixXd quasi_static(const CondensedContacts& c, const Eigen::MatrixXd& W, double T) {
+  Eigen::MatrixXd out = W;
+  const Eigen::Index rows = 3 * c.count;
+  for (Eigen::Index k = 0; k < c.modes; ++k) {
+    if (T * T * c.frequency2[k] > kFree) continue;
+    const auto mode = c.from_modes.col(k).head(rows);
+    out.topLeftCorner(rows, rows) += (1 / kMassless - 1) / (1.0 + T * c.damping[k]) * mode * mode.transpose();
+  }
+  return out;
+}
 
 // Solves the compliant contacts again, with the handle moving `extra` [m/s], [rad/s] faster over the step T [s].
 // Updates impulses and velocities of all contacts.
@@ -56,35 +71,51 @@ void move_along(const Vector6& left, const Vector& change, double T, HandleModel
   const auto share = (1.0 + T * c.damping.head(modes).array() + T * T * c.frequency2.head(modes).array()).inverse();
   const Vector rate = share.matrix().cwiseProduct(c.from_modes.topLeftCorner(rows, modes).transpose() * change);
   const Vector q = T * rate;
-  c.rate.head(modes) += rate;
+  c.rate.head(modes) += (T * T * c.frequency2.head(modes).array() > kFree).select(rate, 0.0).matrix();
   c.tissue_force -= c.tissue_stiffness * left + c.modal_stiffness.topRows(modes).transpose() * q;
   c.load.head(modes) -= c.frequency2.head(modes).cwiseProduct(q) + c.modal_stiffness.topRows(modes) * left;
 }
 
 }  // namespace
 
-void catch_up(const ToolContacts& contacts, const Vector6& left, const Eigen::MatrixXd& W, HandleModel& model) {
-  if (left.isZero(0.0)) return;
+Vector6 catch_up(const ToolContacts& contacts, const Vector6& left, const Eigen::MatrixXd& W, HandleModel& model) {
+  if (left.isZero(0.0)) return Vector6::Zero();
   CondensedContacts& c = model.contacts;
   const FinishedStep& step = contacts.step();
   const double T = step.T;
   const Eigen::Index rows = contacts.rows();
-  Vector impulse = T * c.force.head(rows), velocity(rows);
+  const Vector before = T * c.force.head(rows);
+  Vector velocity(rows);
   for (int i = 0; i < c.count; ++i)
     velocity.segment<3>(3 * i) = step.problem.velocity.segment<3>(3 * static_cast<Eigen::Index>(contacts.in_step(i)));
-  const Vector before = impulse;
-  solve_again(c, W, left / T, T, impulse, velocity, c.sliding);
+  const auto wrench_of = [&](const Vector& change) -> Vector6 {
+    return c.from_handle.topRows(rows).transpose() * change / T;
+  };
+
+  const Eigen::MatrixXd free = quasi_static(c, W, T);
+  Vector impulse = before;
+  Vector6 by_inertia = Vector6::Zero();
+  if (free != W) {
+    Vector u = velocity;
+    std::vector<std::uint8_t> sliding = c.sliding;
+    solve_again(c, W, left / T, T, impulse, u, sliding);
+    by_inertia = wrench_of(impulse - before);
+    impulse = before;
+  }
+  solve_again(c, free, left / T, T, impulse, velocity, c.sliding);
   const Vector change = impulse - before;
+  if (free != W) by_inertia -= wrench_of(change);
   move_along(left, change, T, model);
   for (int i = 0; i < c.count; ++i) {
     if (c.stiff[static_cast<std::size_t>(i)]) continue;
     const double *l = &impulse[3 * i], *u = &velocity[3 * i];
     set_solution(contacts, i, dvec3(l[0], l[1], l[2]), dvec3(u[0], u[1], u[2]), c);
   }
-  model.force += (c.from_handle.topRows(rows).transpose() * change - contacts.tool().tissue_matrix() * left / T) / T;
+  model.force += wrench_of(change) - contacts.tool().tissue_matrix() * left / (T * T);
   model.handle.velocity += left / T;
   model.handle.pose.position += linear(left);
   model.handle.pose.rotation = glm::normalize(rotation_of(angular(left)) * model.handle.pose.rotation);
+  return by_inertia;
 }
 
 }  // namespace pliant

@@ -10,7 +10,8 @@ namespace pliant {
 
 // `left` [m], [rad]: the handle's displacement from the step's end to its prescribed pose. `W` [1/kg]: of the contacts,
 // the handle fixed (condense_bodies). Called after the step is fully described, before ticks are prepared. Stiff
-// contacts are unchanged: they do not yield to a prescribed motion.
-void catch_up(const ToolContacts& contacts, const Vector6& left, const Eigen::MatrixXd& W, HandleModel& model);
+// contacts are unchanged: they do not yield to a prescribed motion. Returns what the wrench on the handle would have
+// more if bodies that move freely kept their inertia: for the linear model, whose bodies have no motion of their own.
+Vector6 catch_up(const ToolContacts& contacts, const Vector6& left, const Eigen::MatrixXd& W, HandleModel& model);
 
 }  // namespace pliant

@@ -17,12 +17,12 @@ void reduce_tool(const FinishedStep& step, std::uint32_t tool, double tick, Hand
   const Eigen::MatrixXd W = condense_bodies(contacts, tick, out.contacts);
   mark_stiff(W, out.contacts);
   const Vector6 left = contacts.tool().short_of_prescribed(out.handle);
-  catch_up(contacts, left, W, out);
+  const Vector6 by_inertia = catch_up(contacts, left, W, out);
   out.contacts.prepare_tick(tick);
   out.linear = linear_model(contacts.tool(), out, W);
   const Vector6 dropped = drop_stiff(step.T, step.beta, left, out.contacts);
   out.force -= dropped;
-  out.linear.force -= dropped;
+  out.linear.force += by_inertia - dropped;
 }
 
 void describe_tool(const FinishedStep& step, std::uint32_t tool, double tick, HandleModel& out) {
