@@ -74,6 +74,8 @@ void adopt(ToolTouchState& tool, const HandleModel& model) {
   }
   tool.displacement = displacement(model.handle, tool.handle);
   tool.contacts.start(model.contacts);
+  tool.owed += model.soft_step * model.owed;
+  tool.owed_left = std::max(1.0, kOwedSteps * model.soft_step / model.contacts.tick);
   tool.late = 0;
   // A contact without compliance has no linear model: it would keep the handle wherever it was first met, and pull.
   const bool yields = tool.wanted != ToolForce::kLinear || !has_stiff(model.contacts);
@@ -91,6 +93,14 @@ void adopt(ToolTouchState& tool, const HandleModel& model) {
 void fade_on(ToolTouchState& tool) {
   tool.fade *= std::max(0.0, 1.0 - 1.0 / tool.fade_left);
   tool.fade_left = std::max(1.0, tool.fade_left - 1.0);
+}
+
+// [N s], [N m s] In this tick.
+Vector6 give_owed(ToolTouchState& tool) {
+  const Vector6 now = tool.owed / std::max(1.0, tool.owed_left);
+  tool.owed -= now;
+  tool.owed_left -= 1.0;
+  return now;
 }
 
 // 1, fading to zero once the model is too old.
@@ -149,6 +159,7 @@ void step(ToolTouchState& tool, const HandleModel& model, const Handle6& setting
   }
   handle.right =
       model.handle_mass * tool.handle.velocity + bond.right + tick.dt * (believed * model.handle_load + tool.fade);
+  if (contacts_alone) handle.right += give_owed(tool);
   tool.wrench = contacts_alone ? contact_tick(tool, model, handle) : plain_tick(tool, model, believed, tick.dt, handle);
   if (tool.joins && contacts_alone) tool.fade = felt - tool.wrench;
   tool.wrench += tool.fade;
@@ -216,6 +227,7 @@ void unplace(ToolTouchState& tool, HandleState state) {
   tool.handle = tool.sensed;
   tool.gained.setZero();
   tool.fade.setZero();
+  tool.owed.setZero();
   tool.wrench.setZero();
   tool.device_wrench.setZero();
 }

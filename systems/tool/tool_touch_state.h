@@ -17,6 +17,7 @@ namespace pliant {
 
 // Tunables of the touch tick. Unit, usual value, and what changing it does.
 inline constexpr double kFadeShare = 1.0 / 3.0;   // [1] of T: time constant with which a stale model fades
+inline constexpr double kOwedSteps = 2.0;         // [1] of T: in which HandleModel::owed is given; 1 overshoots
 inline constexpr double kJoinShare = 3.0 / 8.0;   // [1] of T: duration of the cross-fade of models; shorter: steeper
 inline constexpr int kSettleTicks = 3;            // ticks of a new model before its contacts act; fewer: jumps
 inline constexpr double kStaleSteps = 3.0;        // [1] of T: a model older than this fades to zero
@@ -108,6 +109,8 @@ struct ToolTouchState {
   CondensedState contacts;
   Vector6 fade = Vector6::Zero();    // [N], [N m] added to the model's wrench, fading to zero
   double fade_left = 0.0;            // [1] ticks until it is zero
+  Vector6 owed = Vector6::Zero();    // [N s], [N m s] HandleModel::owed times T, what is left of it
+  double owed_left = 0.0;            // [1] ticks in which it is given
   bool joins = false;                // the next tick is the first with `used`, or with a new model
   int settling = 0;                  // remaining ticks in which the contacts do not act yet
   Vector6 gained = Vector6::Zero();  // [m/s], [rad/s] change of the handle's velocity over the last tick

@@ -73,6 +73,13 @@ Vector6 ToolBody::short_of_prescribed(const RigidMotion& handle) const {
   return prescribed_ ? way_between(handle, prescribed_->end) : Vector6(Vector6::Zero());
 }
 
+Matrix6 ToolBody::prescribed_impedance() const {
+  if (!prescribed_ || prescribed_->kinematic) return Matrix6::Zero();
+  Matrix6 out = handle_mass_;
+  out.diagonal() += coupling_step_.matrix;
+  return out;
+}
+
 Vector6 ToolBody::coupling_wrench() const {
   return (coupling_step_.right - coupling_step_.matrix.cwiseProduct(velocity_.tail<6>())) / T_;
 }

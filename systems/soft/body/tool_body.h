@@ -54,6 +54,8 @@ class ToolBody : public Body {
   }
   // [m], [rad] from `handle` at the end of a step to its prescribed pose; zero without one.
   Vector6 short_of_prescribed(const RigidMotion& handle) const;
+  // M_h + S B_c + S^2 K_c of the last step with a compliant path.
+  Matrix6 prescribed_impedance() const;
   bool held() const { return device_.has_value(); }  // a device holds the handle
   // Target of the device for the handle's frame.
   RigidMotion device_target() const { return device_ ? device_->at(handle_->centre()) : handle_->motion(); }

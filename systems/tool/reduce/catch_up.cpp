@@ -1,5 +1,7 @@
 #include "systems/tool/reduce/catch_up.h"
 
+#include <algorithm>
+
 #include "systems/soft/body/rotation_vector.h"
 
 namespace pliant {
@@ -7,6 +9,7 @@ namespace {
 
 constexpr SweepLimits kAgain{100, 1e-4, 0};
 constexpr double kFree = 1e-6;      // [1] (T omega)^2 of motion without elastic force
+constexpr double kRidge = 1e-9;     // [1] of the largest compliance: redundant contacts
 constexpr double kMassless = 1e-2;  // [1] of such motion's inertia
 
 // [1/kg] `W` with bodies that move freely almost without inertia. They follow the handle's displacement, and no force
@@ -20,6 +23,26 @@ Eigen::MatrixXd quasi_static(const CondensedContacts& c, const Eigen::MatrixXd& 
     out.topLeftCorner(rows, rows) += (1 / kMassless - 1) / (1.0 + T * c.damping[k]) * mode * mode.transpose();
   }
   return out;
+}
+
+// [1] Of what resists a displacement `left` of the handle: the inertia of bodies that move freely. Whatever contacts
+// are loaded: the hand is also owed what it gave in contacts that the step found open.
+double free_share(const CondensedContacts& c, const Eigen::MatrixXd& W, const Eigen::MatrixXd& free,
+                  const Vector6& left) {
+  std::vector<Eigen::Index> rows;
+  for (int i = 0; i < c.count; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (const auto at = static_cast<std::size_t>(i); c.held[at] == 0 ? k == 0 : (c.held[at] >> k & 1) != 0)
+        if (!c.stiff[at]) rows.push_back(3 * i + k);
+  if (rows.empty()) return 0.0;
+  const Vector way = (c.from_handle * left)(rows);
+  const auto resistance = [&](const Eigen::MatrixXd& compliance) {
+    Eigen::MatrixXd of = compliance(rows, rows);
+    of.diagonal().array() += kRidge * of.diagonal().maxCoeff();
+    return way.dot(of.llt().solve(way));
+  };
+  const double all = resistance(W);
+  return all > 0.0 ? std::clamp(1.0 - resistance(free) / all, 0.0, 1.0) : 0.0;
 }
 
 // Solves the compliant contacts again, with the handle moving `extra` [m/s], [rad/s] faster over the step T [s].
@@ -79,6 +102,7 @@ void move_along(const Vector6& left, const Vector& change, double T, HandleModel
 }  // namespace
 
 Vector6 catch_up(const ToolContacts& contacts, const Vector6& left, const Eigen::MatrixXd& W, HandleModel& model) {
+  model.owed.setZero();
   if (left.isZero(0.0)) return Vector6::Zero();
   CondensedContacts& c = model.contacts;
   const FinishedStep& step = contacts.step();
@@ -104,7 +128,10 @@ Vector6 catch_up(const ToolContacts& contacts, const Vector6& left, const Eigen:
   }
   solve_again(c, free, left / T, T, impulse, velocity, c.sliding);
   const Vector change = impulse - before;
-  if (free != W) by_inertia -= wrench_of(change);
+  if (free != W) {
+    by_inertia -= wrench_of(change);
+    model.owed = -free_share(c, W, free, left) / (T * T) * contacts.tool().prescribed_impedance() * left;
+  }
   move_along(left, change, T, model);
   for (int i = 0; i < c.count; ++i) {
     if (c.stiff[static_cast<std::size_t>(i)]) continue;

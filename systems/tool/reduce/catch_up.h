@@ -10,7 +10,11 @@ namespace pliant {
 
 // `left` [m], [rad]: the handle's displacement from the step's end to its prescribed pose. `W` [1/kg]: of the contacts,
 // the handle fixed (condense_bodies). Called after the step is fully described, before ticks are prepared. Stiff
-// contacts are unchanged: they do not yield to a prescribed motion. Returns what the wrench on the handle would have
+// contacts are unchanged: they do not yield to a prescribed motion.
+//
+// By `left` the hand's impedance pushed bodies otherwise than the touch clock's handle was pushed back. Where tissue
+// resists, the new force makes up for it. Bodies that move freely have that momentum, so the handle is owed it
+// (HandleModel::owed): the sums of both impulses are equal. Returns what the wrench on the handle would have
 // more if bodies that move freely kept their inertia: for the linear model, whose bodies have no motion of their own.
 Vector6 catch_up(const ToolContacts& contacts, const Vector6& left, const Eigen::MatrixXd& W, HandleModel& model);
 
