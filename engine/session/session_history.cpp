@@ -15,7 +15,7 @@ namespace pliant {
 namespace {
 
 constexpr char kStateMagic[8] = {'p', 'l', 'i', 'a', 'n', 't', 's', 't'};
-constexpr std::uint32_t kStateVersion = 1;
+constexpr std::uint32_t kStateVersion = 2;
 constexpr std::uint32_t kMostTexts = 65536, kMostText = 65536;
 
 class Packer {
@@ -33,7 +33,8 @@ class Packer {
     for (const double v : {pose.position.x, pose.position.y, pose.position.z, pose.rotation.w, pose.rotation.x,
                            pose.rotation.y, pose.rotation.z, pose.sensed_at})
       put(v);
-    put(static_cast<std::uint8_t>((pose.ready ? 1 : 0) | (pose.felt ? 2 : 0)));
+    put(static_cast<std::uint8_t>((pose.ready ? 1 : 0) | (pose.felt ? 2 : 0) | (pose.grips ? 4 : 0)));
+    if (pose.grips) put(pose.grip);
   }
   std::vector<std::uint8_t> bytes;
 };
@@ -73,7 +74,8 @@ class Unpacker {
     const auto bits = get<std::uint8_t>();
     pose.ready = (bits & 1) != 0;
     pose.felt = (bits & 2) != 0;
-    ok = ok && bits < 4;
+    if ((pose.grips = (bits & 4) != 0)) pose.grip = get_number();
+    ok = ok && bits < 8 && pose.grip >= 0.0 && pose.grip <= 1.0;
     return pose;
   }
   bool at_end() const { return at_ == end_; }
@@ -141,7 +143,8 @@ bool same_bits(const HistoryPose& a, const HistoryPose& b) {
     if (!same(a.position[k], b.position[k])) return false;
   for (int k = 0; k < 4; ++k)
     if (!same(a.rotation[k], b.rotation[k])) return false;
-  return same(a.sensed_at, b.sensed_at) && a.ready == b.ready && a.felt == b.felt;
+  return same(a.sensed_at, b.sensed_at) && a.ready == b.ready && a.felt == b.felt && a.grips == b.grips &&
+         same(a.grip, b.grip);
 }
 
 bool stands_still(const std::vector<HistoryPose>& poses, std::size_t effectors, std::size_t a, std::size_t b) {

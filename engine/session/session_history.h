@@ -19,6 +19,8 @@ struct HistoryPose {
   double sensed_at = 0.0;  // [s]
   bool ready = false;      // and not stale
   bool felt = true;        // false: its guard withheld the force
+  bool grips = false;      // its device senses a grip
+  double grip = 0.0;       // [1] 0 to 1
 };
 
 struct SessionHistory {

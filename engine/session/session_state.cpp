@@ -20,7 +20,7 @@ namespace {
 constexpr const char* kRestore = "Session::restore_state";
 
 HistoryPose saved(const PrescribedPose& pose) {
-  return {pose.position, pose.rotation, 0.0, true, true};
+  return {pose.position, pose.rotation, 0.0, true, true, false, 0.0};
 }
 PrescribedPose prescribed(const HistoryPose& pose) {
   return {pose.position, pose.rotation};
@@ -92,8 +92,8 @@ void SessionRun::note_history(Tick tick) {
   for (const SessionEffector& effector : effectors) {
     const HapticDevice& device = world.registry.get<HapticDevice>(effector.device);
     const SafetyState* const safety = safety_of(world, effector.entity);
-    history.poses.push_back(
-        {device.position, device.rotation, device.sensed_at, is_ready(device, tick.time), !safety || safety->felt});
+    history.poses.push_back({device.position, device.rotation, device.sensed_at, is_ready(device, tick.time),
+                             !safety || safety->felt, device.grips, std::clamp(device.grip, 0.0, 1.0)});
   }
 }
 
@@ -143,6 +143,7 @@ Status SessionRun::run_again(SavedState state) {
       device.position = pose.position;
       device.rotation = pose.rotation;
       device.sensed_at = pose.sensed_at;
+      device.grips = pose.grips, device.grip = pose.grip;
       device.status = pose.ready ? DeviceStatus::kReady : DeviceStatus::kLost;
       if (SafetyState* const safety = safety_of(world, effectors[i].entity)) safety->felt = pose.felt;
     }

@@ -108,7 +108,8 @@ struct HandleModel {
   Vector6 handle_load = Vector6::Zero();  // [N], [N m] its weight, and the force that supports the tool
   Vector6 force = Vector6::Zero();        // [N], [N m] of tissue and contacts on the handle, from the soft step
   double fed = 0.0;                       // [J] to all bodies since the beginning: by drives, SoftTally::fed
-  Vector6 owed = Vector6::Zero();         // [N], [N m] to be given over the next T (catch_up.h)
+  Vector6 owed = Vector6::Zero();         // [N], [N m] over T, to be given (catch_up.h)
+  double owed_steps = 2.0;                // [1] over how many T
   Vector6 passed_on = Vector6::Zero();    // [N], [N m] less the handle's inertia; with handle_load: on the device
   LinearModel linear;
   CondensedContacts contacts;

@@ -75,7 +75,7 @@ void adopt(ToolTouchState& tool, const HandleModel& model) {
   tool.displacement = displacement(model.handle, tool.handle);
   tool.contacts.start(model.contacts);
   tool.owed += model.soft_step * model.owed;
-  tool.owed_left = std::max(1.0, kOwedSteps * model.soft_step / model.contacts.tick);
+  tool.owed_left = std::max(1.0, model.owed_steps * model.soft_step / model.contacts.tick);
   tool.late = 0;
   // A contact without compliance has no linear model: it would keep the handle wherever it was first met, and pull.
   const bool yields = tool.wanted != ToolForce::kLinear || !has_stiff(model.contacts);

@@ -17,7 +17,6 @@ namespace pliant {
 
 // Tunables of the touch tick. Unit, usual value, and what changing it does.
 inline constexpr double kFadeShare = 1.0 / 3.0;   // [1] of T: time constant with which a stale model fades
-inline constexpr double kOwedSteps = 2.0;         // [1] of T: in which HandleModel::owed is given; 1 overshoots
 inline constexpr double kJoinShare = 3.0 / 8.0;   // [1] of T: duration of the cross-fade of models; shorter: steeper
 inline constexpr int kSettleTicks = 3;            // ticks of a new model before its contacts act; fewer: jumps
 inline constexpr double kStaleSteps = 3.0;        // [1] of T: a model older than this fades to zero

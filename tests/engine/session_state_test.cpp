@@ -77,6 +77,31 @@ TEST(SessionState, GoesOnWithTheSameBitsAmongBodiesAndInAnotherSession) {
 }
 
 // The level's own source has not begun: poses go on as if they had been given from time 0.
+TEST(SessionState, HasTheGripsOfItsDevices) {
+  Scene scene("jaw");
+  scene.add_rigid_body("arm", box(0.02f), {.mass = 0.1}, {.position = {0.05, 0, 0}});
+  scene.add_probe("finger", {}, {}, {.position = {0, 0.5, 0}});
+  scene.add_joint(
+      "hinge",
+      {.kind = JointKind::kHinge, .a = "arm", .stiffness = 5.0, .damping = 0.05, .closed = 1.0, .grip = "finger"});
+  Session session = opened(scene);
+  Path path;
+  path.rows = {{.time = 0.0, .position = {0, 0.5, 0}}, {.time = 0.3, .position = {0, 0.5, 0}, .grip = 1.0}};
+  path.grips = true;
+  ASSERT_TRUE(session.follow("finger", path));
+  ASSERT_TRUE(session.step(200));
+  const auto state = session.save_state();
+  ASSERT_TRUE(state) << state.error().message();
+  std::vector<vec3> once, again;
+  ASSERT_TRUE(session.step(200));
+  ASSERT_TRUE(session.vertices("arm", once));
+  EXPECT_GT(std::abs(once[0].z + 0.02f), 0.01f) << "it has closed";
+  ASSERT_TRUE(session.restore_state(*state));
+  ASSERT_TRUE(session.step(200));
+  ASSERT_TRUE(session.vertices("arm", again));
+  EXPECT_EQ(once, again);
+}
+
 TEST(SessionState, GoesOnInASessionWhoseProbeStillHasTheLevelsSource) {
   Scene scene = press_scene();
   for (LevelNode& node : scene.level().nodes)

@@ -1,6 +1,7 @@
 #include "systems/tool/reduce/catch_up.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "systems/soft/body/rotation_vector.h"
 
@@ -10,6 +11,7 @@ namespace {
 constexpr SweepLimits kAgain{100, 1e-4, 0};
 constexpr double kFree = 1e-6;      // [1] (T omega)^2 of motion without elastic force
 constexpr double kRidge = 1e-9;     // [1] of the largest compliance: redundant contacts
+constexpr double kOwedSteps = 2.0;  // [1] of bodies as heavy as the hand; over fewer the handle leaves a heavy one
 constexpr double kMassless = 1e-2;  // [1] of such motion's inertia
 
 // [1/kg] `W` with bodies that move freely almost without inertia. They follow the handle's displacement, and no force
@@ -25,24 +27,28 @@ Eigen::MatrixXd quasi_static(const CondensedContacts& c, const Eigen::MatrixXd& 
   return out;
 }
 
-// [1] Of what resists a displacement `left` of the handle: the inertia of bodies that move freely. Whatever contacts
-// are loaded: the hand is also owed what it gave in contacts that the step found open.
-double free_share(const CondensedContacts& c, const Eigen::MatrixXd& W, const Eigen::MatrixXd& free,
-                  const Vector6& left) {
+// Of what resists a displacement `left` of the handle, the part of bodies that move freely: by their inertia. Whatever
+// contacts are loaded: the hand is also owed what it gave in contacts that the step found open.
+void set_owed(const Eigen::MatrixXd& W, const Eigen::MatrixXd& free, const Vector6& left, const Matrix6& impedance,
+              HandleModel& model) {
+  const CondensedContacts& c = model.contacts;
   std::vector<Eigen::Index> rows;
   for (int i = 0; i < c.count; ++i)
     for (int k = 0; k < 3; ++k)
       if (const auto at = static_cast<std::size_t>(i); c.held[at] == 0 ? k == 0 : (c.held[at] >> k & 1) != 0)
         if (!c.stiff[at]) rows.push_back(3 * i + k);
-  if (rows.empty()) return 0.0;
+  if (rows.empty()) return;
   const Vector way = (c.from_handle * left)(rows);
   const auto resistance = [&](const Eigen::MatrixXd& compliance) {
     Eigen::MatrixXd of = compliance(rows, rows);
     of.diagonal().array() += kRidge * of.diagonal().maxCoeff();
     return way.dot(of.llt().solve(way));
   };
-  const double all = resistance(W);
-  return all > 0.0 ? std::clamp(1.0 - resistance(free) / all, 0.0, 1.0) : 0.0;
+  const double all = resistance(W), hand = left.dot(impedance * left);
+  if (!(all > 0.0 && hand > 0.0)) return;
+  const double T = model.soft_step, share = std::clamp(1.0 - resistance(free) / all, 0.0, 1.0);
+  model.owed = -share / (T * T) * impedance * left;
+  model.owed_steps = kOwedSteps * std::max(1.0, std::sqrt(share * all / hand));
 }
 
 // Solves the compliant contacts again, with the handle moving `extra` [m/s], [rad/s] faster over the step T [s].
@@ -130,7 +136,7 @@ Vector6 catch_up(const ToolContacts& contacts, const Vector6& left, const Eigen:
   const Vector change = impulse - before;
   if (free != W) {
     by_inertia -= wrench_of(change);
-    model.owed = -free_share(c, W, free, left) / (T * T) * contacts.tool().prescribed_impedance() * left;
+    set_owed(W, free, left, contacts.tool().prescribed_impedance(), model);
   }
   move_along(left, change, T, model);
   for (int i = 0; i < c.count; ++i) {
