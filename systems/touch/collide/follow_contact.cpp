@@ -22,6 +22,8 @@ constexpr double kUnexplained = 0.1;
 constexpr double kTurnsWith = 1.0;
 // A normal farther from the side is the other side's. [rad] 100 degrees
 constexpr double kSlips = 1.7453292519943295;
+// It gets deeper on the way out by more than this: against that wall, not along it. [1] of the way; -cos(kSlips)
+constexpr double kAgainst = 0.17;
 // Cosine between a wall's normal here and where the tip came in, from which on they are one wall. [1]
 constexpr double kSameWall = 0.5;
 // Two feet of a tip closer than this are the same. [1] of the mean edge
@@ -62,7 +64,8 @@ bool goes_out(const ContactSearch& s, SourceState& source, const Contact& contac
     source.in = source.place.p;
   else if (stroke > 0)
     source.in += stroke / aside * (step - out * source.entered);
-  if (!(out > 0) || !(source.place.height < 0) || contact.height >= contact.previous_height) return false;
+  if (!(out > 0) || !(source.place.height < 0) || contact.previous_height - contact.height <= kAgainst * out)
+    return false;
   const Entry wall = first_entry(s.mesh, to, from);  // backwards
   if (!wall.valid()) return false;
   const uvec3 t = s.mesh.triangles[wall.triangle];
