@@ -14,8 +14,9 @@
 namespace pliant {
 namespace {
 
-// A foot that moves farther than this many times its tip's way has gone over to another minimum. [1]
-constexpr double kJump = 10.0;
+// A foot that moves farther than this many times its tip's way has gone over to another minimum. That of a capsule also
+// slides along its axis. [1]
+constexpr double kJump = 3.0, kJumpAlong = 10.0;
 // Depth that the gradients do not explain, from which on it was not pushed. [1] of the tip's way
 constexpr double kUnexplained = 0.1;
 // A side turns with the normal by this many radians while its tip moves by its depth. [1]
@@ -205,8 +206,9 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
                least = 1e-9 * static_cast<double>(s.mesh.box.diagonal());
   const double pushed = source.tip.is_capsule() ? -dot(source.place.gradient, step_there)  // it was the deepest before
                                                 : -0.5 * dot(slope + source.place.gradient, step);
+  const double far = (source.tip.is_capsule() ? kJumpAlong : kJump) * moved;
   const bool jumped =
-      source.tip.radius > 0 && length(source.place.p - place) > kJump * moved && deeper - pushed > kUnexplained * moved;
+      source.tip.radius > 0 && length(source.place.p - place) > far && deeper - pushed > kUnexplained * moved;
   if (jumped || deeper - moved > least) {
     contact.unpushed += jumped ? deeper - pushed : source.tip.radius > 0 ? deeper : deeper - moved;
     source.settled = false;
