@@ -127,6 +127,99 @@ TEST(TouchStrokeAtSpeed, OverBumpsTheForceIsThatOfAFreshPress) {
     }
 }
 
+// A frustum with `sides` flat sides on the plane y = 0.
+Primitive frustum(int sides, double bottom, double top, double high) {
+  Primitive p;
+  const auto n = static_cast<std::uint32_t>(sides);
+  for (const auto& [radius, y] : {std::pair{bottom, 0.0}, {top, high}})
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const double a = 2 * M_PI * i / n;
+      p.position.push_back(vec3(dvec3(radius * std::cos(a), y, radius * std::sin(a))));
+    }
+  p.position.push_back({0, 0, 0});
+  p.position.push_back(vec3(dvec3(0, high, 0)));
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t j = (i + 1) % n;
+    for (const std::uint32_t v : {i, n + i, j, j, n + i, n + j, 2 * n, i, j, 2 * n + 1, n + j, n + i})
+      p.index.push_back(v);
+  }
+  return p;
+}
+
+// Beside the axis two places of one side are as near, beyond its focal distance. Where a foot is on an edge between two
+// patches there, the force is minus the gradient of the energy, too.
+TEST(TouchFocus, ASphereDeepInAConeFeelsTheEnergysGradient) {
+  constexpr double kHigh = 0.03, kRadius = 0.004, kStep = 1e-8;
+  Stage stage;
+  stage.add(frustum(32, 0.03, 0.0015, kHigh), frictionless());
+  const Entity probe = stage.add_probe({0, 1, 0}, kRadius);
+  stage.prepare();
+  const auto at = [&](dvec3 x) {
+    stage.place(probe, x);
+    stage.tick();
+    return stored(stage);
+  };
+  for (dvec3 x(0.0002, kHigh + 0.005, 0.0003); x.y > kHigh - 0.0039; x.y -= 2e-5) {
+    at(x);
+    if (x.y > kHigh - 0.0036) continue;
+    const dvec3 force = raw_force(stage, probe);
+    for (int axis = 0; axis < 3; ++axis) {
+      dvec3 e(0);
+      e[axis] = kStep;
+      const double up = at(x + e), down = at(x - e);
+      EXPECT_NEAR(force[axis], (down - up) / (2 * kStep), 1e-4) << x.y - kHigh << ' ' << axis;
+    }
+  }
+}
+
+// Its centre comes out through the top beside an overhanging rim, where its foot is on the side wall, and gets deeper
+// below that: it stays in contact.
+TEST(TouchRim, ASphereThatComesOutBesideARimFeelsWhatItFeltOnTheWayIn) {
+  constexpr double kHigh = 0.01, kBottom = 0.001, kTop = 0.0015, kRadius = 0.004;
+  for (const double inside : {2e-6, 7e-6, 15e-6})
+    for (int turn = 0; turn < 8; ++turn) {
+      Stage stage;
+      stage.add(frustum(32, kBottom, kTop, kHigh), frictionless());
+      const double a = 0.3 + 0.8 * turn, far = kTop * std::cos(M_PI / 32) - inside;
+      const Entity probe = stage.add_probe({far * std::cos(a), kHigh + 0.005, far * std::sin(a)}, kRadius);
+      stage.prepare();
+      std::array<double, 260> on_the_way_in{};
+      for (int i = -259; i < 260; ++i) {
+        const int level = std::abs(i);
+        stage.place(probe, {far * std::cos(a), kHigh + 2e-5 * (level - 20), far * std::sin(a)});
+        stage.tick();
+        const double force = length(raw_force(stage, probe));
+        double& in = on_the_way_in[static_cast<std::size_t>(level)];
+        if (i < 0) in = force;
+        if (i > 0)
+          EXPECT_NEAR(force, in, 300 * (inside + kTop * (1 - std::cos(M_PI / 32))) + 1e-6)
+              << inside << ' ' << a << ' ' << level;
+      }
+    }
+}
+
+// Where a foot goes over to a minimum beside it, which no search has found yet, the hand gets hardly any energy.
+TEST(TouchStrokeOverKinks, AStrokeThereAndBackGivesLittle) {
+  for (const double z : {0.0004, 0.0017, 0.0031, 0.0052}) {
+    Stage stage;
+    stage.add(bumpy_sheet({0.001, 0.0157, 0.004, true}), frictionless());
+    const double y = 0.001 + 0.004 - 0.0025;
+    const Entity probe = stage.add_probe({-0.03, 0.02, z}, 0.004);
+    stage.prepare();
+    RawMeter meter;
+    const auto go = [&](dvec3 x) {
+      stage.place(probe, x);
+      stage.tick();
+      meter.add(stage, probe, x);
+    };
+    for (int i = 0; i <= 500; ++i) go({-0.03, y + 2e-5 * (500 - i), z});
+    for (int i = 0; i <= 3000; ++i) go({-0.03 + 2e-5 * i, y, z + 3e-6 * i});
+    for (int i = 3000; i >= 0; --i) go({-0.03 + 2e-5 * i, y, z + 3e-6 * i});
+    for (int i = 500; i >= 0; --i) go({-0.03, y + 2e-5 * (500 - i), z});
+    EXPECT_LT(meter.work, 3e-3 * meter.most) << z;
+  }
+}
+
 // Dents part under a shaft as it strokes over them, also where its axis is behind the surface.
 TEST(TouchStrokeOfAShaft, OverBumpsTheForceIsThatOfAFreshPress) {
   struct Shaft {

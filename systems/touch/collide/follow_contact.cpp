@@ -14,14 +14,17 @@
 namespace pliant {
 namespace {
 
-// A foot that moves farther than this many times its tip's way has gone over to another minimum. [1]
-constexpr double kJump = 10.0;
+// A foot that moves farther than this many times its tip's way has gone over to another minimum. That of a capsule also
+// slides along its axis. [1]
+constexpr double kJump = 3.0, kJumpAlong = 10.0;
 // Depth that the gradients do not explain, from which on it was not pushed. [1] of the tip's way
 constexpr double kUnexplained = 0.1;
 // A side turns with the normal by this many radians while its tip moves by its depth. [1]
 constexpr double kTurnsWith = 1.0;
 // A normal farther from the side is the other side's. [rad] 100 degrees
 constexpr double kSlips = 1.7453292519943295;
+// It gets deeper on the way out by more than this: against that wall, not along it. [1] of the way; -cos(kSlips)
+constexpr double kAgainst = 0.17;
 // Cosine between a wall's normal here and where the tip came in, from which on they are one wall. [1]
 constexpr double kSameWall = 0.5;
 // Two feet of a tip closer than this are the same. [1] of the mean edge
@@ -62,7 +65,8 @@ bool goes_out(const ContactSearch& s, SourceState& source, const Contact& contac
     source.in = source.place.p;
   else if (stroke > 0)
     source.in += stroke / aside * (step - out * source.entered);
-  if (!(out > 0) || !(source.place.height < 0) || contact.height >= contact.previous_height) return false;
+  if (!(out > 0) || !(source.place.height < 0) || contact.previous_height - contact.height <= kAgainst * out)
+    return false;
   const Entry wall = first_entry(s.mesh, to, from);  // backwards
   if (!wall.valid()) return false;
   const uvec3 t = s.mesh.triangles[wall.triangle];
@@ -202,8 +206,9 @@ void follow_contact(const ContactSearch& s, SourceState& source, Contact& contac
                least = 1e-9 * static_cast<double>(s.mesh.box.diagonal());
   const double pushed = source.tip.is_capsule() ? -dot(source.place.gradient, step_there)  // it was the deepest before
                                                 : -0.5 * dot(slope + source.place.gradient, step);
+  const double far = (source.tip.is_capsule() ? kJumpAlong : kJump) * moved;
   const bool jumped =
-      source.tip.radius > 0 && length(source.place.p - place) > kJump * moved && deeper - pushed > kUnexplained * moved;
+      source.tip.radius > 0 && length(source.place.p - place) > far && deeper - pushed > kUnexplained * moved;
   if (jumped || deeper - moved > least) {
     contact.unpushed += jumped ? deeper - pushed : source.tip.radius > 0 ? deeper : deeper - moved;
     source.settled = false;

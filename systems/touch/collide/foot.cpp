@@ -18,6 +18,8 @@ constexpr double kFree =
 // Patches that meet at less than this angle are one smooth surface: a foot that halts on their edge for a moment has
 // the derivatives of a foot inside. Otherwise the force of painted and of relaxing tissue would click there. [rad]
 constexpr double kSmooth = 0.005;
+// Near a focal distance the edge alone holds such a foot: from here on it has the derivatives of a foot on an edge.
+constexpr double kHolds = 0.25;      // [1] det of the distance's second derivatives, of a flat patch's
 constexpr double kMostMoves = 20.0;  // [1] most of dp/dx
 constexpr double kOnSurface = 1e-9;  // [1] of the triangle's edge: closer than this, x is on the surface
 
@@ -196,11 +198,11 @@ void bound_motion(Foot& foot) {
   for (dvec3& shift : foot.shifts) shift *= kMostMoves / size;
 }
 
-// Derivatives of a foot inside its patch.
-void move_inside(Foot& foot, const CurvedPatch::Point& at, dvec3 r) {
+// Derivatives of a foot inside its patch. False: the distance bends by less than `least` of a flat patch's [1].
+bool move_inside(Foot& foot, const CurvedPatch::Point& at, dvec3 r, double least = 0.0) {
   const Hessian H = hessian(at, -r, true);
   const double det = H.det();
-  if (!(det > 0)) return;
+  if (!(H.uu > 0 && det > least * hessian(at, -r, false).det())) return false;
   const dvec3 du = (H.vv * at.pu - H.uv * at.pv) / det, dv = (H.uu * at.pv - H.uv * at.pu) / det;
   foot.shifts = {-du - dv, du, dv};
   foot.moves = glm::outerProduct(at.pu, du) + glm::outerProduct(at.pv, dv);
@@ -209,6 +211,7 @@ void move_inside(Foot& foot, const CurvedPatch::Point& at, dvec3 r) {
   const dvec3 nu = tangent(cross(at.puu, at.pv) + cross(at.pu, at.puv)),
               nv = tangent(cross(at.puv, at.pv) + cross(at.pu, at.pvv));
   foot.turns = glm::outerProduct(nu, du) + glm::outerProduct(nv, dv);
+  return true;
 }
 
 // The corner of its triangle that a place on an edge is at, or -1.
@@ -286,8 +289,7 @@ Foot make_foot(const Local& local, std::uint32_t triangle, dvec3 x, Sides sides_
   foot.height = on_surface ? 0.0 : side * far;
   const int zero = on == 1 ? 0 : on == 2 ? 1 : 2;
   if (foot.place == FootPlace::kEdge) foot.edge = static_cast<std::uint8_t>((zero + 1) % 3);
-  if (aside <= kSmooth * far) {
-    move_inside(foot, at, r);
+  if (aside <= kSmooth * far && move_inside(foot, at, r, kHolds)) {
     bound_motion(foot);
     return foot;
   }
