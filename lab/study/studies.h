@@ -20,6 +20,7 @@
   STUDY(surfaces, "facets, force shading, curved patches against spheres, tori, saddles: ripple, direction, work, us") \
   STUDY(fidelity, "one indentation by P1, every shape and law, and by the FEM at four resolutions: force and surface") \
   STUDY(time_step, "the soft step: Euler, midpoint, BDF2 and their length against a converged motion, four scenes") \
+  STUDY(large_strain, "a cube squashed, pulled and sheared, by law and resolution, against quadratic tetrahedra: force") \
   STUDY(collision, "local walks, the tree and brute force, on meshes up to two million triangles: us against misses") \
   STUDY(scale, "a tick, a frame and a soft step, by vertices, moving vertices, tetrahedra and contacts: fitted powers")
 // clang-format on

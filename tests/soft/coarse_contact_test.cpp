@@ -139,7 +139,7 @@ Pressed press_middle(int squares) {
   auto& box =
       loop.add<RigidState>(small, Pose{dvec3(0.003, 0.046, 0.001), yaw(0.3)}, test::block_mass(dvec3(0.03), 0.2));
   loop.set_friction(0.4, 0.3);
-  for (int i = 0; i < 150; ++i) loop.step(kCoarseStep);
+  for (int i = 0; i < 80; ++i) loop.step(kCoarseStep);
   double weight = 0.2 * kCoarseGravity;
   EXPECT_LT(length(loop.force(2, 1) - dvec3(0, weight, 0)), 1e-3 * weight) << squares;
   for (const double m : body.tissue().mass()) weight += m * kCoarseGravity;

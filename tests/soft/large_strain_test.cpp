@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "systems/soft/fem/tissue_step.h"
-#include "tests/soft/quadratic_block.h"
+#include "scenes/quadratic_block.h"
 
 namespace pliant {
 namespace {

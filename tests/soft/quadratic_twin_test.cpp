@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "systems/soft/fem/tissue_step.h"
-#include "tests/soft/quadratic_block.h"
+#include "scenes/quadratic_block.h"
 
 namespace pliant {
 namespace {
@@ -59,10 +59,10 @@ TEST(QuadraticTwin, BendsAndTwistsAsBarsDo) {
   const double bending = 12 * kBarYoung * I / std::pow(kBarLength, 3) / (1 + phi);
   const double torsion = 0.1406 * kBarShear * std::pow(kBarSide, 4) / kBarLength;
   QuadraticBlock bar = twin_bar(3);
-  const auto bent = bar.carry(across(1e-3)), twisted = bar.carry(turned(0.01));
+  const auto bent = bar.carry(across(1e-3), 1), twisted = bar.carry(turned(0.01), 1);
   ASSERT_TRUE(bent && twisted);
   EXPECT_NEAR(bent->force.y / 1e-3, bending, 0.05 * bending);
-  const auto coarser = twin_bar(2).carry(across(1e-3));
+  const auto coarser = twin_bar(2).carry(across(1e-3), 1);
   ASSERT_TRUE(coarser);
   EXPECT_NEAR(bent->force.y, coarser->force.y, 0.01 * coarser->force.y);  // it has converged
   EXPECT_NEAR(twisted->torque.x / 0.01, torsion, 0.06 * torsion);

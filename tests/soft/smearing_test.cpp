@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
 
 #include "components/bonded_layer.h"
 #include "content/mesh/mesh_build.h"
@@ -50,7 +51,7 @@ Primitive half_ball(const dmat3& turn, dvec3 centre) {
 
 class LatticeHalfSpace {
  public:
-  LatticeHalfSpace(double poisson, unsigned seed) : tissue_{1.0, poisson} {
+  LatticeHalfSpace(double poisson, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> any;
     turn_ = glm::mat3_cast(normalize(dquat(any(random), any(random), any(random), any(random))));
@@ -71,13 +72,19 @@ class LatticeHalfSpace {
     TetMesh unheld = tets_;
     unheld.free_count = unheld.node_count();
     unheld_ = std::move(unheld);
-    surface_ = std::make_unique<SmearingSurface>(unheld_, poisson);
-    body_ = std::make_unique<Tissue>(
-        tets_, TissueMaterial{.young = 1.0, .poisson = poisson, .density = 1e-9, .strain = Strain::kLinear},
-        tets_.free_count);
-    body_->assemble(kStatic, dvec3(0));
+    body_ = std::make_unique<Tissue>(tets_, material(poisson), tets_.free_count);
     solver_ = make_solver(SolverKind::kBlockCholesky, body_->moving());
     solver_->analyse(body_->inner());
+    take(poisson);
+  }
+  // Of another Poisson's ratio.
+  void take(double poisson) {
+    if (surface_ && tissue_.poisson == poisson) return;
+    tissue_ = {1.0, poisson};
+    surface_ = std::make_unique<SmearingSurface>(unheld_, poisson);
+    body_->set_material(material(poisson));
+    body_->position() = tets_.nodes;
+    body_->assemble(kStatic, dvec3(0));
     EXPECT_TRUE(solver_->factorise(body_->inner()));
   }
   const LocalElasticity& tissue() const { return tissue_; }
@@ -86,21 +93,27 @@ class LatticeHalfSpace {
   dvec3 axis(int k) const { return turn_[k]; }  // 1: the outward normal
 
   SmearedLoad load_at(double x, double z, double own) const { return surface_->load_alone(place(x, z), axis(1), own); }
-  // [m per N] Of the nodes, under a unit force along axis k (1: outward).
-  std::vector<dvec3> under(const SmearedLoad& load, int k) const {
-    std::vector<dvec3>& v = body_->velocity();
-    std::fill(v.begin(), v.end(), dvec3(0));
-    for (std::uint32_t i = tets_.free_count; i < tets_.node_count(); ++i)
-      v[i] = exact(tets_.nodes[i] - load.place.at, k) / kStatic;
-    body_->assemble(kStatic, dvec3(0));
-    Rows right = body_->right().head(3 * body_->moving());
-    for (const SmearedNode& part : load.nodes)
-      if (part.node < body_->moving())
-        for (int d = 0; d < 3; ++d) right(3 * part.node + d, 0) += kStatic * part.weight * axis(k)[d];
+  // [m per N] Of the nodes, under a unit force along axis k (1: outward) at each load alone.
+  std::vector<std::vector<dvec3>> under(std::span<const SmearedLoad> loads, int k) const {
+    const std::uint32_t moving = body_->moving();
+    Rows right = Rows::Zero(3 * moving, static_cast<Eigen::Index>(loads.size()));
+    std::vector<std::vector<dvec3>> u(loads.size(), std::vector<dvec3>(tets_.node_count(), dvec3(0)));
+    for (std::size_t l = 0; l < loads.size(); ++l) {
+      for (std::uint32_t i = moving; i < tets_.node_count(); ++i) {
+        u[l][i] = exact(tets_.nodes[i] - loads[l].place.at, k);
+        body_->position()[i] = tets_.nodes[i] + u[l][i];
+      }
+      body_->find_forces();
+      const auto column = static_cast<Eigen::Index>(l);
+      right.col(column) = kStatic * kStatic * body_->elastic_force().head(3 * moving);
+      for (const SmearedNode& part : loads[l].nodes)
+        if (part.node < moving)
+          for (int d = 0; d < 3; ++d) right(3 * part.node + d, column) += kStatic * kStatic * part.weight * axis(k)[d];
+    }
     solver_->solve_many(right);
-    std::vector<dvec3> u(tets_.node_count());
-    for (std::uint32_t i = 0; i < tets_.node_count(); ++i)
-      u[i] = kStatic * (i < body_->moving() ? dvec3(right(3 * i, 0), right(3 * i + 1, 0), right(3 * i + 2, 0)) : v[i]);
+    for (std::size_t l = 0; l < loads.size(); ++l)
+      for (std::uint32_t i = 0; i < moving; ++i)
+        for (int d = 0; d < 3; ++d) u[l][i][d] = right(3 * i + d, static_cast<Eigen::Index>(l));
     return u;
   }
   static dvec3 read(const SmearedLoad& load, const std::vector<dvec3>& u) {
@@ -110,6 +123,9 @@ class LatticeHalfSpace {
   }
 
  private:
+  static TissueMaterial material(double poisson) {
+    return {.young = 1.0, .poisson = poisson, .density = 1e-9, .strain = Strain::kLinear};
+  }
   // Boussinesq's and Cerruti's solutions.
   dvec3 exact(dvec3 apart, int k) const {
     const dvec3 p = apart * turn_;
@@ -139,17 +155,19 @@ class LatticeHalfSpace {
 
 // Rows 3, 4 and 11 of methods.md 2.10.
 TEST(Smearing, ALatticeGivesThePunchOfTheHalfSpaceAnywhereOnIt) {
-  for (const auto& [nu, within] : {std::pair{0.3, 0.01}, {0.45, 0.01}, {0.49, 0.025}}) {
-    double worst = 0.0, worst_aside = 0.0;
-    constexpr int kLattices = 2, kPlaces = 5;
-    for (unsigned seed = 1; seed <= kLattices; ++seed) {
-      const LatticeHalfSpace half(nu, seed);
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    LatticeHalfSpace half(0.3, seed);
+    for (const auto& [nu, within] : {std::pair{0.3, 0.01}, {0.45, 0.01}, {0.49, 0.025}}) {
+      half.take(nu);
+      double worst = 0.0, worst_aside = 0.0;
       std::mt19937 random(10 * seed);
       std::uniform_real_distribution<double> in_cell(-1.0, 1.0);
-      for (int i = 0; i < kPlaces; ++i) {
-        const SmearedLoad load = half.load_at(in_cell(random), in_cell(random), 1.0);
-        const LocalPlace& p = load.place;
-        const double down = dot(half.axis(1), half.read(load, half.under(load, 1)));
+      std::vector<SmearedLoad> loads;
+      for (int i = 0; i < 5; ++i) loads.push_back(half.load_at(in_cell(random), in_cell(random), 1.0));
+      const auto pressed = half.under(loads, 1), dragged = half.under(loads, 0);
+      for (std::size_t i = 0; i < loads.size(); ++i) {
+        const LocalPlace& p = loads[i].place;
+        const double down = dot(half.axis(1), half.read(loads[i], pressed[i]));
         EXPECT_NEAR(down * 2 * half.tissue().reduced() * p.smeared / p.lattice.normal, 1.0, nu < 0.47 ? 0.01 : 0.02);
         for (const double a : {0.1, 0.25, 0.5, 1.0}) {
           LocalPlace at = p;
@@ -157,7 +175,7 @@ TEST(Smearing, ALatticeGivesThePunchOfTheHalfSpaceAnywhereOnIt) {
           const double whole = down + local_normal_compliance(at, half.tissue(), nullptr);
           worst = std::max(worst, std::abs(1 / (whole * 2 * half.tissue().reduced() * a) - 1));
         }
-        const double aside = dot(half.axis(0), half.read(load, half.under(load, 0)));
+        const double aside = dot(half.axis(0), half.read(loads[i], dragged[i]));
         for (const double a : {0.25, 0.5, 1.0}) {
           LocalPlace at = p;
           at.own = a;
@@ -165,9 +183,9 @@ TEST(Smearing, ALatticeGivesThePunchOfTheHalfSpaceAnywhereOnIt) {
           worst_aside = std::max(worst_aside, std::abs((2 - nu) / (8 * half.tissue().shear() * a) / whole - 1));
         }
       }
+      EXPECT_LT(worst, within) << nu;
+      EXPECT_LT(worst_aside, 0.015) << nu;
     }
-    EXPECT_LT(worst, within) << nu;
-    EXPECT_LT(worst_aside, 0.015) << nu;
   }
 }
 
@@ -190,8 +208,9 @@ TEST(Smearing, NeighboursActOnEachOtherAsOnTheHalfSpace) {
   Eigen::MatrixXd W(kContacts, kContacts);
   double worst = 0.0;
   const double self = 1 / (2 * half.tissue().reduced() * kOwn);
+  const auto pressed = half.under(loads, 1);
   for (int j = 0; j < kContacts; ++j) {
-    const std::vector<dvec3> u = half.under(loads[j], 1);
+    const std::vector<dvec3>& u = pressed[static_cast<std::size_t>(j)];
     for (int i = 0; i < kContacts; ++i) {
       const LocalPlace &at = loads[i].place, &other = loads[j].place;
       const Block local = local_compliance(at, other, half.tissue(), nullptr);
@@ -242,12 +261,17 @@ TEST(Smearing, UnderRigidMotionThePlaceOfACurvedBodyIsExact) {
 TEST(Smearing, ASlidPunchNeitherRipplesNorDrags) {
   const LatticeHalfSpace half(0.45, 4);
   constexpr double kOwn = 0.5, kStep = 0.05;
-  std::vector<double> whole;
+  std::vector<SmearedLoad> loads;
   for (int i = 0; i <= 40; ++i) {
     const dvec3 at = half.place(-1.0 + kStep * i, 0.37 * (-1.0 + kStep * i));
-    const SmearedLoad load = half.surface().load_at(at, half.axis(1), kOwn);
+    loads.push_back(half.surface().load_at(at, half.axis(1), kOwn));
+  }
+  const auto pressed = half.under(loads, 1);
+  std::vector<double> whole;
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const SmearedLoad& load = loads[i];
     const SmearedLoad* const one = &load;
-    whole.push_back(dot(half.axis(1), half.read(load, half.under(load, 1))) +
+    whole.push_back(dot(half.axis(1), half.read(load, pressed[i])) +
                     local_normal_compliance(load.place, half.tissue(), nullptr) +
                     half.surface().missing({&one, 1})(0, 0) / (M_PI * half.tissue().reduced()));
   }
@@ -295,9 +319,10 @@ TEST(Smearing, APunchOfPointsIsAPunchAndAnchorsDoNotChangeIt) {
       for (const SmearedLoad& load : loads) all.push_back(&load);
       const Eigen::MatrixXd missing = half.surface().missing(all) / (M_PI * half.tissue().reduced());
       Eigen::MatrixXd W(count, count);
+      const auto pressed = half.under(loads, 1);
       for (Eigen::Index j = 0; j < count; ++j) {
         const SmearedLoad& from = loads[static_cast<std::size_t>(j)];
-        const std::vector<dvec3> u = half.under(from, 1);
+        const std::vector<dvec3>& u = pressed[static_cast<std::size_t>(j)];
         for (Eigen::Index i = 0; i < count; ++i) {
           const SmearedLoad& to = loads[static_cast<std::size_t>(i)];
           const Block local = i == j ? local_self_compliance(to.place, half.tissue(), nullptr)

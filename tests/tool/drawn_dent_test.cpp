@@ -68,9 +68,9 @@ DrawnPress press_and_draw(const SplitBlock& block, double radius, double depth) 
   stage.device(probe).max_force = 100.0;
   stage.world.registry.get<Probe>(probe).coupling = {3000.0, 10.0};
   stage.prepare();
-  stage.lead(probe, dvec3(0, radius + 1e-3, 0), 0.05);
-  stage.lead(probe, dvec3(0, radius - depth, 0), 0.15);
-  stage.lead(probe, dvec3(0, radius - depth, 0), 0.35);
+  stage.lead(probe, dvec3(0, radius + 1e-3, 0), 0.02);
+  stage.lead(probe, dvec3(0, radius - depth, 0), 0.1);
+  stage.lead(probe, dvec3(0, radius - depth, 0), 0.2);
   DrawnPress out = drawn_now(stage, tissue);
   out.force = stage.contact_force(probe, tissue).y;
   out.depth = radius - stage.body(probe).as_tool()->handle().object_pose().position.y;
@@ -134,7 +134,7 @@ TEST(DrawnDents, UnderAFlatPunchTheSurfaceIsThePunchsOnCoarseCells) {
     const Entity punch = stage.add_rigid(cylinder_of_triangles(a), RigidBody{}, Pose{dvec3(0, 1e-3, 0)}, &handle);
     stage.prepare();
     stage.lead(punch, dvec3(0, -depth, 0), 0.1);
-    stage.lead(punch, dvec3(0, -depth, 0), 0.3);
+    stage.lead(punch, dvec3(0, -depth, 0), 0.15);
     const double force = stage.contact_force(punch, tissue).y;
     const DrawnPress press = drawn_now(stage, tissue);
     const LayerKernel layer(poisson);

@@ -34,10 +34,10 @@ std::vector<double> feel(const Level& level, const std::vector<dvec2>& places) {
   double time = 0.0;
   for (const dvec2 at : places) {
     for (const auto& [seconds, height] :
-         {std::pair{0.1, 0.003}, {0.1, 0.001}, {0.15, -kPalpationDepth}, {0.2, -kPalpationDepth}, {0.1, 0.003}}) {
+         {std::pair{0.05, 0.003}, {0.05, 0.001}, {0.1, -kPalpationDepth}, {0.15, -kPalpationDepth}, {0.05, 0.003}}) {
       time += seconds;
       path.rows.push_back({time, {at.x, height + kPalpationFinger, at.y}, {1, 0, 0, 0}});
-      if (seconds == 0.2) when.push_back(time - 0.01);
+      if (seconds == 0.15) when.push_back(time - 0.01);
     }
   }
   Schedule<World> touch(touch_schedule()), soft(soft_schedule());
@@ -64,25 +64,27 @@ TEST(Palpation, TheLumpIsFoundByTouchAloneWithinACell) {
   double cell = 0.0;
   for (LevelNode& node : level->nodes)
     if (node.soft_body) cell = node.soft_body->cell, node.soft_body->materials.clear();
-  const std::vector<double> without = feel(*level, places);
+  std::vector<dvec2> every_other;
+  for (std::size_t i = 0; i < places.size(); i += 2) every_other.push_back(places[i]);
+  const std::vector<double> without = feel(*level, every_other);
   // Where more is felt than at most places: its centre of gravity.
   std::vector<double> sorted = with;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
   const double usual = sorted[sorted.size() / 2], most = *std::max_element(with.begin(), with.end());
   dvec2 centre(0);
-  double sum = 0.0, most_without = 0.0, least_without = 1e9;
+  double sum = 0.0;
+  const auto [least_without, most_without] = std::minmax_element(without.begin(), without.end());
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double more = std::max(0.0, with[i] - usual - 0.3 * (most - usual));
     centre += more * places[i], sum += more;
-    most_without = std::max(most_without, without[i]), least_without = std::min(least_without, without[i]);
   }
   centre /= sum;
   std::printf("lump felt at (%.1f, %.1f) mm, is at (%.1f, %.1f); %.3f N over it, %.3f N usually, %.3f N without\n",
               1e3 * centre.x, 1e3 * centre.y, 1e3 * generate::kLump.x, 1e3 * generate::kLump.z, most, usual,
-              most_without);
+              *most_without);
   EXPECT_LT(length(centre - dvec2(generate::kLump.x, generate::kLump.z)), cell);
-  EXPECT_GT(most, 1.12 * usual);                 // more than what a hand tells apart, 7 to 10 %
-  EXPECT_LT(most_without, 1.1 * least_without);  // the cells themselves are not felt
+  EXPECT_GT(most, 1.12 * usual);                   // more than what a hand tells apart, 7 to 10 %
+  EXPECT_LT(*most_without, 1.1 * *least_without);  // the cells themselves are not felt
 }
 
 }  // namespace

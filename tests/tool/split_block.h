@@ -26,6 +26,9 @@ struct SplitBlock {
   std::optional<Deformable> law;         // of its dents
   std::optional<Primitive> shape;        // in its place, and its size
   std::function<float(vec3)> stiffness;  // [1] painted
+  double focus = 0.0;                    // [m] half width of a `focus` about the origin; 0: even cells
+  std::optional<Handle6> handle;         // bonded to it instead, at its bottom
+  Pose pose;
   double reduced() const { return young / (1 - poisson * poisson); }
 };
 
@@ -84,8 +87,14 @@ inline Entity add_block(ToolStage& stage, const SplitBlock& block) {
   body.rayleigh = {0.0, 0.01};
   body.friction_static = body.friction_sliding = block.friction;
   const auto wide = static_cast<float>(2 * block.half_width), deep = static_cast<float>(block.thickness);
-  body.pinned.add(vec3(-wide, -2 * deep, -wide));
-  body.pinned.add(vec3(wide, (block.shape ? -0.85f : -0.999f) * deep, wide));
+  if (block.focus > 0.0) {
+    body.focus.add(vec3(static_cast<float>(-block.focus)));
+    body.focus.add(vec3(static_cast<float>(block.focus)));
+  }
+  if (block.handle) node.handle = block.handle;
+  Box& bonded = block.handle ? node.handle->box : body.pinned;
+  bonded.add(vec3(-wide, -2 * deep, -wide));
+  bonded.add(vec3(wide, (block.shape && !block.handle ? -0.85f : -0.999f) * deep, wide));
   node.soft_body = body;
   if (block.law) node.deformable = *block.law;
   LevelMesh mesh{"block", {block.shape ? *block.shape : block_surface(block)}};
@@ -100,8 +109,16 @@ inline Entity add_block(ToolStage& stage, const SplitBlock& block) {
   body.tets = world.tet_meshes.add(std::move(parts->tets));
   const Entity entity = world.registry.create();
   world.registry.add(entity, Name{"tissue"});
-  world.registry.add(entity, Pose{});
+  world.registry.add(entity, block.pose);
   world.registry.add(entity, body);
+  if (node.handle) {
+    world.registry.add(entity, *node.handle);
+    HapticDevice device;
+    device.driver = DriverKind::kExternal;
+    device.position = block.pose.position, device.rotation = block.pose.rotation;
+    device.max_force = 1e9, device.max_slew = 1e12;
+    world.registry.add(entity, device);
+  }
   if (block.law) {
     DentLaw& law = world.registry.add(entity, DentLaw{*block.law});
     law.mesh = body.collision_mesh;
@@ -124,9 +141,9 @@ inline SpherePress press_sphere(const SplitBlock& block, double radius, double d
   stage.device(probe).max_force = 100.0;
   stage.world.registry.get<Probe>(probe).coupling = {3000.0, 10.0};
   stage.prepare();
-  stage.lead(probe, dvec3(at.x, radius + 1e-3, at.y), 0.05);
-  stage.lead(probe, dvec3(at.x, radius - depth, at.y), 0.15);
-  stage.lead(probe, dvec3(at.x, radius - depth, at.y), 0.35);
+  stage.lead(probe, dvec3(at.x, radius + 1e-3, at.y), 0.02);
+  stage.lead(probe, dvec3(at.x, radius - depth, at.y), 0.1);
+  stage.lead(probe, dvec3(at.x, radius - depth, at.y), 0.2);
   SpherePress out;
   const dvec3 on = stage.contact_force(probe, tissue);
   const auto* tool = stage.body(probe).as_tool();

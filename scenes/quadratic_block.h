@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Sparse>
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
@@ -40,16 +41,17 @@ class QuadraticBlock {
   struct Load {
     dvec3 force{0}, torque{0};  // [N], [N m] on the far plate, the latter about the origin
   };
-  // The far plate is moved by `way` from rest, in steps of a twelfth or less; empty if Newton fails.
+  // The far plate is moved by `way` from rest; empty if Newton fails.
   std::optional<dvec3> press(dvec3 way) {
     const std::optional<Load> load = carry([&](dvec3 p, double share) { return p + share * way; });
     if (!load) return std::nullopt;
     return load->force;
   }
-  // The same by any motion: place(rest, share) of the plate's points, share [1] from 0 to 1.
-  std::optional<Load> carry(const std::function<dvec3(dvec3, double)>& place) {
+  // The same by any motion: place(rest, share) of the plate's points, share [1] from 0 to 1. Steps are halved where
+  // Newton fails.
+  std::optional<Load> carry(const std::function<dvec3(dvec3, double)>& place, int steps = 4) {
     x_ = rest_;
-    double done = 0.0, step = 1.0 / 12;
+    double done = 0.0, step = 1.0 / steps;
     while (done < 1.0 - 1e-9) {
       const std::vector<dvec3> before = x_;
       step = std::min(step, 1.0 - done);
@@ -92,6 +94,7 @@ class QuadraticBlock {
     Eigen::VectorXd right = Eigen::VectorXd::Zero(3 * free_);
     force_.assign(x_.size(), dvec3(0));
     for (const auto& nodes : elements_) {
+      tangent_.fill(dmat3(0));
       const dvec3 u = rest_[nodes[1]] - rest_[nodes[0]], v = rest_[nodes[2]] - rest_[nodes[0]],
                   w = rest_[nodes[3]] - rest_[nodes[0]];
       const double six = dot(cross(u, v), w);
@@ -104,16 +107,16 @@ class QuadraticBlock {
         for (std::size_t i = 0; i < 4; ++i) g[i] = (4 * l[i] - 1) * b[i];
         for (std::size_t e = 0; e < 6; ++e)
           g[4 + e] = 4.0 * (l[kEdge[e][0]] * b[kEdge[e][1]] + l[kEdge[e][1]] * b[kEdge[e][0]]);
-        add(nodes, g, std::abs(six) / 24, entries, right);
+        add(nodes, g, std::abs(six) / 24, right);
       }
+      add_tangent(nodes, entries);
     }
     K_.resize(3 * free_, 3 * free_);
     K_.setFromTriplets(entries.begin(), entries.end());
     return right;
   }
 
-  void add(const std::array<std::uint32_t, 10>& nodes, const dvec3 (&g)[10], double volume,
-           std::vector<Eigen::Triplet<double>>& entries, Eigen::VectorXd& right) {
+  void add(const std::array<std::uint32_t, 10>& nodes, const dvec3 (&g)[10], double volume, Eigen::VectorXd& right) {
     dmat3 F(0);
     for (std::size_t i = 0; i < 10; ++i) F += outerProduct(x_[nodes[i]], g[i]);
     const dmat3 C(cross(F[1], F[2]), cross(F[2], F[0]), cross(F[0], F[1]));
@@ -125,16 +128,23 @@ class QuadraticBlock {
       if (row < 0) continue;
       for (int k = 0; k < 3; ++k) right[3 * row + k] += f[k];
       for (std::size_t j = 0; j < 10; ++j) {
-        const int column = row_[nodes[j]];
-        if (column < 0) continue;
+        if (row_[nodes[j]] > row) continue;  // the lower half, which the solver reads
         const dvec3 Fj = F * g[j], Cj = C * g[j], c = -psi.J * (F * cross(g[i], g[j]));
         dmat3 K = dmat3(2 * psi.I * dot(g[i], g[j])) + 4 * psi.II * outerProduct(Fi, Fj) +
                   2 * psi.IJ * (outerProduct(Fi, Cj) + outerProduct(Ci, Fj)) + psi.JJ * outerProduct(Ci, Cj);
         K += dmat3(0, c.z, -c.y, -c.z, 0, c.x, c.y, -c.x, 0);  // [c]x, by columns
-        for (int r = 0; r < 3; ++r)
-          for (int s = 0; s < 3; ++s) entries.emplace_back(3 * row + r, 3 * column + s, volume * K[s][r]);
+        tangent_[10 * i + j] += volume * K;
       }
     }
+  }
+  void add_tangent(const std::array<std::uint32_t, 10>& nodes, std::vector<Eigen::Triplet<double>>& entries) const {
+    for (std::size_t i = 0; i < 10; ++i)
+      for (std::size_t j = 0; j < 10; ++j) {
+        const int row = row_[nodes[i]], column = row_[nodes[j]];
+        if (column < 0 || column > row) continue;
+        for (int r = 0; r < 3; ++r)
+          for (int s = 0; s < 3; ++s) entries.emplace_back(3 * row + r, 3 * column + s, tangent_[10 * i + j][s][r]);
+      }
   }
 
   ElasticLaw law_;
@@ -144,6 +154,7 @@ class QuadraticBlock {
   std::vector<std::array<std::uint32_t, 10>> elements_;
   std::vector<int> row_;
   int free_ = 0;
+  std::array<dmat3, 100> tangent_;  // of an element, by pairs of its nodes
   Eigen::SparseMatrix<double> K_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
 };
