@@ -78,7 +78,7 @@ double given_by_weight(const SoftState& soft, dvec3 gravity, double T) {
   double sum = 0.0;
   for (const std::uint32_t i : soft.moving) {
     const RigidState* const body = soft.bodies[i]->as_rigid();
-    if (!body || body->joined.empty()) continue;
+    if (!body || body->joined.empty() || body->carried) continue;
     const Vector& v = body->velocity();
     sum += T * body->mass().mass * dot(gravity, dvec3(v[0], v[1], v[2]));
   }

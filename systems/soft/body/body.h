@@ -110,6 +110,7 @@ class Body {
   BodyKind kind = BodyKind::kBody;
   bool absent = false;     // no contacts: its pose is not known yet
   bool taken_out = false;  // removed by the owner of the run: no contacts, and not stepped
+  bool carried = false;    // of a rigid body: its weight is compensated, as a part of a tool (Joints::carry_parts)
   BodyLoads loads;
   std::vector<SphereTip> tips;      // of a probe made of spheres; else empty
   std::vector<const Body*> joined;  // connected to it by a joint: they do not collide
