@@ -203,7 +203,8 @@ void linearise(World& world, double T) {
   if (!world.tools || !world.soft) return;
   SoftState& soft = *world.soft;
   const double tick = 1.0 / world.simulation.touch_rate;
-  const FinishedStep step{soft.bodies, soft.contacts, soft.delassus, soft.problem, T, soft.undone_in(T)};
+  const double undone = soft.report.left_inside ? 0.0 : soft.undone_in(T);
+  const FinishedStep step{soft.bodies, soft.contacts, soft.delassus, soft.problem, T, undone};
   for (const auto& tool : world.tools->tools) {
     const std::uint32_t index = body_of(soft, tool->entity);
     const ToolBody* const body = tool_body(soft, index);
