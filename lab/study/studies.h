@@ -21,6 +21,7 @@
   STUDY(fidelity, "one indentation by P1, every shape and law, and by the FEM at four resolutions: force and surface") \
   STUDY(time_step, "the soft step: Euler, midpoint, BDF2 and their length against a converged motion, four scenes") \
   STUDY(collision, "local walks, the tree and brute force, on meshes up to two million triangles: us against misses") \
+  STUDY(coupling, "tissue and handle: one implicit system or staggered, springs or slaved nodes: stability, cost") \
   STUDY(scale, "a tick, a frame and a soft step, by vertices, moving vertices, tetrahedra and contacts: fitted powers")
 // clang-format on
 
