@@ -400,7 +400,7 @@ PLIANT_API pliant_status pliant_session_vertices(pliant_session* session, const 
 // Unit normals [1] of the deformed mesh, world frame: of the triangles around a vertex, weighted by their areas.
 PLIANT_API pliant_status pliant_session_normals(pliant_session* session, const char* object, float* out,
                                                 size_t capacity, size_t* count);
-// Forces of probes [N], world frame. Deformable surfaces alone.
+// Forces of contacts [N], world frame.
 PLIANT_API pliant_status pliant_session_vertex_forces(pliant_session* session, const char* object, float* out,
                                                       size_t capacity, size_t* count);
 // Indices into these vertices, three per triangle, counter-clockwise from outside. `capacity`, `count`: of indices.

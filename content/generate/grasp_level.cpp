@@ -45,7 +45,7 @@ Solid grasp_palm() {
 
 void add_hand_part(LevelNode& node) {
   node.rigid_body = RigidBody{};
-  node.rigid_body->density = 600.0;
+  node.rigid_body->density = 300.0;  // hollow: the hand feels little of its inertia
   node.rigid_body->friction_static = 0.9;
   node.rigid_body->friction_sliding = 0.8;
 }
@@ -58,7 +58,6 @@ void add_finger(Level& level, int number, const LevelNode& palm, std::int32_t ma
   LevelNode& node = add_shape(level, name, grasp_finger(), box, 0.0034, material);
   node.local = {hinge, quat(around)};
   add_hand_part(node);
-  node.rigid_body->density = 300.0;  // hollow: the hand moves its own weight alone
   LevelNode& joint = add_node(level, "joint_" + std::string(1, "abc"[number]));
   joint.local = {hinge, quat(around * glm::angleAxis(glm::radians(90.0), dvec3(1, 0, 0)))};
   joint.joint = Joint{};
@@ -78,27 +77,20 @@ struct GraspMoment {
   double grip;    // [1]
 };
 
-// A little up, so that the hand has lifted what then comes down with it; over the ball, closes, up by 20 cm, over and
-// back, down, opens, up.
+// Down over the ball, closes, up by 20 cm, over and back, down, opens, up.
 std::vector<GraspMoment> grasp_moments() {
-  const dvec3 low(0, kGraspBall, 0), high(0, kGraspBall + 0.20, 0), above(0, kGraspBall + 0.06, 0);
-  return {{0.0, above, 0, 0},  {0.2, above + dvec3(0, 0.008, 0), 0, 0},
-          {0.7, low, 0, 0},    {0.9, low, 0, 0},
-          {1.5, low, 0, 1},    {2.7, high, 0, 1},
-          {4.0, high, 180, 1}, {4.6, high, 180, 1},
-          {5.9, high, 0, 1},   {7.1, low, 0, 1},
-          {7.3, low, 0, 1},    {7.8, low, 0, 0},
-          {8.0, low, 0, 0},    {8.8, above, 0, 0},
-          {9.0, above, 0, 0}};
+  const dvec3 low(0, kGraspBall, 0), high(0, kGraspBall + 0.20, 0), above(0, kGraspBall + 0.03, 0);
+  return {{0.0, above, 0, 0},  {0.7, low, 0, 0},    {0.9, low, 0, 0},   {1.5, low, 0, 1},  {2.7, high, 0, 1},
+          {4.0, high, 180, 1}, {4.6, high, 180, 1}, {5.9, high, 0, 1},  {7.1, low, 0, 1},  {7.3, low, 0, 1},
+          {7.8, low, 0, 0},    {8.0, low, 0, 0},    {8.8, above, 0, 0}, {9.0, above, 0, 0}};
 }
 
 Path grasp_path() {
-  constexpr double kGraspRate = 100.0;  // [Hz] of rows
   const std::vector<GraspMoment> at = grasp_moments();
   Path out;
   out.turns = out.grips = true;
-  for (int row = 0; row <= static_cast<int>(std::lround(at.back().time * kGraspRate)); ++row) {
-    const double t = row / kGraspRate;
+  for (int row = 0; row <= static_cast<int>(std::lround(at.back().time * kFineRate)); ++row) {
+    const double t = row / kFineRate;
     GraspMoment now = at.front();
     for (std::size_t i = 1; i < at.size(); ++i) {
       const double s = smooth_step(at[i - 1].time, at[i].time, t);

@@ -14,8 +14,6 @@
 namespace pliant::generate {
 namespace {
 
-constexpr double kScriptRate = 100.0;  // [Hz] of rows
-
 // The mesh with the normals that the engine uses for rendering, so that every viewer shows the same edges. A vertex at
 // a crease is duplicated for each smooth part.
 Primitive with_normals(const std::string& name, const Net& net) {
@@ -45,11 +43,11 @@ Primitive with_normals(const std::string& name, const Net& net) {
 
 }  // namespace
 
-Path lead(const std::vector<Waypoint>& waypoints) {
+Path lead(const std::vector<Waypoint>& waypoints, double rate) {
   Path path;
-  const int rows = static_cast<int>(std::lround(waypoints.back().time * kScriptRate));
+  const int rows = static_cast<int>(std::lround(waypoints.back().time * rate));
   for (int row = 0; row <= rows; ++row) {
-    const double t = row / kScriptRate;
+    const double t = row / rate;
     dvec3 position = waypoints.front().position, turn = waypoints.front().turn;
     double grip = waypoints.front().grip;
     for (std::size_t i = 1; i < waypoints.size(); ++i) {
@@ -156,8 +154,8 @@ Status write_scene(const Level& level, const std::filesystem::path& folder) {
 }
 
 Status write_path(const std::vector<Waypoint>& path, const std::string& comment, const std::string& file,
-                  const std::filesystem::path& folder) {
-  return save_script(lead(path), comment, folder / file);
+                  const std::filesystem::path& folder, double rate) {
+  return save_script(lead(path, rate), comment, folder / file);
 }
 
 }  // namespace pliant::generate

@@ -23,8 +23,12 @@ struct Waypoint {
   double grip = 0.0;  // [1] 0 open to 1 closed
 };
 
-// Samples the path through the waypoints at 100 Hz; velocity and acceleration are continuous.
-Path lead(const std::vector<Waypoint>& waypoints);
+// [Hz] of rows. Between rows a device is at a constant velocity: a tool's inertia is felt as a blow at each row. Of
+// levels that show small forces: 250 Hz.
+inline constexpr double kScriptRate = 100.0, kFineRate = 250.0;
+
+// Samples the path through the waypoints; velocity and acceleration are continuous.
+Path lead(const std::vector<Waypoint>& waypoints, double rate = kScriptRate);
 
 Box around(dvec3 half);
 // A box with these half edges [m] and rounded edges and corners, centred at the origin.
@@ -57,6 +61,6 @@ void place(LevelNode& node, const Waypoint& at);
 Status write_scene(const Level& level, const std::filesystem::path& folder);
 // Writes the script beside it.
 Status write_path(const std::vector<Waypoint>& path, const std::string& comment, const std::string& file,
-                  const std::filesystem::path& folder);
+                  const std::filesystem::path& folder, double rate = kScriptRate);
 
 }  // namespace pliant::generate

@@ -635,7 +635,7 @@ std::vector<Key> handle_keys() {
                         "saturation of the coupling's force"));
   keys.push_back(number("coupling.max_torque", "N m", {kSaturationRange, {1e-3, 10.0}}, h(&H::max_torque),
                         "saturation of the coupling's torque"));
-  keys.push_back(flag("carried", h(&H::carried), "the hand does not feel the tool's weight"));
+  keys.push_back(flag("carried", h(&H::carried), "the hand does not feel the weight of the tool and of what its grip drives"));
   keys.push_back(
       choice("force", h(&H::force),
              "force in a touch tick: of the last soft step, of a linear model, or of contacts solved again"));

@@ -104,8 +104,8 @@ Status Session::vertex_forces(const std::string& object, std::vector<vec3>& out)
   SessionRun& p = *run_;
   const auto entity = p.find_object(object);
   if (!entity) return entity.error();
-  if (!p.world.registry.has<Deformable>(*entity)) return Error{"`" + object + "`", kNoSurface};
   if (p.clock()) p.rows.acquire();
+  p.look();
   const Mesh& mesh = *collision_mesh_of(p.world, *entity);
   std::vector<vec3> on_vertex(mesh.vertex_count, vec3(0));
   std::vector<float> copies(mesh.vertex_count, 0.0f);
@@ -115,6 +115,10 @@ Status Session::vertex_forces(const std::string& object, std::vector<vec3>& out)
       if (p.object_entities[contact.object] != *entity) continue;
       for (int k = 0; k < 3; ++k) on_vertex[row.vertices[i][k]] -= row.weights[i][k] * vec3(contact.force);
     }
+  for (const ContactMark& contact : p.view.contacts())
+    for (const auto& [side, sign] : {std::pair(&contact.a, 1.0f), std::pair(&contact.b, -1.0f)})
+      for (int k = 0; side->entity == *entity && k < 3; ++k)
+        on_vertex[mesh.triangles[side->triangle][k]] += sign * side->barycentric[k] * contact.force;
   for (const std::uint32_t v : mesh.of_source)
     if (v != kBorder) copies[v] += 1.0f;
   out.assign(mesh.of_source.size(), vec3(0));

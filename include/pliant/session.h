@@ -211,8 +211,9 @@ class Session {
   // Deformed vertices, world frame [m], in the order of the object's MeshData or file. An unused vertex is at the
   // object's origin.
   Status vertices(const std::string& object, std::vector<vec3>& out);
-  // The force on each of these vertices, world frame [N]: from the contacts of probes (Reading::kMostContacts each),
-  // distributed by barycentric coordinates. Only deformable surfaces.
+  // The force on each of these vertices, world frame [N], distributed by barycentric coordinates: on a deformable
+  // surface from the contacts of probes (Reading::kMostContacts each), on every object from body_contacts(). Their sum
+  // is that of these contacts' forces.
   Status vertex_forces(const std::string& object, std::vector<vec3>& out);
   // For a custom renderer: geometry once; the stream (nx, ny, nz, h) and to_world every frame. position = P0 + h N0,
   // normal = N0 + (nx, ny, nz), object frame (P1). For deformable surfaces. For a soft or rigid body it is only the

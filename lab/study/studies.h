@@ -22,6 +22,7 @@
   STUDY(time_step, "the soft step: Euler, midpoint, BDF2 and their length against a converged motion, four scenes") \
   STUDY(large_strain, "a cube squashed, pulled and sheared, by law and resolution, against quadratic tetrahedra: force") \
   STUDY(collision, "local walks, the tree and brute force, on meshes up to two million triangles: us against misses") \
+  STUDY(coupling, "tissue and handle: one implicit system or staggered, springs or slaved nodes: stability, cost") \
   STUDY(scale, "a tick, a frame and a soft step, by vertices, moving vertices, tetrahedra and contacts: fitted powers")
 // clang-format on
 

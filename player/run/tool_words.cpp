@@ -4,6 +4,7 @@
 
 #include "systems/soft/soft_state.h"
 #include "systems/soft/under_gravity.h"
+#include "systems/tool/begun_inside.h"
 #include "systems/tool/tool_touch_state.h"
 
 namespace pliant {
@@ -89,7 +90,9 @@ std::vector<Note> explain_soft_steps(const World& world, const SoftFigures& figu
     add("soft.began_inside",
         fmt::format("{} and {} begin {:.2f} mm inside each other{}", body_name(world, tally.inside_a),
                     body_name(world, tally.inside_b), tally.began_inside * 1e3,
-                    world.soft->bodies[tally.inside_a]->kind == BodyKind::kProbe
+                    begins_without_contact(*world.soft->bodies[tally.inside_a], *world.soft->bodies[tally.inside_b])
+                        ? ", and the first touches nothing until it has left"
+                    : world.soft->bodies[tally.inside_a]->kind == BodyKind::kProbe
                         ? ", where the probe is not felt as from outside"
                         : " and are pushed apart"),
         "move one of them in the level");

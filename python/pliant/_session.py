@@ -104,7 +104,7 @@ class Body(Named):
 
     @property
     def forces(self) -> NDArray[np.float32]:
-        """The probes' force on each vertex, (n, 3) [N], world frame: of deformable surfaces. A copy."""
+        """The contacts' force on each vertex, (n, 3) [N], world frame. A copy."""
         return self._session._vertex_forces(self.name)
 
     @property

@@ -17,6 +17,10 @@ constexpr SweepLimits kSweeps{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
 constexpr double kShortOf = 0.9;     // [1] of the motion up to a crossing
 constexpr double kLeastPart = 0.02;  // [1] of a step: a shorter remainder does not become a part
 
+// Steps between two attempts to push bodies out of each other that were wedged in the last one: an attempt that fails
+// costs several steps.
+constexpr std::uint64_t kAttempts = 30;
+
 constexpr double kSunken = 0.01;  // [1] of a body's diagonal: larger initial penetrations are reported
 
 void change(Body& body, const DeformableParameters& now) {
@@ -78,7 +82,7 @@ double given_by_weight(const SoftState& soft, dvec3 gravity, double T) {
   double sum = 0.0;
   for (const std::uint32_t i : soft.moving) {
     const RigidState* const body = soft.bodies[i]->as_rigid();
-    if (!body || body->joined.empty()) continue;
+    if (!body || body->joined.empty() || body->carried) continue;
     const Vector& v = body->velocity();
     sum += T * body->mass().mass * dot(gravity, dvec3(v[0], v[1], v[2]));
   }
@@ -151,7 +155,8 @@ void solve_contacts(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   const std::uint64_t begin = now_ns();
-  const double undone = soft.undone_in(tick.dt);
+  const bool wedged = soft.report.left_inside && soft.steps % kAttempts != 0;
+  const double undone = wedged ? 0.0 : soft.undone_in(tick.dt);
   build_problem(soft.bodies, soft.contacts, tick.dt, undone, soft.delassus, soft.problem);
   soft.times.delassus = ms_since(begin);
   const std::uint64_t built = now_ns();

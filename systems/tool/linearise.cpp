@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "systems/soft/body/rotation_vector.h"
 #include "systems/soft/body/tool_body.h"
 #include "systems/soft/soft_state.h"
+#include "systems/tool/begun_inside.h"
 #include "systems/tool/reduce/reduce_tool.h"
 #include "systems/tool/reduce/stiff_contacts.h"
 #include "systems/tool/tool_touch_state.h"
@@ -108,40 +107,6 @@ bool got_away(const ToolBody& body) {
   return length(linear(w)) > kRunaway || length(angular(w)) > kRunawayTurn;
 }
 
-// How often a body's surface winds around a point: 1 inside of a closed one, 0 outside (van Oosterom & Strackee 1983).
-double winding(const Body& body, dvec3 x) {
-  double angle = 0.0;
-  for (const uvec3 t : body.collision_mesh->triangles) {
-    const dvec3 a = body.surface_position[t.x] - x, b = body.surface_position[t.y] - x,
-                c = body.surface_position[t.z] - x;
-    const double la = length(a), lb = length(b), lc = length(c);
-    angle += std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-  }
-  return angle / (2 * std::numbers::pi);
-}
-
-// [m] To the nearest vertex.
-double depth_in(const Body& body, dvec3 x) {
-  double nearest = std::numeric_limits<double>::max();
-  for (const dvec3& p : body.surface_position) nearest = std::min(nearest, length(p - x));
-  return nearest;
-}
-
-// Records a probe whose first pose is inside a body: no contact is found there.
-void tally_beginning(SoftState& soft, std::size_t probe, dvec3 x) {
-  for (std::size_t i = 0; i < soft.bodies.size(); ++i) {
-    const Body& body = *soft.bodies[i];
-    if (i == probe || body.kind == BodyKind::kSurface || body.absent || body.taken_out ||
-        !body.collision_mesh->closed || winding(body, x) < 0.5)
-      continue;
-    const double depth = depth_in(body, x);
-    if (depth <= soft.tally.began_inside) continue;
-    soft.tally.began_inside = depth;
-    soft.tally.inside_a = static_cast<std::uint32_t>(probe);
-    soft.tally.inside_b = static_cast<std::uint32_t>(i);
-  }
-}
-
 // Sets the tool back to the device: if the touch clock requests it, or if the handle got away in the last step.
 bool set_back(SoftState& soft, ToolTouchState& tool, const ToolInput& input, ToolBody& body) {
   const bool away = got_away(body);
@@ -151,10 +116,16 @@ bool set_back(SoftState& soft, ToolTouchState& tool, const ToolInput& input, Too
   body.release_device();
   body.set_device(input.device.pose, Vector6::Zero());
   body.set_back();
-  if (body.absent) tally_beginning(soft, body_of(soft, tool.entity), input.device.pose.position);
-  body.absent = false;
+  if (body.absent) body.absent = begins_inside(soft, body_of(soft, tool.entity));
   ++tool.pending.set_backs;
   return true;
+}
+
+// Tools that are placed inside a body have no contacts until they have left it. A probe is placed by set_back.
+void find_whether_inside(SoftState& soft, const ToolTouchState& tool, ToolBody& body) {
+  const std::uint32_t index = body_of(soft, tool.entity);
+  if (soft.steps == 0 && !tool.is_probe) body.absent = begins_inside(soft, index);
+  if (body.absent && (tool.set_back > 0 || !tool.is_probe)) body.absent = still_inside(soft, index);
 }
 
 // Interpolates towards the touch clock's handle by `share`.
@@ -221,6 +192,7 @@ void take_inputs(World& world, double T) {
       continue;
     }
     if (soft.part == 0 && set_back(soft, *tool, input, *body)) continue;
+    if (soft.part == 0) find_whether_inside(soft, *tool, *body);
     if (!says_where(*tool, input)) continue;
     if (soft.part == 0) hear_wrench(*tool, input);
     bring(*tool, input, 1.0 / (soft.parts - soft.part), *body);
@@ -231,7 +203,8 @@ void linearise(World& world, double T) {
   if (!world.tools || !world.soft) return;
   SoftState& soft = *world.soft;
   const double tick = 1.0 / world.simulation.touch_rate;
-  const FinishedStep step{soft.bodies, soft.contacts, soft.delassus, soft.problem, T, soft.undone_in(T)};
+  const double undone = soft.report.left_inside ? 0.0 : soft.undone_in(T);
+  const FinishedStep step{soft.bodies, soft.contacts, soft.delassus, soft.problem, T, undone};
   for (const auto& tool : world.tools->tools) {
     const std::uint32_t index = body_of(soft, tool->entity);
     const ToolBody* const body = tool_body(soft, index);

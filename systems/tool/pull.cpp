@@ -56,27 +56,11 @@ TriangleFoot foot_on_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
   return best;
 }
 
-// The point of the current surface nearest to `p`.
-SurfacePoint nearest_point(const Body& body, dvec3 p) {
-  SurfacePoint best;
-  double least = std::numeric_limits<double>::max();
-  for (std::uint32_t i = 0; i < body.collision_mesh->triangles.size(); ++i) {
-    const uvec3 t = body.collision_mesh->triangles[i];
-    const dvec3 a = body.surface_position[t.x], b = body.surface_position[t.y], c = body.surface_position[t.z];
-    const TriangleFoot found = foot_on_triangle(p, a, b, c);
-    const double away = length(found.point - p);
-    if (!(away < least)) continue;
-    least = away;
-    best = {i, found.barycentric, found.point};
-  }
-  return best;
-}
-
 // Rigid body: the point. Soft body: the surface around it that faces the same way.
 void take_hold(const Body& body, dvec3 at, Pull& pull) {
   pull.parts.clear();
   if (body.collision_mesh->triangles.empty()) return;
-  const SurfacePoint middle = nearest_point(body, at);
+  const SurfacePoint middle = nearest_on(body, at);
   pull.parts.push_back({middle, 1.0});
   const double radius = kPullPatch * static_cast<double>(body.collision_mesh->box.diagonal());
   if (body.size() == 6) return;
@@ -167,6 +151,21 @@ void pull_body(ToolTouchState& tool, const ToolInput& input, Body& body, double 
 }
 
 }  // namespace
+
+SurfacePoint nearest_on(const Body& body, dvec3 p) {
+  SurfacePoint best;
+  double least = std::numeric_limits<double>::max();
+  for (std::uint32_t i = 0; i < body.collision_mesh->triangles.size(); ++i) {
+    const uvec3 t = body.collision_mesh->triangles[i];
+    const dvec3 a = body.surface_position[t.x], b = body.surface_position[t.y], c = body.surface_position[t.z];
+    const TriangleFoot found = foot_on_triangle(p, a, b, c);
+    const double away = length(found.point - p);
+    if (!(away < least)) continue;
+    least = away;
+    best = {i, found.barycentric, found.point};
+  }
+  return best;
+}
 
 dvec3 pull_force(dvec3 stretch, double stiffness, double most) {
   const double force = stiffness * length(stretch);

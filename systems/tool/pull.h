@@ -9,6 +9,7 @@
 
 #include "components/world.h"
 #include "runtime/schedule.h"
+#include "systems/soft/body/body.h"
 
 namespace pliant {
 
@@ -18,6 +19,9 @@ inline constexpr double kPullComesIn = 0.15;  // [s] ramp of the spring; shorter
 
 // [N] of a spring of `stiffness` [N/m] at a stretch [m], saturated like a coupling.
 dvec3 pull_force(dvec3 stretch, double stiffness, double most);
+
+// The point of the body's current surface nearest to `p` [m] world.
+SurfacePoint nearest_on(const Body& body, dvec3 p);
 
 // Soft clock, between free_motion and find_contacts.
 void pull_bodies(World& world, Tick tick);

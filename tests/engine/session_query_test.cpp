@@ -149,6 +149,30 @@ TEST(SessionQuery, ContactsNameBothSidesWithDepthAndVertex) {
   EXPECT_TRUE(by_finger);
 }
 
+TEST(SessionQuery, ForcesOnVerticesAddUpToThoseOfTheContacts) {
+  Session session = settled();
+  std::vector<BodyContact> contacts;
+  ASSERT_TRUE(session.body_contacts(contacts));
+  dvec3 of_all(0);
+  for (const std::string name : {"liver", "box", "floor"}) {
+    std::vector<vec3> force;
+    ASSERT_TRUE(session.vertex_forces(name, force));
+    dvec3 sum(0), of_contacts(0);
+    for (const vec3 f : force) sum += dvec3(f);
+    for (const BodyContact& contact : contacts) {
+      if (contact.a.object == object_of(session, name)) of_contacts += contact.force;
+      if (contact.b.object == object_of(session, name)) of_contacts -= contact.force;
+    }
+    EXPECT_GT(length(of_contacts), 0.1) << name;
+    EXPECT_LT(length(sum - of_contacts), 1e-5) << name;
+    if (name == "liver") EXPECT_LT(force[2].y + force[3].y + force[6].y + force[7].y, 0.0f) << "pressed on its top";
+    of_all += sum;
+  }
+  const double pressed = session.reading("finger")->force.y;
+  EXPECT_GT(pressed, 0.05);
+  EXPECT_NEAR(of_all.y, -pressed, 0.05 * pressed) << "all other forces are in pairs";
+}
+
 TEST(SessionQuery, ASurfacesContactSaysItsTriangleAndNearestVertex) {
   Session session = opened(press_scene());
   ASSERT_TRUE(session.move("finger", {0.0113, 0.001, 0.0077}));

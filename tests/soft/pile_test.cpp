@@ -167,6 +167,40 @@ TEST(BoxPile, WhatIsDroppedIntoATrayStaysInItAndComesToRest) {
   EXPECT_LT(pile.fastest(), 2e-2);
 }
 
+// Wedged between each other and the walls, they cannot all be pushed out of each other. Only 27: 64 rest as well.
+TEST(BoxPile, BoxesAtRandomInABinRestWithSolutionsThatConverge) {
+  BoxPile pile;
+  for (const double side : {-1.0, 1.0}) {
+    pile.wall(dvec3(0.02, 0.4, 0.2), dvec3(0.085 * side, 0.2, 0));
+    pile.wall(dvec3(0.2, 0.4, 0.02), dvec3(0, 0.2, 0.085 * side));
+  }
+  for (int i = 0; i < 27; ++i) {
+    const dvec3 r = tets::scatter(static_cast<std::uint32_t>(i));
+    pile.rigid({0.047 * (i % 3 - 1), 0.04 + 0.062 * (i / 9), 0.047 * (i / 3 % 3 - 1)},
+               glm::angleAxis(M_PI * r.x, normalize(r)));
+  }
+  const auto energy = [&] {  // [J]
+    double sum = 0.0;
+    for (const Entity e : pile.bodies) {
+      const RigidState& box = *pile.stage.body(e).as_rigid();
+      sum += box.kinetic_energy() + box.mass().mass * 9.81 * box.centre().y;
+    }
+    return sum;
+  };
+  pile.run(50 * kPileStep);
+  const std::uint64_t in_falling = pile.tally().unconverged;
+  double before = energy();
+  for (int i = 0; i < 40; ++i) {
+    pile.stage.step();
+    const double now = energy();
+    EXPECT_LT(now, before + 1e-8) << "[J] in step " << i;
+    before = now;
+  }
+  EXPECT_EQ(pile.tally().unconverged, in_falling);
+  EXPECT_LT(pile.fastest(), 1e-4);
+  for (std::size_t i = 0; i < pile.bodies.size(); ++i) EXPECT_GT(pile.lowest(i), -0.02 * kBoxSize) << i;
+}
+
 // A soft block dragged over the floor by its weight, with and without a pebble at rest half a metre away.
 TEST(BoxPile, APebbleElsewhereChangesNothing) {
   const auto slide = [](bool pebble) {

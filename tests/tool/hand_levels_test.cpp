@@ -71,6 +71,8 @@ TEST(HandLevels, ForcepsLiftAVesselAndPeelItOffItsBed) {
     for (const dvec3& x : scene.body("vessel").surface_position) y = std::max(y, x.y);
     return y;
   };
+  scene.run(1.1);
+  EXPECT_LT(scene.largest, 0.01) << "[N] in free air";
   scene.run(1.2);
   [[maybe_unused]] const double lay = free_end();
   EXPECT_EQ(bonds(), std::string(13, '=')) << "whole until it is taken";

@@ -73,21 +73,30 @@ TEST(ProbeTool, OnAFixedBodyItsCouplingIsFelt) {
   }
 }
 
-// No contact is found in the depth of a body.
-TEST(ProbeTool, AFirstPoseInsideABodyIsRecorded) {
-  for (const double y : {-0.05, 0.05}) {
-    ToolStage stage(kSoftStep);
-    add_fixed(stage, dvec3(0.2, 0.2, 0.2), dvec3(0, -0.1, 0));
-    const Entity probe = add_probe(stage, {0.003, y, 0.002}, 0.004);
-    stage.prepare();
-    stage.lead(probe, dvec3(0.003, y, 0.002), 0.1);
-    const SoftTally& tally = stage.world.soft->tally;
-    if (y > 0.0) {
-      EXPECT_EQ(tally.began_inside, 0.0);
-      continue;
+// It feels nothing until it has left, and then as ever.
+TEST(ProbeTool, AFirstPoseInsideARigidBodyIsNotFeltUntilItIsLeft) {
+  for (const double radius : {5e-4, 0.004}) {              // the first: a point
+    for (const double y : {-0.05, -0.004, 0.002, 0.05}) {  // deep, just below, half in, outside
+      SCOPED_TRACE(y);
+      const bool inside = y < radius;
+      ToolStage stage(kSoftStep);
+      add_fixed(stage, dvec3(0.2, 0.2, 0.2), dvec3(0, -0.1, 0));
+      const Entity probe = add_probe(stage, {0.003, y, 0.002}, radius > 1e-3 ? radius : 0.0);
+      stage.prepare();
+      double most = 0.0;
+      const auto feel = [&] { most = std::max(most, length(stage.read(probe).force)); };
+      stage.lead(probe, dvec3(0.003, y, 0.002), 0.1, feel);
+      const SoftTally& tally = stage.world.soft->tally;
+      EXPECT_EQ(stage.body(probe).absent, inside);
+      if (inside) EXPECT_NEAR(tally.began_inside, radius - y, 2e-4);
+      if (inside) EXPECT_EQ(stage.world.soft->bodies[tally.inside_a]->entity, probe);
+      stage.lead(probe, dvec3(0.003, 0.9 * y + 0.003, 0.002), 0.03);  // its start is a jerk of the hand
+      stage.lead(probe, dvec3(0.003, 0.03, 0.002), 0.27, feel);
+      EXPECT_LT(most, 0.02) << "[N] on its way out: what is left of that";
+      stage.lead(probe, dvec3(0.003, radius - 2e-3, 0.002), 0.3);
+      stage.lead(probe, dvec3(0.003, radius - 2e-3, 0.002), 0.2);
+      EXPECT_GT(stage.read(probe).force.y, 0.5 * law(stage, probe, 2e-3)) << "from outside";
     }
-    EXPECT_GT(tally.began_inside, 0.05);
-    EXPECT_EQ(stage.world.soft->bodies[tally.inside_a]->entity, probe);
   }
 }
 

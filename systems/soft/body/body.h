@@ -108,8 +108,9 @@ class Body {
   std::vector<dvec3> surface_velocity;   // [m/s] world, of the free motion after free_step(); for predicting contacts
   double friction_static = 0.4, friction_sliding = 0.3;  // [1]
   BodyKind kind = BodyKind::kBody;
-  bool absent = false;     // no contacts: its pose is not known yet
+  bool absent = false;     // no contacts: its pose is not known yet, or it began inside a body (begun_inside.h)
   bool taken_out = false;  // removed by the owner of the run: no contacts, and not stepped
+  bool carried = false;    // of a rigid body: its weight is compensated, as a part of a tool (Joints::carry_parts)
   BodyLoads loads;
   std::vector<SphereTip> tips;      // of a probe made of spheres; else empty
   std::vector<const Body*> joined;  // connected to it by a joint: they do not collide

@@ -80,7 +80,7 @@ void RigidState::free_step(double T, dvec3 gravity) {
   inverse_inertia_ = inverse_inertia(rotation_);
   const dvec3 spin = inverse_inertia_ * angular_momentum_;
   start_ << linear_.x, linear_.y, linear_.z, spin.x, spin.y, spin.z;
-  const dvec3 v = linear_ + T * gravity;
+  const dvec3 v = carried ? linear_ : linear_ + T * gravity;
   spin_ = free_turn(T), begun_ = angular_momentum_;
   velocity_ << v.x, v.y, v.z, spin_.x, spin_.y, spin_.z;
   if (stiffened_ != dmat3(0.0)) turn_stiffly();

@@ -17,4 +17,8 @@ namespace pliant {
 void split_contacts(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts,
                     ContactProblem& problem);
 
+// Contacts of one pair of bodies, and which have slipped far enough to break loose by themselves.
+void find_patches(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts, double T,
+                  ContactProblem& problem);
+
 }  // namespace pliant

@@ -108,6 +108,7 @@ struct SweepReport {
   double residual = 0.0;
   bool settled = true;  // the residual of every part is within its tolerance
   bool in_time = true;
+  bool left_inside = false;  // of a soft step: its penetrations were not to be undone, or could not (solve_and_apply)
 };
 SweepReport solve(ContactProblem& problem, const SweepLimits& limits);
 

@@ -16,7 +16,6 @@
 namespace pliant {
 namespace {
 
-constexpr double kSlipLength = 0.3;   // [mean edges] of slip at the static limit: then a contact breaks loose by itself
 constexpr int kRoundsUnsettled = 2;   // rounds after which a solution that did not converge is not extended
 constexpr int kTipRoundsOfSolve = 8;  // of a probe's tips, whose laws are not linear: three are usual
 constexpr double kTipSettled = 1e-5;  // [1] of their forces
@@ -171,30 +170,11 @@ void find_bias(const std::vector<std::unique_ptr<Body>>& bodies, const std::vect
   }
 }
 
-// Contacts of one pair of bodies, and which have slipped far enough to break loose by themselves.
-void find_patches(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<ContactPoint>& contacts, double T,
-                  ContactProblem& problem) {
-  std::vector<std::pair<std::uint64_t, int>> of_pair;
+// The guess of a solve: the last step's impulses.
+void take_impulses(const std::vector<ContactPoint>& contacts, ContactProblem& problem) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const auto [low, high] = std::minmax(contacts[i].body_a, contacts[i].body_b);
-    of_pair.emplace_back(std::uint64_t{low} << 32 | high, static_cast<int>(i));
-  }
-  std::sort(of_pair.begin(), of_pair.end());
-  problem.patch.resize(contacts.size()), problem.loose.resize(contacts.size());
-  problem.slipped.resize(contacts.size());
-  for (std::size_t k = 0; k < of_pair.size(); ++k) {
-    const auto i = static_cast<std::size_t>(of_pair[k].second);
-    const bool first = k == 0 || of_pair[k].first != of_pair[k - 1].first;
-    problem.patch[i] = first ? of_pair[k].second : problem.patch[static_cast<std::size_t>(of_pair[k - 1].second)];
-    const ContactPoint& c = contacts[i];
-    const float edge =
-        std::min(bodies[c.body_a]->collision_mesh->mean_edge, bodies[c.body_b]->collision_mesh->mean_edge);
-    const bool tissue = bodies[c.body_a]->as_tissue() || bodies[c.body_b]->as_tissue();
-    problem.slipped[i] = tissue ? c.slipped / T : HUGE_VAL;
-    // The tick solves a tool's contacts one by one.
-    const auto held = [&](std::uint32_t b) { return bodies[b]->as_tool() && bodies[b]->as_tool()->has_handle(); };
-    const bool tool = held(c.body_a) || held(c.body_b);
-    problem.loose[i] = tool || c.slipped > kSlipLength * static_cast<double>(edge);
+    for (int k = 0; k < 3; ++k) problem.impulse[3 * static_cast<Eigen::Index>(i) + k] = contacts[i].impulse[k];
+    problem.sliding[i] = contacts[i].sliding;
   }
 }
 
@@ -241,6 +221,24 @@ void pass_first_stage(const std::vector<std::unique_ptr<Body>>& bodies, double T
     bodies[b]->second_stage();
   }
   find_bias(bodies, contacts, T, beta, delassus, problem);
+}
+
+// Bodies that are wedged between others cannot all be pushed out of them: no impulses are enough, and they grow with
+// every sweep. Then no penetration is undone, and `beta` is 0 from here on: resting is always possible. Not with
+// joints: grips would sink in.
+SweepReport solve_undoing(const std::vector<std::unique_ptr<Body>>& bodies, double T, const SweepLimits& limits,
+                          const Delassus& delassus, const std::vector<ContactPoint>& contacts, ContactProblem& problem,
+                          double& beta) {
+  const SweepReport report = solve(problem, limits);
+  const auto is_deep = [](const ContactPoint& c) { return c.depth > 0.0; };
+  const auto is_joint = [](const ContactPoint& c) { return c.hold.joint >= 0; };
+  if (report.settled || !(beta > 0.0) || std::none_of(contacts.begin(), contacts.end(), is_deep) ||
+      std::any_of(contacts.begin(), contacts.end(), is_joint))
+    return report;
+  beta = 0.0;
+  find_bias(bodies, contacts, T, beta, delassus, problem);
+  take_impulses(contacts, problem);
+  return solve(problem, limits);
 }
 
 // Updates the contacts' laws to their predicted normals and gaps. An end gap was predicted with the velocities of the
@@ -294,11 +292,10 @@ void build_problem(const std::vector<std::unique_ptr<Body>>& bodies, const std::
     const ContactPoint& c = contacts[i];
     if (!problem.most.empty()) problem.most[i] = c.hold.most;
     if (c.hold.axes != 0) problem.held[i] = c.hold.axes;
-    for (int k = 0; k < 3; ++k) problem.impulse[3 * static_cast<Eigen::Index>(i) + k] = c.impulse[k];
     problem.mu_static[i] = c.mu_static;
     problem.mu_sliding[i] = c.mu_sliding;
-    problem.sliding[i] = c.sliding;
   }
+  take_impulses(contacts, problem);
   find_patches(bodies, contacts, T, problem);
 }
 
@@ -321,7 +318,7 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
   problem.own.clear();
   const double free_energy = joints ? joints->kinetic_energy(bodies) : 0.0;
   pass_first_stage(bodies, T, beta, limits, delassus, contacts, problem);
-  SweepReport report = solve(problem, limits);
+  SweepReport report = solve_undoing(bodies, T, limits, delassus, contacts, problem, beta);
   const auto solve_anew = [&] {
     build_problem(bodies, contacts, T, beta, delassus, problem);
     pass_first_stage(bodies, T, beta, limits, delassus, contacts, problem);
@@ -386,6 +383,7 @@ SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Pr
   resist_rolling(bodies, contacts, delassus);
   keep_strain(bodies, T, delassus, problem, contacts);
   keep_slip(problem, T, contacts);
+  report.left_inside = beta == 0.0;
   return report;
 }
 

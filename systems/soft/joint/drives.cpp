@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/soft_body.h"
+#include "systems/soft/body/rigid_state.h"
 #include "systems/soft/joint/joints.h"
 
 namespace pliant {
@@ -40,6 +42,22 @@ void Joints::drive(const std::vector<std::unique_ptr<Body>>& bodies, JointState&
   const double was = state.target;
   state.target = rest_at(state.joint, state.grip, tick.time + tick.dt);
   state.report.fed += held_by(state.joint, at - state.target) - held_by(state.joint, at - was);
+}
+
+void Joints::carry_parts(const World& world, const std::vector<std::unique_ptr<Body>>& bodies) const {
+  for (bool grew = true; grew;) {
+    grew = false;
+    for (const JointState& state : joints_) {
+      const Handle6* const tool = world.registry.find<Handle6>(state.joint.hand);
+      if (!tool || !tool->carried || state.joint.strength > 0.0) continue;
+      Body &a = *bodies[state.a.body], &b = *bodies[state.b.body];
+      const auto is_part = [&](const Body& body) { return body.carried || body.entity == state.joint.hand; };
+      const auto carry = [&](const Body& part, Body& next) {
+        if (is_part(part) && next.as_rigid() && !next.carried) next.carried = grew = true;
+      };
+      carry(a, b), carry(b, a);
+    }
+  }
 }
 
 void Joints::set_grip(Entity hand, double grip) {

@@ -129,6 +129,7 @@ void Joints::find_rows(const std::vector<std::unique_ptr<Body>>& bodies, const J
 Status Joints::prepare(const World& world, std::vector<std::unique_ptr<Body>>& bodies) {
   for (auto [entity, joint] : world.registry.view<Joint>())
     if (Status s = add(world, entity, joint, bodies); !s) return s;
+  carry_parts(world, bodies);
   return Done{};
 }
 

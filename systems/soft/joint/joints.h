@@ -108,6 +108,8 @@ class Joints {
   using Rows = std::vector<Row>;
 
   Status add(const World& world, Entity entity, const Joint& joint, std::vector<std::unique_ptr<Body>>& bodies);
+  // Rigid bodies that a tool's grip drives are parts of the tool: if its weight is compensated, so is theirs.
+  void carry_parts(const World& world, const std::vector<std::unique_ptr<Body>>& bodies) const;
   // After a step of T [s] with the bodies' current velocities; 0: now.
   void find_rows(const std::vector<std::unique_ptr<Body>>& bodies, const JointState& state, double T, Rows& out) const;
   static SurfacePoint point_of(const std::vector<std::unique_ptr<Body>>& bodies, const Side& side, std::size_t i,
