@@ -72,6 +72,13 @@ HandAxes axes_of(const HandBones& hand) {
   return out;
 }
 
+// The axis about which a bone bends towards the palm; of a bone that points there already, that of a straight one.
+dvec3 bending_axis(const HandAxes& axes, dvec3 along) {
+  const dvec3 axis = cross(along, axes.palmar), straight = cross(axes.along, axes.palmar);
+  return length(axis) > 0.1 * length(along) ? normalize(axis)
+                                            : normalize(straight - along * (dot(straight, along) / dot(along, along)));
+}
+
 // [m] From the middle part of a segment to the nearest vertex of the mesh. All in the object frame.
 double flesh_around(const std::vector<dvec3>& skin, dvec3 a, dvec3 b) {
   double least = 1e9;
@@ -82,9 +89,9 @@ double flesh_around(const std::vector<dvec3>& skin, dvec3 a, dvec3 b) {
   return least;
 }
 
-BoneBox bone_between(const std::vector<dvec3>& skin, dvec3 a, dvec3 b, dvec3 palmar) {
+BoneBox bone_between(const std::vector<dvec3>& skin, dvec3 a, dvec3 b, const HandAxes& axes) {
   const double flesh = flesh_around(skin, a, b), half = 0.5 * (kBoneEnd - kBoneBegin) * length(b - a);
-  const dvec3 along = normalize(b - a), aside = normalize(cross(along, palmar)), back = cross(along, aside);
+  const dvec3 along = normalize(b - a), aside = bending_axis(axes, along), back = cross(along, aside);
   const double thick = 0.5 * (kBoneBack + kBonePalm) * flesh, aside_by = kBoneAside * flesh;
   return {0.5 * (a + b) + 0.5 * (kBoneBack - kBonePalm) * flesh * back,
           {along, aside, back},
@@ -139,11 +146,12 @@ void hold_nodes(std::vector<DBox>& boxes, const std::vector<dvec3>& nodes) {
 
 dvec3 hinge_axis(const HandBones& hand, const HandAxes& axes, std::size_t digit) {
   const std::array<dvec3, 4>& at = hand.digit[digit].joint;
-  if (digit > 0) return normalize(cross(at[1] - at[0], axes.palmar));
+  if (digit > 0) return bending_axis(axes, at[1] - at[0]);
   // A thumb closes towards the middle finger, in front of the palm.
   const double wide = length(hand.digit[4].joint[0] - hand.digit[1].joint[0]);
   const dvec3 meets = 0.5 * (hand.digit[2].joint[0] + hand.digit[3].joint[0]) + 0.6 * wide * axes.palmar;
-  return normalize(cross(at[3] - at[0], meets - at[3]));
+  const dvec3 along = at[3] - at[0], way = meets - at[3], axis = cross(along, way);
+  return length(axis) > 0.1 * length(along) * length(way) ? normalize(axis) : bending_axis(axes, along);
 }
 
 void add_hinges(Level& level, const std::string& tool, const HandBones& hand, const HandAxes& axes) {
@@ -187,7 +195,7 @@ Status put_on_bones(Level& level, std::int32_t number, const HandBones& hand) {
   std::vector<DBox> boxes{inscribed(palm_between(skin, local, axes))};
   for (const DigitBones& digit : local.digit)
     for (std::size_t i = 0; i < 3; ++i)
-      boxes.push_back(inscribed(bone_between(skin, digit.joint[i], digit.joint[i + 1], axes.palmar)));
+      boxes.push_back(inscribed(bone_between(skin, digit.joint[i], digit.joint[i + 1], axes)));
   keep_apart(boxes);
   SoftBody& body = *node.soft_body;
   if (body.cell == 0.0 && body.mesh.empty()) {

@@ -112,6 +112,9 @@ Result<HandBones> bones_of_skin(const Level& level, std::int32_t node) {
     if (!digit) return digit.error();
     out.digit[i] = std::move(*digit);
   }
+  const dvec3 along = out.digit[2].joint[0] - out.wrist, across = out.digit[4].joint[0] - out.digit[1].joint[0];
+  if (!(length(cross(along, across)) > kShortest * size * size))
+    return Error{where, "has a skin whose wrist and knuckles are in one line", "place them as those of a hand"};
   return out;
 }
 

@@ -29,7 +29,7 @@ HandBones bones_of_solid() {
 
 // Palm up it closes, rises and tilts with the ball, comes back and opens.
 std::vector<Waypoint> hand_grip_path() {
-  const dvec3 low(0, 0.10, 0), high(0, 0.16, 0), up(0, 0, 180), tilted(0, 0, 145);
+  const dvec3 low(0, 0.10, 0), high(0, 0.13, 0), up(0, 0, 180), tilted(0, 0, 145);
   return {{0.0, low, up, 0},        {0.1, low, up, 0},   {0.6, low, up, 0.8}, {0.8, low, up, 0.8},
           {1.5, high, tilted, 0.8}, {2.2, low, up, 0.8}, {2.8, low, up, 0},   {3.0, low, up, 0}};
 }
@@ -61,7 +61,7 @@ Result<Level> hand_grip() {
     for (dvec3& joint : digit.joint) joint = begin.position + turned * joint;
   if (Status s = put_on_bones(level, number, bones); !s) return s.error();
   level.nodes[static_cast<std::size_t>(number)].device = script_device("hand_grip.csv", 10.0);
-  add_view(level, {-0.22, 0.22, -0.30}, {0.0, 0.11, -0.04}, "sky.exr", {0.5, 0.8, -0.4});
+  add_view(level, {-0.22, 0.23, -0.30}, {0.0, 0.125, -0.04}, "sky.exr", {0.5, 0.8, -0.4});
   return level;
 }
 

@@ -225,7 +225,7 @@ std::string only_drawn(const Level& level, const std::vector<std::int32_t>& all,
 
 Result<std::int32_t> make_hand(Level& level, std::int32_t node, const Plan& plan) {
   if (const Status s = make_soft(level, node, soft_body_of(*plan.preset)); !s) return s.error();
-  put_on_bones(level, node, *plan.hand);
+  if (const Status s = put_on_bones(level, node, *plan.hand); !s) return s.error();
   return node;
 }
 
