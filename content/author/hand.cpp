@@ -65,15 +65,19 @@ double join(double a, double b) {
   return std::min(a, b) - 0.25 * kBlend * h * h;
 }
 
+// The fingers from the index on, then the thumb.
+std::array<Digit, 5> hand_digits() {
+  return {{make_digit({-0.036, 0.0, -0.030}, -9.0, {0.044, 0.026, 0.020}, {6.0, 16.0, 14.0}, 0.0088),
+           make_digit({-0.012, 0.001, -0.032}, -2.0, {0.048, 0.029, 0.021}, {5.0, 15.0, 14.0}, 0.0092),
+           make_digit({0.012, 0.001, -0.032}, 4.0, {0.046, 0.027, 0.021}, {6.0, 16.0, 14.0}, 0.0088),
+           make_digit({0.035, -0.001, -0.030}, 12.0, {0.038, 0.021, 0.018}, {8.0, 18.0, 14.0}, 0.0082),
+           make_digit({-0.030, -0.004, 0.014}, -52.0, {0.034, 0.026, 0.022}, {14.0, 10.0, 8.0}, 0.0100)}};
+}
+
 }  // namespace
 
 Solid hand_solid() {
-  const std::array<Digit, 5> digits = {
-      make_digit({-0.036, 0.0, -0.030}, -9.0, {0.044, 0.026, 0.020}, {6.0, 16.0, 14.0}, 0.0088),
-      make_digit({-0.012, 0.001, -0.032}, -2.0, {0.048, 0.029, 0.021}, {5.0, 15.0, 14.0}, 0.0092),
-      make_digit({0.012, 0.001, -0.032}, 4.0, {0.046, 0.027, 0.021}, {6.0, 16.0, 14.0}, 0.0088),
-      make_digit({0.035, -0.001, -0.030}, 12.0, {0.038, 0.021, 0.018}, {8.0, 18.0, 14.0}, 0.0082),
-      make_digit({-0.030, -0.004, 0.014}, -52.0, {0.034, 0.026, 0.022}, {14.0, 10.0, 8.0}, 0.0100)};
+  const std::array<Digit, 5> digits = hand_digits();
   return [digits](dvec3 p) {
     const double middle = palm(p);
     double nearest = middle;
@@ -82,6 +86,13 @@ Solid hand_solid() {
       nearest = std::min(nearest, join(middle, knuckle(p, digits[finger])));
     return nearest;
   };
+}
+
+std::array<std::array<dvec3, 4>, 5> hand_joints() {
+  const std::array<Digit, 5> digits = hand_digits();
+  std::array<std::array<dvec3, 4>, 5> out;
+  for (std::size_t i = 0; i < 5; ++i) out[(i + 1) % 5] = digits[i].joint;
+  return out;
 }
 
 Box hand_box() {

@@ -1,6 +1,8 @@
 // A hand as a solid. The palm blends with the four fingers and the thumb; the digits do not blend with one another.
 #pragma once
 
+#include <array>
+
 #include "content/author/solid.h"
 
 namespace pliant::solids {
@@ -9,6 +11,8 @@ namespace pliant::solids {
 Solid hand_solid();
 // Contains the hand, with a margin.
 Box hand_box();
+// [m] Of the thumb, then from the index to the little finger: its root in the palm, two joints, its tip.
+std::array<std::array<dvec3, 4>, 5> hand_joints();
 // The part that is pinned to the handle: the heel of the palm and the wrist.
 Box hand_bone();
 

@@ -7,6 +7,7 @@
 #include "content/generate/fields_level.h"
 #include "content/generate/forceps_level.h"
 #include "content/generate/grasp_level.h"
+#include "content/generate/hand_grip_level.h"
 #include "content/generate/instrument_levels.h"
 #include "content/generate/lattice_sphere.h"
 #include "content/generate/layers_level.h"
@@ -300,6 +301,7 @@ Status generate(const std::filesystem::path& folder, const Detail& detail) {
   if (Status s = write_tool_levels(levels); !s) return s;
   if (Status s = write_grasp_level(levels); !s) return s;
   if (Status s = write_forceps_level(levels); !s) return s;
+  if (Status s = write_hand_grip_level(levels); !s) return s;
   if (Status s = write_instrument_levels(levels); !s) return s;
   if (Status s = write_fields_level(levels); !s) return s;
   if (Status s = write_layers_level(levels); !s) return s;

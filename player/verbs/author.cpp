@@ -6,6 +6,7 @@
 #include <set>
 
 #include "content/author/edit_nodes.h"
+#include "content/author/hand_bones.h"
 #include "content/author/instruments.h"
 #include "content/author/organ.h"
 #include "content/author/presets.h"
@@ -80,12 +81,26 @@ struct Plan {
   std::optional<Side> side;
   const Instrument* tool = nullptr;
   bool probe = false;
+  std::optional<HandBones> hand;  // of the soft node
 };
+
+Result<Plan> plan_of_hand(const AuthorOptions& options, const Level& level) {
+  const Result<std::int32_t> node = skinned_node(level);
+  if (!node) return Error{options.in, node.error().what, node.error().cure};
+  const Result<HandBones> hand = bones_of_skin(level, *node);
+  if (!hand) return Error{options.in, hand.error().what, hand.error().cure};
+  Plan plan;
+  plan.soft = {*node};
+  plan.preset = find_preset(options.preset.empty() ? "skin" : options.preset);
+  plan.hand = *hand;
+  return plan;
+}
 
 Result<Plan> plan_of(const AuthorOptions& options, const Level& level) {
   Plan plan;
   const std::vector<std::int32_t> all = objects(level);
   if (all.empty()) return Error{options.in, "has no surface that could be touched", "choose a file with a mesh"};
+  if (options.hand) return plan_of_hand(options, level);
   for (const auto& [names, option, nodes] :
        {std::tuple(&options.soft, "--soft", &plan.soft), std::tuple(&options.surface, "--surface", &plan.surface)})
     for (const std::string& name : *names) {
@@ -97,7 +112,7 @@ Result<Plan> plan_of(const AuthorOptions& options, const Level& level) {
       nodes->push_back(*node);
     }
   if (plan.soft.empty() && plan.surface.empty()) plan.soft.push_back(all.front());
-  plan.preset = find_preset(options.preset);
+  plan.preset = find_preset(options.preset.empty() ? "liver" : options.preset);
   if (!options.pin.empty() && plan.soft.empty())
     return Error{"--pin " + options.pin, "is for soft bodies, and --surface makes none", "use --soft, or leave it out"};
   if (options.pin != "none") plan.side = side_of(options.pin.empty() ? "bottom" : options.pin);
@@ -156,7 +171,9 @@ void say_soft(const Level& level, const World& world, const Plan& plan) {
       const std::uint32_t parts = count_parts(tets);
       print("  {} is soft: {}; {} tetrahedra in {} part{}\n", in_quotes(name), words_of_preset(*plan.preset),
             tets.tets.size(), parts, parts == 1 ? "" : "s");
-      if (plan.side)
+      if (plan.hand)
+        print("    on {} bones with a hinge each; its palm is the handle\n", tets.rigid_counts.size());
+      else if (plan.side)
         print("    pinned at the {}: {} of {} nodes, in {:g} % of its extent\n", word_of(*plan.side),
               tets.node_count() - tets.pinned_begin(), tets.node_count(), kShare * 100.0);
       else
@@ -182,8 +199,9 @@ void say_rest(const Level& level, const Plan& plan, const std::vector<Led>& led)
           in_quotes(level.nodes[static_cast<std::size_t>(number)].name), words_of_preset(*plan.preset),
           surface_stiffness(*plan.preset));
   for (const Led& each : led)
-    print("  {} follows {}, which presses it in and lets it go; edit that, or lead it with the mouse in a window\n",
-          in_quotes(each.name), each.file.filename().string());
+    print("  {} follows {}, which {}; edit that, or lead it with the mouse in a window\n", in_quotes(each.name),
+          each.file.filename().string(),
+          plan.hand ? "closes and opens it by its grip" : "presses it in and lets it go");
 }
 
 // Names of meshes that are drawn only.
@@ -205,9 +223,16 @@ std::string only_drawn(const Level& level, const std::vector<std::int32_t>& all,
   return list + (count == 1 ? " is only drawn" : " are only drawn") + "; name more of them with --soft or --surface";
 }
 
+Result<std::int32_t> make_hand(Level& level, std::int32_t node, const Plan& plan) {
+  if (const Status s = make_soft(level, node, soft_body_of(*plan.preset)); !s) return s.error();
+  if (const Status s = put_on_bones(level, node, *plan.hand); !s) return s.error();
+  return node;
+}
+
 // Everything except files. Nodes are found by name each time, because adding one may shift the others.
 Result<std::vector<Led>> author_level(const AuthorOptions& options, Plan& plan, Level& level) {
   for (const std::int32_t node : plan.soft) {
+    if (plan.hand) break;
     SoftBodyParameters tissue = as_modelled(soft_body_of(*plan.preset));
     if (!plan.side) tissue.under_gravity = UnderGravity::kFalls;
     if (const Status s = make_soft(level, node, tissue); !s) return s.error();
@@ -226,10 +251,12 @@ Result<std::vector<Led>> author_level(const AuthorOptions& options, Plan& plan, 
     if (!node) return node.error();
     LevelNode& made = level.nodes[static_cast<std::size_t>(*node)];
     const fs::path out(options.out);
-    led.push_back({made.name, press_path(level, *node, object),
+    led.push_back({made.name, plan.hand ? closing_path(level, *node) : press_path(level, *node, object),
                    out.parent_path() / (out.stem().string() + "_" + made.name + ".csv")});
     return Done{};
   };
+  if (plan.hand)
+    if (const Status s = lead(make_hand(level, object, plan)); !s) return s.error();
   if (plan.tool)
     if (const Status s = lead(add_instrument(level, plan.tool->kind, object)); !s) return s.error();
   if (plan.probe)
@@ -242,7 +269,9 @@ Result<std::vector<Led>> author_level(const AuthorOptions& options, Plan& plan, 
   if (!has(&LevelNode::camera)) add_camera(level, object);
   if (level.about.empty())
     level.about = fmt::format("{}: {}, {}.", fs::path(options.in).stem().string(), plan.preset->name,
-                              plan.tool ? std::string("touched with a ") + plan.tool->word : "touched with a probe");
+                              plan.hand   ? "a hand on bones that closes by its grip"
+                              : plan.tool ? std::string("touched with a ") + plan.tool->word
+                                          : "touched with a probe");
   return led;
 }
 
@@ -256,8 +285,8 @@ Status write_all(const AuthorOptions& options, Level& level, const std::vector<L
   };
   for (const Led& each : led) {
     const bool is_new = !fs::exists(fs::symlink_status(each.file, ignored));
-    if (Status s = save_script(each.path, "down onto the object, a rest, up", each.file, existing); !s)
-      return take_back(std::move(s));
+    const char* const what = each.path.grips ? "closes and opens twice" : "down onto the object, a rest, up";
+    if (Status s = save_script(each.path, what, each.file, existing); !s) return take_back(std::move(s));
     if (is_new) added.push_back(each.file);
     for (LevelNode& node : level.nodes)
       if (node.name == each.name && node.device) {
@@ -305,7 +334,7 @@ int author(const AuthorOptions& options) {
   if (!world) {
     Error error = world.error();
     if (error.where.empty() || error.where == level->path.string()) error.where = options.in;
-    if (!plan->soft.empty())
+    if (!plan->soft.empty() && !plan->hand)
       error.cure += std::string(error.cure.empty() ? "" : "; or ") + "try it as a surface: --surface instead of --soft";
     return fail(kFailed, error);
   }

@@ -84,20 +84,30 @@ void add_author(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("author", "a first level from an organ's mesh: soft, pinned, with an instrument");
   verb->add_option("in", options->in, "mesh or level")->required()->check(named());
   verb->add_option("-o,--out", options->out, "the level: .glb or .gltf")->required()->check(named())->type_name("FILE");
+  CLI::Option* hand =
+      verb->add_flag("--hand", options->hand, "the mesh with a skin becomes a hand: tissue on bones, closed by a grip");
   for (const auto& [name, nodes, what] :
        {std::tuple("--soft", &options->soft, "becomes a soft body (the largest mesh); may be repeated"),
         std::tuple("--surface", &options->surface, "becomes a deformable surface instead; may be repeated")})
-    verb->add_option(name, *nodes, what)->take_all()->allow_extra_args(false)->check(named())->type_name("NODE");
-  verb->add_option("--preset", options->preset, "material: " + joined(presets) + " (liver)")->check(one_of(presets));
+    verb->add_option(name, *nodes, what)
+        ->take_all()
+        ->allow_extra_args(false)
+        ->check(named())
+        ->type_name("NODE")
+        ->excludes(hand);
+  verb->add_option("--preset", options->preset, "material: " + joined(presets) + " (liver; of a hand skin)")
+      ->check(one_of(presets));
   verb->add_option("--pin", options->pin,
                    "pins 15 % of a soft body on that side; top and bottom along gravity, front +Z, right +X: " +
                        joined(sides) + " (bottom)")
-      ->check(one_of(sides));
+      ->check(one_of(sides))
+      ->excludes(hand);
   verb->add_option(
           "--tool", options->tool,
           joined(tools) + " over the first object, with a script; meets soft bodies only (rod over a soft body)")
-      ->check(one_of(tools));
-  verb->add_flag("--probe", options->probe, "adds a probe with a script (default without a tool)");
+      ->check(one_of(tools))
+      ->excludes(hand);
+  verb->add_flag("--probe", options->probe, "adds a probe with a script (default without a tool)")->excludes(hand);
   verb->add_flag("--force", options->force, "replace what is there");
   add_limits(verb);
   add_unit(verb, options->unit, "unit of a bare mesh (m; required of one over 5 m across)");
@@ -105,7 +115,8 @@ void add_author(CLI::App& app, int& status) {
       "Examples:\n"
       "  pliant author organ.glb -o level.glb\n"
       "  pliant author organ.glb --soft capsule --preset liver --pin bottom --tool sphere_tip -o level.glb\n"
-      "  pliant author scan.stl --unit mm --surface scan --preset skin -o level.glb");
+      "  pliant author scan.stl --unit mm --surface scan --preset skin -o level.glb\n"
+      "  pliant author hand.glb --hand -o level.glb");
   verb->callback([options, &status] { status = author(*options); });
 }
 

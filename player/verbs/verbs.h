@@ -34,10 +34,11 @@ int convert(const ConvertOptions& options);
 struct AuthorOptions {
   std::string in, out;
   std::vector<std::string> soft, surface;  // names of nodes; none: the largest becomes soft
-  std::string preset = "liver";            // content/author/presets.h
+  std::string preset;                      // content/author/presets.h; empty: liver, of a hand skin
   std::string pin;                         // a Side, or none; empty: bottom
   std::string tool;                        // an Instrument, or none; empty: rod where something is soft
   bool probe = false;
+  bool hand = false;           // the mesh with a skin becomes a hand on bones
   std::optional<double> unit;  // [m] of the input; empty: not said
   bool force = false;          // replace existing files
 };

@@ -164,12 +164,13 @@ TEST(Generate, ShippedFilesAreWhatTheGeneratorMakes) {
                            "layers_finger.csv",
                            "palpation.csv",
                            "grasp.csv",
-                           "forceps.csv"})
+                           "forceps.csv",
+                           "hand_grip.csv"})
     EXPECT_EQ(bytes_of(folder.path / "levels" / name), bytes_of(kShipped / "levels" / name)) << name;
   for (const char* name :
        {"three_probes.glb", "inclusion.glb", "glass_heart.glb", "chrome_cushion.glb", "turning_ball.glb", "hand.glb",
         "hand_crowd.glb", "hand_squeeze.glb", "stack.glb", "instrument.glb", "effects.glb", "fields.glb", "layers.glb",
-        "palpation.glb", "grasp.glb", "forceps.glb"}) {
+        "palpation.glb", "grasp.glb", "forceps.glb", "hand_grip.glb"}) {
     const Result<Level> made = load_level(folder.path / "levels" / name),
                         shipped = load_level(kShipped / "levels" / name);
     ASSERT_TRUE(made.ok()) << made.error().message();

@@ -1,9 +1,11 @@
-// The shipped levels `hand_crowd`, `hand_squeeze` and `forceps` do what they are there to show.
+// The shipped levels `hand_crowd`, `hand_squeeze`, `hand_grip` and `forceps` do what they are there to show.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "systems/soft/body/soft_body_state.h"
 #include "tests/tool/tool_level_run.h"
 
 namespace pliant {
@@ -54,6 +56,30 @@ TEST(HandLevels, SqueezedFingersPressOnOneAnotherAndThisIsFelt) {
   EXPECT_GT(most, 0.3) << "[N] self-contact";
   EXPECT_GT(felt, 1.0) << "[N] on both sides";
   EXPECT_GT(scene.largest, 1.0) << "[N] on the device";
+  expect_clean(scene);
+}
+
+// [degree] by which rigid part `k` of the hand has turned against its palm.
+double bent(const ToolLevelRun& scene, int k) {
+  const Body& hand = scene.body("hand");
+  const int palm = hand.as_tissue()->rigid_count() - 1;
+  const dquat turned = glm::conjugate(hand.part_pose(palm, 0.0)->rotation) * hand.part_pose(k, 0.0)->rotation;
+  return glm::degrees(2.0 * std::acos(std::min(1.0, std::abs(turned.w))));
+}
+
+TEST(HandLevels, AGripBendsFifteenBonesOntoABall) {
+#ifdef PLIANT_SANITIZED
+  GTEST_SKIP() << "minutes under a sanitizer";
+#endif
+  ToolLevelRun scene("hand_grip");
+  scene.run(0.8);
+  for (int digit = 0; digit < 5; ++digit) EXPECT_GT(bent(scene, 3 * digit + 2), digit == 0 ? 20.0 : 30.0) << digit;
+  EXPECT_GT(scene.pressed("hand", "ball"), 0.5) << "[N]";
+  EXPECT_GT(scene.largest, 0.1) << "[N] on the device";
+  EXPECT_LT(scene.largest, 4.0) << "[N] on the device";
+  EXPECT_EQ(scene.world.soft->tally.unconverged, 0u);
+  for (std::size_t i = 0; i < scene.world.soft->joints.size(); ++i)
+    EXPECT_LT(scene.world.soft->joints.report(i).apart, 1e-3) << "[m]";
   expect_clean(scene);
 }
 

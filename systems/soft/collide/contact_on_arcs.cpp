@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "systems/soft/collide/farthest_axis.h"
 
@@ -10,6 +11,8 @@ namespace {
 
 constexpr double kCurved = 0.02;   // [rad] over a mean edge: a surface that turns less along a direction is flat there
 constexpr double kFacing = 0.0;    // [1] cosine: surfaces that face away from each other do not touch there
+constexpr double kRim = 0.866;     // [1] cosine between the normals of triangles: a rim, beyond which they do not touch
+constexpr int kMostCrossed = 32;   // triangles of a flat side between a feature and where it touches
 constexpr double kFarthest = 2.0;  // [mean edges] of the shift from a feature to where its surface touches
 
 // A sheet keeps its mesh: what comes from behind passes it.
@@ -62,8 +65,36 @@ dvec2 shift_to_touch(const dmat2& K, dvec2 phi, double edge) {
   dvec2 s(0.0);
   for (const auto& [way, k] : {std::pair(first, mean + radius), std::pair(second, mean - radius)})
     if (k * edge > kCurved) s -= dot(way, phi) / k * way;
-  const double far = length(s);
-  return far > kFarthest * edge ? kFarthest * edge / far * s : s;
+  return s;
+}
+
+// Whether `by` [m] leads from a point of a flat side over its rim. Rest frame.
+bool over_rim(const CollisionMesh& mesh, const SurfacePoint& from, dvec3 by) {
+  const Mesh& rest = mesh.mesh();
+  std::uint32_t triangle = from.triangle;
+  const auto corner = [&](int i) { return dvec3(rest.position(mesh.mesh().triangles[triangle][i])); };
+  const dvec3 at =
+      from.barycentric[0] * corner(0) + from.barycentric[1] * corner(1) + from.barycentric[2] * corner(2) + by;
+  for (int n = 0; n < kMostCrossed; ++n) {
+    const dvec3 normal = cross(corner(1) - corner(0), corner(2) - corner(0));
+    int out = -1;
+    double least = -1e-9 * dot(normal, normal);
+    for (int i = 0; i < 3; ++i)
+      if (const double area = dot(normal, cross(corner((i + 2) % 3) - corner((i + 1) % 3), at - corner((i + 1) % 3)));
+          area < least)
+        least = area, out = i;
+    if (out < 0) return false;
+    const CollisionEdge* crossed = nullptr;
+    for (int i = 0; i < 3; ++i) {
+      const CollisionEdge& edge = mesh.edges()[mesh.edge_of(triangle, i)];
+      const std::uint32_t opposite = mesh.mesh().triangles[triangle][out];
+      if (edge.from != opposite && edge.to != opposite) crossed = &edge;
+    }
+    const std::uint32_t next = crossed->triangle[crossed->triangle[0] == triangle ? 1 : 0];
+    if (next == triangle || dot(mesh.rest().normal[triangle], mesh.rest().normal[next]) < kRim) return true;
+    triangle = next;
+  }
+  return false;
 }
 
 // Where the smooth surfaces touch, relative to the features' points.
@@ -80,14 +111,20 @@ Foot find_foot(const FeaturePair& pair, const SurfacePoint& at_a, const SurfaceP
   const Side a = side_of(pair.a, at_a, false, pair.a.turn_from_rest(ahead), axes);
   const Side b = side_of(pair.b, at_b, !pair.edges, pair.b.turn_from_rest(ahead), axes);
   dvec3 of_a(-a.rise, 0, 0), of_b(b.rise, 0, 0);
-  const bool touch = !a.sharp && !b.sharp && -dot(a.normal, b.normal) > kFacing;
+  bool touch = !a.sharp && !b.sharp && -dot(a.normal, b.normal) > kFacing;
   if (touch) {
     const dvec2 up_a(a.normal.y, a.normal.z), up_b(-b.normal.y, -b.normal.z);
     const double edge = a.edge > 0.0 && b.edge > 0.0 ? std::min(a.edge, b.edge) : std::max(a.edge, b.edge);
-    const dvec2 s = shift_to_touch(a.form + b.form, up_a - up_b, edge);
+    dvec2 s = shift_to_touch(a.form + b.form, up_a - up_b, edge);
+    for (const auto& [mesh, side, point] : {std::tuple(&pair.a, &a, &at_a), std::tuple(&pair.b, &b, &at_b)})
+      if (side->edge == 0.0)
+        touch &= !over_rim(*mesh, *point, glm::transpose(mesh->turn_from_rest(ahead)) * (axes * dvec3(0, s)));
+    if (const double far = length(s); far > kFarthest * edge) s *= kFarthest * edge / far;
     const double exact = 2.0 / (1.0 + std::max(0.0, -dot(a.normal, b.normal)));  // of a circle's arc, not a parabola
-    of_a += dvec3(exact * (dot(up_a, s) + 0.5 * dot(s, a.form * s)), s);
-    of_b += dvec3(exact * (dot(up_b, s) - 0.5 * dot(s, b.form * s)), s);
+    if (touch) {
+      of_a += dvec3(exact * (dot(up_a, s) + 0.5 * dot(s, a.form * s)), s);
+      of_b += dvec3(exact * (dot(up_b, s) - 0.5 * dot(s, b.form * s)), s);
+    }
   }
   return {axes * of_a, axes * of_b, of_b.x - of_a.x, touch && (a.edge > 0.0 || b.edge > 0.0)};
 }
