@@ -24,3 +24,12 @@ vec3 height_mapped(vec3 n, vec3 position, vec2 uv, float height) {
   vec3 slope = sign(area) * (rise_x * across_x + rise_y * across_y);
   return normalize(abs(area) * n - slope);
 }
+
+// A roughness that holds the spread of the normal within a pixel, so that highlights do not flicker (Tokuyoshi and
+// Kaplanyan, Improved Geometric Specular Antialiasing, I3D 2019).
+float steadied(float roughness, vec3 n) {
+  vec3 along_x = dFdx(n), along_y = dFdy(n);
+  if (!on(kSteady)) return roughness;
+  float spread = min(0.5 * (dot(along_x, along_x) + dot(along_y, along_y)), 0.18), alpha = roughness * roughness;
+  return sqrt(sqrt(min(alpha * alpha + spread, 1.0)));
+}

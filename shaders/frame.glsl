@@ -16,11 +16,16 @@ layout(std140, binding = 0) uniform Frame {
   vec4 surroundings;       // cosine and sine of the rotation about +Y, intensity, the roughest level
   vec4 picture;            // exposure, brightness of the background, [1/m] height as colour (0: off), background's blur
   vec4 shadow;             // [m] width of a shadow map's texel in the scene, [1] its share of the map
+  mat4 view;               // from world
+  vec4 lens;               // [1] tangents of half the field of view, across and up; z, w: distance = w / (ndc depth + z)
+  vec4 ground;             // [m] x, height and z of its middle, world; its radius
+  vec4 nearby;             // [m] how far ambient occlusion reaches, and contact shadows
   Lamp lamps[4];           // the first casts the shadow
   vec4 balls[16];          // [m] middle and radius: of probes, which keep surroundings from what is below them
   uvec4 modes;             // number of lamps, enabled modes, number of balls
 };
 
 const uint kReflection = 1u, kRefraction = 2u, kBump = 4u, kShadows = 8u, kZones = 16u, kBehind = 32u, kLinear = 64u;
+const uint kOccluded = 128u, kContact = 256u, kGround = 512u, kSteady = 1024u;
 
 bool on(uint mode) { return (modes.y & mode) != 0u; }

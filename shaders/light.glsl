@@ -1,6 +1,8 @@
 // Reflection model: Lambert's diffuse layer under a GGX coat, as in glTF (Walter et al., EGSR 2007; height-correlated
 // shadowing as in Heitz, JCGT 2014).
 
+#include "nearby.glsl"
+
 struct Surface {
   vec3 position;      // [m] world
   vec3 normal;        // [1]
@@ -13,6 +15,8 @@ struct Surface {
   vec3 coat_normal;   // [1] of the clear coat, which fills the relief
   vec2 coat;          // [1] clear coat and its roughness (KHR_materials_clearcoat)
   float occlusion;    // [1] 1: open to the sky
+  vec3 facing;        // [1] where most of the surroundings' light comes from
+  Nearby nearby;
 };
 
 vec3 fresnel(vec3 f0, float cos_angle) { return f0 + (1.0 - f0) * pow(1.0 - cos_angle, 5.0); }
@@ -90,15 +94,20 @@ vec3 mirrored_by(vec3 n, vec3 to_eye, vec3 reflectance, float roughness) {
 }
 vec3 coat_of_surroundings(Surface s) { return mirrored_by(s.normal, s.to_eye, s.reflectance, s.roughness); }
 
+// Surroundings mirrored in a layer of this normal, as far as nothing near occludes them.
+vec3 mirrored_from(Surface s, vec3 n, float roughness) {
+  return open_to_lobe(dot(n, s.to_eye), s.nearby.open, roughness) * radiance_from(reflect(-s.to_eye, n), roughness);
+}
+
 vec3 lit_by_surroundings(Surface s) {
   vec3 coat = coat_of_surroundings(s);
-  vec3 light = (1.0 - coat) * s.diffuse / kPi * irradiance_on(s.normal);
+  vec3 light = (1.0 - coat) * s.diffuse / kPi * irradiance_on(s.facing) * bounced(s.nearby.open, s.diffuse);
   if (s.behind != vec3(0.0)) light += s.behind / kPi * irradiance_on(-s.normal);
-  if (on(kReflection)) light += coat * radiance_from(reflect(-s.to_eye, s.normal), s.roughness);
+  if (on(kReflection)) light += coat * mirrored_from(s, s.normal, s.roughness);
   if (s.coat.x > 0.0) {
     vec3 film = s.coat.x * mirrored_by(s.coat_normal, s.to_eye, kCoat, s.coat.y);
     light *= 1.0 - film;
-    if (on(kReflection)) light += film * radiance_from(reflect(-s.to_eye, s.coat_normal), s.coat.y);
+    if (on(kReflection)) light += film * mirrored_from(s, s.coat_normal, s.coat.y);
   }
   return s.occlusion * light;
 }

@@ -20,6 +20,7 @@ void main() {
   s.occlusion = 1.0;
   s.wrap = s.behind = vec3(0.0);
   s.coat = vec2(0.0);
-  s.coat_normal = s.normal;
+  s.coat_normal = s.facing = s.normal;
+  s.nearby = Nearby(s.normal, 1.0, 1.0);
   color = vec4(tone_mapped(lit_by_lamps(s, 1.0) + lit_by_surroundings(s)), 1.0);
 }

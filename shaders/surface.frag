@@ -3,6 +3,7 @@
 #include "environment.glsl"
 #include "light.glsl"
 #include "refraction.glsl"
+#include "balls.glsl"
 #include "shadow.glsl"
 #include "material.glsl"
 #include "bump.glsl"
@@ -45,19 +46,6 @@ vec3 zone_color(uint number) {
   return 0.1 + 0.7 * smoothstep(0.15, 0.85, abs(2.0 * hue - 1.0));
 }
 
-// Share of the surroundings that no ball covers (Quilez, Sphere ambient occlusion: exact above the horizon).
-float open_to_surroundings(vec3 position, vec3 n) {
-  float open = 1.0;
-  for (uint i = 0u; i < modes.z; ++i) {
-    vec3 way = balls[i].xyz - position;
-    float r2 = balls[i].w * balls[i].w, d2 = max(dot(way, way), 1e-12), up = dot(n, way);
-    float covered = up * inversesqrt(d2) * r2 / d2;
-    if (up * up < r2) covered = pow(clamp(0.5 * (up / balls[i].w + 1.0) * r2 / d2, 0.0, 1.0), 1.5);  // partly below it
-    open *= 1.0 - clamp(covered, 0.0, 1.0);
-  }
-  return open;
-}
-
 void main() {
   vec4 base = base_color_at(point.uv);
   if (base.a < emissive.w) discard;
@@ -75,14 +63,17 @@ void main() {
   s.to_eye = normalize(eye.xyz - point.position);
   s.diffuse = base.rgb * (1.0 - metallic) * (1.0 - through) * (1.0 - specular.w);
   s.reflectance = mix(specular.rgb, base.rgb, metallic);
-  s.roughness = clamp(numbers.y * map.g, 0.045, 1.0);
+  s.roughness = steadied(clamp(numbers.y * map.g, 0.045, 1.0), s.normal);
   s.wrap = scatter.rgb;
   s.behind = behind.rgb * (1.0 - metallic) * (1.0 - through);
   s.coat_normal = normal;
-  s.coat = vec2(coat.y, clamp(coat.w, 0.045, 1.0));
-  s.occlusion = mix(1.0, texture(occlusion_map, point.uv).r, numbers.w) * open_to_surroundings(point.position, normal);
+  s.coat = vec2(coat.y, steadied(clamp(coat.w, 0.045, 1.0), normal));
+  s.nearby = nearby_at(point.position, normal);
+  s.facing = on(kOccluded) ? normalize(s.normal + s.nearby.bent - normal) : s.normal;
+  s.occlusion = mix(1.0, texture(occlusion_map, point.uv).r, numbers.w) * open_to_balls(point.position, normal);
 
-  vec3 light = lit_by_lamps(s, open_to_lamp(point.position, normal)) + lit_by_surroundings(s);
+  float open = min(min(s.nearby.lit, open_past_balls(point.position)), open_to_lamp(point.position, normal));
+  vec3 light = lit_by_lamps(s, open) + lit_by_surroundings(s);
   if (through > 0.0) {
     vec3 entering = base.rgb * (1.0 - metallic) * through * (1.0 - coat_of_surroundings(s));
     float thickness = volume.z * texture(thickness_map, point.uv).g;

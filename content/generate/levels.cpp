@@ -133,17 +133,49 @@ Status save_strokes(const Level& level, const Solid& solid, const std::vector<Na
   return Done{};
 }
 
-// A body without texture coordinates, with one material.
-LevelNode& add_body(Level& level, const Solid& solid, const Material& material, const Detail& detail) {
+// A body with one material, without texture coordinates where it has no painting.
+using Painting = Image (*)(const LatticeSphere& sphere, std::uint32_t size);
+LevelNode& add_body(Level& level, const Solid& solid, const Material& material, const Detail& detail,
+                    Painting painting = nullptr) {
   level.materials.push_back(material);
-  Primitive primitive = to_primitive(cover(solid, detail.smooth_coarse, detail.smooth_doublings), solid);
+  const LatticeSphere surface = cover(solid, detail.smooth_coarse, detail.smooth_doublings);
+  Primitive primitive = to_primitive(surface, solid);
   primitive.material = 0;
-  primitive.uv.clear();
+  if (painting) {
+    level.images = {painting(surface, detail.color_size)};
+    level.materials[0].base_color_texture = 0;
+  } else {
+    primitive.uv.clear();
+  }
   level.meshes.push_back({level.name, {std::move(primitive)}});
   LevelNode& node = add_node(level, "body");
   node.mesh = 0;
   node.deformable = Deformable{};
   return node;
+}
+
+// A picture of the pad's inside, on a board behind it.
+void add_section(Level& level, const Detail& detail) {
+  constexpr float kHalf = 0.080f, kTall = 0.040f, kFloor = -0.002f, kBehind = -0.058f;  // [m]
+  level.images.push_back(pad_section({kHalf, 0.5 * kTall}, detail.color_size));
+  Material board;
+  board.name = "section";
+  board.base_color = vec4(1);
+  board.roughness = 0.6f;
+  board.base_color_texture = static_cast<std::int32_t>(level.images.size()) - 1;
+  board.double_sided = true;
+  Primitive sheet;
+  sheet.position = {{-kHalf, kFloor, kBehind},
+                    {kHalf, kFloor, kBehind},
+                    {kHalf, kFloor + kTall, kBehind - 0.4f * kTall},
+                    {-kHalf, kFloor + kTall, kBehind - 0.4f * kTall}};
+  sheet.normal.assign(4, normalize(vec3(0, 0.4f, 1)));
+  sheet.uv = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  sheet.index = {0, 1, 2, 0, 2, 3};
+  sheet.material = static_cast<std::int32_t>(level.materials.size());
+  level.materials.push_back(board);
+  level.meshes.push_back({"section", {std::move(sheet)}});
+  add_node(level, "section").mesh = static_cast<std::int32_t>(level.meshes.size()) - 1;
 }
 
 }  // namespace
@@ -186,15 +218,16 @@ Level inclusion(const Detail& detail) {
   const Solid solid = pad();
   Level level;
   level.name = "inclusion";
-  level.about = "Two fingers search a pad for a hard spot that cannot be seen, only felt.";
+  level.about = "Two fingers search a pad for a hard spot under the skin; a cut through the pad stands behind it.";
   level.materials.push_back(look_of(*find_preset("skin"), 0.03f));
-  Primitive primitive = to_primitive(cover(solid, detail.pad_coarse, detail.pad_doublings), solid);
+  const LatticeSphere surface = cover(solid, detail.pad_coarse, detail.pad_doublings);
+  Primitive primitive = to_primitive(surface, solid);
   primitive.material = 0;
-  primitive.uv.clear();  // no painting: the hard spot can only be felt
-  for (const vec3& p : primitive.position) {
-    const double r2 = (std::pow(p.x - 0.038, 2.0) + std::pow(p.z - 0.004, 2.0)) / (0.013 * 0.013);
-    primitive.stiffness.push_back(static_cast<float>(1.0 + (p.y > 0.0f ? 5.0 * std::exp(-r2) : 0.0)));
-  }
+  level.images = {skin_color(surface, detail.color_size)};
+  level.materials[0].base_color = vec4(1);
+  level.materials[0].base_color_texture = 0;  // the skin does not show the hard spot, only the section does
+  for (const vec3& p : primitive.position)
+    primitive.stiffness.push_back(static_cast<float>(1.0 + (p.y > 0.0f ? 5.0 * pad_hardness(p.x, p.z) : 0.0)));
   level.meshes.push_back({"pad", {std::move(primitive)}});
 
   LevelNode& node = add_node(level, "pad");
@@ -205,6 +238,7 @@ Level inclusion(const Detail& detail) {
   node.deformable->stiffening = 120.0;
   node.deformable->reach = 0.018;
   node.deformable->volume = 0.8;
+  add_section(level, detail);
   add_probe(level, "finger_a", 0.005, kCoral);
   add_probe(level, "finger_b", 0.005, kTeal);
   add_view(level, {0.0, 0.17, 0.26}, {0.0, 0.0, 0.005});
@@ -260,9 +294,9 @@ Level turning_ball(const Detail& detail) {
   level.about = "A ball with ridges on a turntable: they pass under a finger that stays where it is.";
   Material clay;
   clay.name = "soft clay";
-  clay.base_color = vec4(0.62f, 0.28f, 0.20f, 1.0f);
+  clay.base_color = vec4(1);
   clay.roughness = 0.4f;
-  LevelNode& node = add_body(level, ridged_ball(), clay, detail);
+  LevelNode& node = add_body(level, ridged_ball(), clay, detail, ball_color);
   node.deformable->stiffness = 250.0;
   node.deformable->reach = 0.016;
   node.deformable->shape = Shape::kVolume;

@@ -96,4 +96,46 @@ Image organ_normals(const LatticeSphere& sphere, const Solid& solid, std::uint32
   });
 }
 
+Image ball_color(const LatticeSphere& sphere, std::uint32_t size) {
+  return painted("ball_color", size, [&](dvec2 uv) {
+    const dvec3 p = point_at(sphere, uv);
+    const double s = std::hypot(p.x, p.z) / length(p), turn = std::atan2(p.x, p.z);
+    const double ridge = glm::smoothstep(0.35, 0.75, std::pow(s, 6.0) * std::cos(6.0 * turn));
+    const double ring = std::exp(-std::pow(std::remainder(p.y, 0.015) / 0.0007, 2.0));
+    const dvec3 pale = std::abs(turn) < 0.5 ? dvec3(0.45, 0.72, 0.62) : dvec3(0.93, 0.82, 0.70);
+    const dvec3 clay = dvec3(0.74, 0.47, 0.38) + 0.03 * octaves(p / 0.008, 3);
+    return glm::mix(glm::mix(clay, pale, ridge), dvec3(0.50, 0.28, 0.22), 0.45 * ring);
+  });
+}
+
+Image skin_color(const LatticeSphere& sphere, std::uint32_t size) {
+  return painted("skin_color", size, [&](dvec2 uv) {
+    const dvec3 p = point_at(sphere, uv);
+    const dvec3 winding = p + 0.004 * dvec3(noise(p / 0.009), 0.0, noise(p / 0.009 + 50.0));
+    const double veins = std::exp(-std::pow(octaves(winding / 0.040 + 31.0, 2) / 0.10, 2.0));
+    const double flush = glm::smoothstep(-0.3, 1.0, octaves(p / 0.025 + 70.0, 3));
+    dvec3 color = dvec3(0.89, 0.72, 0.63) + dvec3(0.020, 0.016, 0.014) * octaves(p / 0.004, 2);
+    color = glm::mix(color, dvec3(0.86, 0.56, 0.50), 0.45 * flush);
+    return glm::mix(color, dvec3(0.60, 0.58, 0.66), 0.22 * veins);
+  });
+}
+
+double pad_hardness(double x, double z) {
+  return std::exp(-(std::pow(x - 0.038, 2.0) + std::pow(z - 0.004, 2.0)) / (0.013 * 0.013));
+}
+
+Image pad_section(dvec2 half, std::uint32_t size) {
+  return painted("pad_section", size, [&](dvec2 uv) {
+    const dvec3 p((2.0 * uv.x - 1.0) * half.x, (1.0 - 2.0 * uv.y) * half.y, 0.0);
+    const double below = half.y - p.y + 0.0008 * noise(p / 0.006);  // [m] under the skin
+    const double lobules = std::exp(-std::pow(octaves(p / 0.005, 2) / 0.16, 2.0));
+    const double fibres = 0.5 + 0.5 * noise(dvec3(p.x / 0.02, p.y / 0.0012, 3.0));
+    const dvec3 fat = glm::mix(dvec3(0.95, 0.83, 0.52), dvec3(0.84, 0.66, 0.38), 0.6 * lobules);
+    const dvec3 muscle = glm::mix(dvec3(0.60, 0.20, 0.19), dvec3(0.74, 0.33, 0.30), fibres);
+    const dvec3 color = below < 0.0025 ? dvec3(0.87, 0.62, 0.54) : below < 0.016 ? fat : muscle;
+    const double spot = pad_hardness(p.x, 0.004) * std::exp(-std::pow((below - 0.009) / 0.006, 2.0));
+    return glm::mix(color, dvec3(0.96, 0.96, 0.93), glm::smoothstep(0.35, 0.5, spot));
+  });
+}
+
 }  // namespace pliant::generate

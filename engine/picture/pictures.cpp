@@ -100,6 +100,10 @@ PictureView Pictures::view() const {
   return {at.eye, at.target, at.up, at.yfov};
 }
 
+void Pictures::set_quality(PictureQuality quality) {
+  parts_->renderer->options().quality = quality;
+}
+
 Result<Picture> Pictures::picture(const PictureView& view, int width, int height) {
   if (Status s = check(view, width, height); !s) return s.error();
   if (Status s = parts_->ready(); !s) return s.error();

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "pliant/picture_quality.h"
 #include "pliant/session.h"
 
 namespace pliant {
@@ -41,6 +42,8 @@ class Pictures {
 
   // The level's camera, or one that shows every deformable surface.
   PictureView view() const;
+  // Of all later pictures; high at first.
+  void set_quality(PictureQuality quality);
   // At most 16384 pixels wide and high.
   Result<Picture> picture(const PictureView& view, int width, int height);
   // Draws into a framebuffer of the current context; 0 is the window's.

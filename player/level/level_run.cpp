@@ -153,7 +153,7 @@ Outcome LevelRun::open_recording() {
 Outcome LevelRun::open_frames() {
   if (shown_ || options_.frames == 0) return {};
   const bool asked = options_.frames >= 0 || options_.fps > 0.0;
-  auto made = Frames::create(world_, options_.width, options_.height);
+  auto made = Frames::create(world_, options_.quality, options_.width, options_.height);
   if (made) {
     frames_ = std::move(made).value();
   } else if (asked) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "pliant/picture_quality.h"
+
 namespace pliant {
 
 struct RunOptions {
@@ -27,8 +29,9 @@ struct RunOptions {
   double fps = 0.0;               // [1/s] of simulated time; 0: not given
   int width = 960, height = 540;  // [pixel]
   bool sized = false;             // --size was given
-  std::string input;              // file of input events for the window
-  bool force = false;             // replace an earlier run's files
+  PictureQuality quality = PictureQuality::kHigh;
+  std::string input;   // file of input events for the window
+  bool force = false;  // replace an earlier run's files
   std::string record, replay;
   unsigned threads = 0;    // 0: all of the machine's
   std::string soft_store;  // folder of soft bodies shared by a sweep's runs; empty: none

@@ -113,6 +113,7 @@ Ran run_shown(const RunOptions& options, const Prepared& run, Shown& shown, Touc
   session.stop_keys = keys == settings.keys.end() || keys->second.empty() ? kStopKeys : keys->second;
   session.rate = loop.runner.world().simulation.touch_rate;
   session.ticks = loop.ticks;
+  session.quality = options.quality;
   session.frame_width = options.width;
   session.frame_height = options.height;
   session.frame_ticks = loop.frame_ticks;

@@ -37,7 +37,7 @@ void FrameFigures::add(const FrameStats& stats) {
 
 Frames::~Frames() = default;
 
-Result<std::unique_ptr<Frames>> Frames::create(const World& world, int width, int height) {
+Result<std::unique_ptr<Frames>> Frames::create(const World& world, PictureQuality quality, int width, int height) {
   std::unique_ptr<Frames> frames(new Frames);
   auto context = HeadlessContext::create();
   if (!context) return context.error();
@@ -45,6 +45,7 @@ Result<std::unique_ptr<Frames>> Frames::create(const World& world, int width, in
   auto renderer = Renderer::create(world);
   if (!renderer) return renderer.error();
   frames->renderer_ = std::move(renderer).value();
+  frames->renderer_->options().quality = quality;
   frames->viewpoint_ = default_viewpoint(world);
   frames->width_ = width;
   frames->height_ = height;

@@ -40,7 +40,7 @@ class FrameFigures {
 class Frames {
  public:
   // Creates a graphics context. The error names what is missing.
-  static Result<std::unique_ptr<Frames>> create(const World& world, int width, int height);
+  static Result<std::unique_ptr<Frames>> create(const World& world, PictureQuality quality, int width, int height);
   ~Frames();
 
   // Lockstep, after a tick: takes all changes, in as many snapshots as needed.

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "components/haptic_device.h"
@@ -59,6 +61,15 @@ CLI::App* add_run_options(CLI::App& app, RunOptions& run) {
         if (const std::string wrong = parse_size(text, run); !wrong.empty()) throw CLI::ValidationError(wrong);
       },
       "of pictures and window, WxH, 16 to 8192 (960x540, 1280x720)");
+  const std::vector<std::string> qualities(std::begin(kPictureQualities), std::end(kPictureQualities));
+  verb->add_option_function<std::string>(
+          "--quality",
+          [&run, qualities](const std::string& word) {
+            const auto at = std::find(qualities.begin(), qualities.end(), word) - qualities.begin();
+            run.quality = static_cast<PictureQuality>(at);
+          },
+          "of pictures and window: " + joined(qualities) + "; what each adds: docs/reference.md (high)")
+      ->check(one_of(qualities));
   CLI::Option* headless = verb->add_flag("--headless", run.headless, "no window (default where there is no display)");
   verb->add_flag("--window", run.window, "in a window (default where there is a display)")
       ->excludes(headless)

@@ -84,6 +84,7 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
       options_(renderer.options()),
       tint_(tint_of(session.world)),
       pictures_(session.window, session.world, renderer) {
+  options_.quality = session.quality;
   state_.title = cut(session.world.name, kLongestTitle);
   state_.rate_wanted = session.rate;
   for (std::size_t i = 0; i < session.journal.probes().size(); ++i) {

@@ -28,12 +28,13 @@ struct WindowSession {
   Keeper& keeper;
   OutputFolder& out;
   const Interrupt& interrupt;
-  DeviceLinks* devices = nullptr;             // null: no device
-  std::string level;                          // level that `R` opens again
-  std::string stop_keys;                      // of the emergency stop, "F9"
-  double rate = 1000.0;                       // [Hz]
-  std::uint64_t ticks = 0;                    // upper limit
-  std::vector<std::uint64_t> frame_ticks;     // ticks after which pictures are staged, ascending
+  DeviceLinks* devices = nullptr;          // null: no device
+  std::string level;                       // level that `R` opens again
+  std::string stop_keys;                   // of the emergency stop, "F9"
+  double rate = 1000.0;                    // [Hz]
+  std::uint64_t ticks = 0;                 // upper limit
+  std::vector<std::uint64_t> frame_ticks;  // ticks after which pictures are staged, ascending
+  PictureQuality quality = PictureQuality::kHigh;
   int frame_width = 960, frame_height = 540;  // [pixel] of those
   // The level's device requests that are not permitted, line by line; empty: none. `allow` stores the permission.
   std::vector<std::string> question;

@@ -25,7 +25,11 @@ enum ModeBit : std::uint32_t {
   kShadowMode = 8,
   kZoneMode = 16,
   kBehindMode = 32,  // the objects behind glass have been drawn for it
-  kLinearMode = 64   // no tone mapping: the picture will be seen through glass
+  kLinearMode = 64,  // no tone mapping: the picture will be seen through glass
+  kOccludedMode = 128,
+  kContactMode = 256,
+  kGroundMode = 512,
+  kSteadyMode = 1024  // highlights widen where the normal changes within a pixel
 };
 
 struct FrameConstants {
@@ -37,11 +41,15 @@ struct FrameConstants {
   vec4 surroundings{1, 0, 1, 0};
   vec4 picture{1, 1, 0, 0};
   vec4 shadow{0};
+  mat4 view{1};
+  vec4 lens{1, 1, 1, 1};
+  vec4 ground{0};
+  vec4 nearby{0};
   std::array<LampConstants, kMaxLamps> lamps{};
   std::array<vec4, kMostShadingBalls> balls{};
   glm::uvec4 modes{0};
 };
-static_assert(sizeof(FrameConstants) == 3 * 64 + 16 + 9 * 16 + 3 * 16 + kMaxLamps * 64 + kMostShadingBalls * 16 + 16);
+static_assert(sizeof(FrameConstants) == 4 * 64 + 16 + 9 * 16 + 6 * 16 + kMaxLamps * 64 + kMostShadingBalls * 16 + 16);
 
 // Binding points, as written in the shaders.
 enum UniformBinding : unsigned { kFrameBinding = 0, kPlacementBinding = 1, kMaterialBinding = 2 };
@@ -61,7 +69,10 @@ enum TextureUnit : unsigned {
   kBehindUnit = 11,
   kBehindDepthUnit = 12,
   kStreamUnit = 13,  // in OpenGL ES, like the next
-  kSkinUnit = 14
+  kSkinUnit = 14,
+  kSeenNormalUnit = 16,  // 15 is the scratch unit
+  kSeenDepthUnit = 17,
+  kNearbyUnit = 18
 };
 
 }  // namespace pliant

@@ -9,6 +9,7 @@
 #include "systems/visual/gpu/program.h"
 #include "systems/visual/gpu/scene_texture.h"
 #include "systems/visual/marker.h"
+#include "systems/visual/nearby.h"
 #include "systems/visual/picking.h"
 #include "systems/visual/shadow.h"
 #include "systems/visual/surface.h"
@@ -24,6 +25,15 @@ constexpr float kPlain = 0.08f;  // [1] linear grey, if the surroundings are not
 std::uint32_t modes_of(const RenderOptions& options) {
   return (options.reflection ? kReflectionMode : 0u) | (options.refraction ? kRefractionMode : 0u) |
          (options.bump ? kBumpMode : 0u) | (options.zones ? kZoneMode : 0u);
+}
+
+// Lines hide nothing.
+std::uint32_t modes_of(PictureQuality quality, const RenderOptions& options) {
+  if (quality == PictureQuality::kLow) return 0;
+  std::uint32_t modes = kSteadyMode | (options.background ? kGroundMode : 0u);
+  if (options.shadows && !options.wireframe) modes |= kOccludedMode;
+  if (quality == PictureQuality::kHigh && (modes & kOccludedMode)) modes |= kContactMode;
+  return modes;
 }
 
 }  // namespace
@@ -43,6 +53,8 @@ struct Renderer::Parts {
   gpu::SceneTexture behind;  // the picture seen through glass
   gpu::Texture blank = gpu::Texture::constant(0, 0, 0);
   bool through = false;  // this picture contains glass
+  NearbyLight nearby;
+  std::uint32_t modes = 0;  // ModeBits of this picture
   Shadow shadow;
   bool shaded = false;     // this picture has a shadow
   bool shadow_old = true;  // the map is out of date
@@ -70,12 +82,14 @@ std::size_t Renderer::Parts::upload(const Viewpoint& viewpoint, int width, int h
   measure_scene();
   FrameConstants constants;
   const mat4 projection = projection_of(viewpoint, scene, static_cast<float>(width) / static_cast<float>(height));
-  constants.view_projection = projection * view_of(viewpoint);
+  const mat4 view = view_of(viewpoint);
+  constants.view_projection = projection * view;
   constants.inverse_view_projection = glm::inverse(constants.view_projection);
   constants.eye = vec4(vec3(viewpoint.eye), 1);
   surroundings.light(constants);
   constants.picture.z = options.tint_height > 0 ? 1 / options.tint_height : 0;
-  constants.modes.y = modes_of(options);
+  constants.modes.y = modes = modes_of(options) | modes_of(options.quality, options);
+  nearby.place(scene, projection, view, constants);
   if (shadow.place(constants.lamps[0], scene, constants) && options.shadows) constants.modes.y |= kShadowMode;
   shaded = constants.modes.y & kShadowMode;
   std::size_t travelled = surfaces.upload() + markers.upload(viewpoint, options);
@@ -116,7 +130,8 @@ void Renderer::Parts::draw_behind(int width, int height) {
   surfaces.draw_opaque(false);
   markers.draw();
   glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, frame.id());
-  behind.bind(kBehindUnit, kBehindDepthUnit);
+  behind.bind_color(kBehindUnit);
+  behind.bind_depth(kBehindDepthUnit);
 }
 
 // The passes of the visible picture, in order.
@@ -160,6 +175,11 @@ FrameStats Renderer::Parts::render(const Viewpoint& viewpoint, int width, int he
   if (question) picking.draw(surfaces, clip_from_world, *question);
   question.reset();
   stats.shadow_drawn = draw_shadow();
+  if (modes & kOccludedMode) {
+    nearby.draw(surfaces, modes & kGroundMode, width, height);
+  } else {
+    for (const GLuint unit : {kSeenNormalUnit, kSeenDepthUnit, kNearbyUnit}) blank.bind(unit);
+  }
   draw_behind(width, height);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, samples.id());
   glViewport(0, 0, width, height);
@@ -217,6 +237,10 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const World& world) {
   }
   parts.surroundings = Surroundings::make(world);
   parts.shadow = Shadow::make();
+  Result<NearbyLight> nearby = NearbyLight::make();
+  if (!nearby) return nearby.error();
+  parts.nearby = *std::move(nearby);
+  parts.nearby.place_ground(parts.surfaces.boxes());
   parts.nothing = gpu::VertexArray::make();
   if (glGetError() == GL_OUT_OF_MEMORY)
     return Error{"GPU", "has no room for this level's meshes and textures", "use a coarser mesh or smaller ones"};

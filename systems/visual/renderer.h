@@ -9,6 +9,7 @@
 #include "components/snapshot.h"
 #include "components/soft_snapshot.h"
 #include "components/world.h"
+#include "pliant/picture_quality.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -54,6 +55,7 @@ Viewpoint default_viewpoint(const World& world);
 
 // Display options; may change between any two pictures.
 struct RenderOptions {
+  PictureQuality quality = PictureQuality::kHigh;
   float tint_height = 0.0f;     // [m] height drawn fully blue (in) or red (out); 0: surfaces keep their colours
   bool markers = true;          // probes
   bool forces = true;           // an arrow along each force

@@ -117,6 +117,9 @@ Result<Surfaces> Surfaces::make(const World& world) {
   Result<gpu::Program> shadow = gpu::Program::load({"shadow.vert", "shadow.frag"});
   if (!shadow) return shadow.error();
   made.shadow_ = *std::move(shadow);
+  Result<gpu::Program> depth = gpu::Program::load({"depth.vert", "depth.frag"});
+  if (!depth) return depth.error();
+  made.depth_ = *std::move(depth);
 
   const std::size_t largest = gpu::Table::most_bytes();
   for (auto [entity, drawable] : world.registry.view<Drawable>()) {

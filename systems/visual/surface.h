@@ -41,8 +41,9 @@ class Surfaces {
   void draw_blended(vec3 eye) const;
   // Something is refractive.
   bool has_glass() const { return has_glass_; }
-  // Depth only, into the current shadow map.
-  void draw_shadow() const;
+  // Surfaces that cast shadows, into the current target: depth only, or in the picture's view also normals.
+  void draw_shadow() const { draw_casting(shadow_); }
+  void draw_depth() const { draw_casting(depth_); }
   // From now on draw_as_held() draws this body in its current state; kNoEntity: none.
   void hold(Entity object);
   // All visible surfaces, with the current program.
@@ -94,6 +95,7 @@ class Surfaces {
   };
   Item* find(Entity entity);
   void bind(const Item& item) const;
+  void draw_casting(const gpu::Program& program) const;
   void draw_part(const Part& part) const;
   void draw_one(const Item& item, const Part& part) const;
 
@@ -101,7 +103,7 @@ class Surfaces {
   std::vector<Box> boxes_;
   Held held_;
   Materials materials_;
-  gpu::Program program_, shadow_;
+  gpu::Program program_, shadow_, depth_;
   FieldProgram field_program_;  // compiled only if a field needs them, as is the next
   ReplayProgram replay_program_;
   bool changed_ = true, has_glass_ = false;

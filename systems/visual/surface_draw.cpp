@@ -29,8 +29,8 @@ void Surfaces::draw_part(const Part& part) const {
 }
 
 // Both sides of everything: a sheet, or the rim of a dent, blocks light in either direction.
-void Surfaces::draw_shadow() const {
-  shadow_.use();
+void Surfaces::draw_casting(const gpu::Program& program) const {
+  program.use();
   glDisable(GL_CULL_FACE);
   for (const Item& item : items_) {
     bind(item);

@@ -48,6 +48,8 @@ class BothContexts {
     es()->make_current();
     EXPECT_TRUE(gpu::is_es());
     es_ = test::renderer_for(world);
+    for (Renderer* each : {core_.get(), es_.get()})
+      if (each) each->options().quality = PictureQuality::kHigh;
   }
   ~BothContexts() {
     es()->make_current();

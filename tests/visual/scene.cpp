@@ -65,6 +65,7 @@ HeadlessContext* context() {
 std::unique_ptr<Renderer> renderer_for(const World& world) {
   Result<std::unique_ptr<Renderer>> made = Renderer::create(world);
   if (!made) ADD_FAILURE() << made.error().message();
+  if (made) (*made)->options().quality = PictureQuality::kLow;
   return made ? *std::move(made) : nullptr;
 }
 

@@ -14,7 +14,7 @@ namespace pliant::test {
 // One context for the whole program (drivers start slowly); null where this machine has none.
 HeadlessContext* context();
 
-// Null, and the test has failed, where it cannot be made.
+// Of low quality: surfaces alone, without what is near them. Null, and the test has failed, where it cannot be made.
 std::unique_ptr<Renderer> renderer_for(const World& world);
 
 // A flat sheet of (2 n) x n squares, [-1, 1] x [-0.5, 0.5] m in the plane y = 0, facing up.
