@@ -51,6 +51,21 @@ pliant_status pliant_session_get(pliant_session* session, const char* object, co
   });
 }
 
+pliant_status pliant_session_slider_count(pliant_session* session, size_t* count) {
+  return with_session(session, __func__,
+                      [&](SessionHandle& of) { needed(count, "count") = of.session.sliders().size(); });
+}
+
+pliant_status pliant_session_slider(pliant_session* session, size_t index, pliant_slider* out) {
+  return with_session(session, __func__, [&](SessionHandle& of) {
+    sized(out, "out");
+    const std::vector<pliant::Slider>& all = of.session.sliders();
+    throw_unless_below(index, all.size(), "");
+    const pliant::Slider& s = all[index];
+    *out = {sizeof *out, s.object.c_str(), s.key.c_str(), s.name.c_str(), s.unit.c_str(), s.low, s.high, s.step};
+  });
+}
+
 pliant_status pliant_session_closest_point(pliant_session* session, pliant_vec3 point, const pliant_query* query,
                                            pliant_hit* out) {
   return with_session(session, __func__, [&](SessionHandle& of) {

@@ -269,6 +269,21 @@ PLIANT_API pliant_status pliant_session_set_values(pliant_session* session, cons
                                                    const double* values, size_t count);
 PLIANT_API pliant_status pliant_session_get(pliant_session* session, const char* object, const char* key, double* out);
 
+// What the level offers to its user: the arguments of pliant_session_set, a label, and bounds in the key's unit. Text is
+// valid until the session is destroyed.
+typedef struct pliant_slider {
+  uint32_t size;
+  const char* object;
+  const char* key;
+  const char* name;
+  const char* unit;  // "": none
+  double low, high;
+  double step;  // 0: continuous
+} pliant_slider;
+
+PLIANT_API pliant_status pliant_session_slider_count(pliant_session* session, size_t* count);
+PLIANT_API pliant_status pliant_session_slider(pliant_session* session, size_t index, pliant_slider* out);
+
 // ---- Results. In real time: of the newest tick that was published.
 
 typedef struct pliant_reading {

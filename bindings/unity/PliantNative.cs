@@ -98,6 +98,19 @@ namespace Pliant
     }
 
     [StructLayout(LayoutKind.Sequential)]
+    public struct pliant_slider
+    {
+        public uint size;
+        public IntPtr @object;
+        public IntPtr key;
+        public IntPtr name;
+        public IntPtr unit;
+        public double low;
+        public double high;
+        public double step;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
     public struct pliant_reading
     {
         public uint size;
@@ -445,6 +458,10 @@ namespace Pliant
         public static extern int pliant_session_set_values(IntPtr session, [MarshalAs(UnmanagedType.LPUTF8Str)] string @object, [MarshalAs(UnmanagedType.LPUTF8Str)] string key, double[] values, ulong count);
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern int pliant_session_get(IntPtr session, [MarshalAs(UnmanagedType.LPUTF8Str)] string @object, [MarshalAs(UnmanagedType.LPUTF8Str)] string key, out double @out);
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern int pliant_session_slider_count(IntPtr session, out ulong count);
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern int pliant_session_slider(IntPtr session, ulong index, ref pliant_slider @out);
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern int pliant_session_reading(IntPtr session, [MarshalAs(UnmanagedType.LPUTF8Str)] string effector, ref pliant_reading @out);
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

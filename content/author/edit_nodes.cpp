@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 
+#include "content/keys/sliders.h"
+
 namespace pliant {
 
 namespace {
@@ -262,6 +264,8 @@ Status rename_node(Level& level, std::int32_t node, const std::string& name) {
     if (body) rename_body(each, old, name);
     if (probe && each.effect) std::replace(each.effect->probes.begin(), each.effect->probes.end(), old, name);
   }
+  if (!std::any_of(level.nodes.begin(), level.nodes.end(), [&](const LevelNode& each) { return each.name == old; }))
+    rename_exposed(level.simulation, old, name);
   return Done{};
 }
 

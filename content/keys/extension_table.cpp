@@ -172,7 +172,7 @@ std::vector<Key> layer_keys() {
 }
 
 // A list of objects of type Item. `always`: the key that is saved even at its default.
-template <class Item, class Get, class Set>
+template <class Item, class Owner = LevelNode, class Get, class Set>
 Key items_key(std::string name, std::string doc, std::vector<Key> items, std::string always, Get list_of,
               Set set_list) {
   Key out;
@@ -184,7 +184,7 @@ Key items_key(std::string name, std::string doc, std::vector<Key> items, std::st
   out.items = std::move(items);
   out.get = [items = out.items, always, list_of](const void* owner) {
     Json list = Json::array();
-    for (const Item& each : list_of(*static_cast<const LevelNode*>(owner))) {
+    for (const Item& each : list_of(*static_cast<const Owner*>(owner))) {
       Json item = Json::object();
       for (const Key& key : items)
         if (Json value = key.get(&each); !(value == key.get(&usual)) || key.name == always) item[key.name] = value;
@@ -197,7 +197,7 @@ Key items_key(std::string name, std::string doc, std::vector<Key> items, std::st
     for (std::size_t i = 0; i < list.size(); ++i)
       for (const Key& key : items)
         if (value[i].contains(key.name)) key.set(&list[i], value[i][key.name]);
-    set_list(*static_cast<LevelNode*>(owner), std::move(list));
+    set_list(*static_cast<Owner*>(owner), std::move(list));
   };
   return out;
 }
@@ -778,6 +778,23 @@ std::vector<Key> environment_keys() {
   return keys;
 }
 
+Key expose_key() {
+  std::vector<Key> keys;
+  keys.push_back(text("key", KeyType::kText, of_item(&ExposedKey::key),
+                      "NODE.EXTENSION.KEY: a number that a session can set (belly.deformable.stiffness)"));
+  keys.push_back(text("name", KeyType::kText, of_item(&ExposedKey::name), "label; left out: from `key`"));
+  Key range = pair("range", "", of_item(&ExposedKey::range), "least and largest value; equal: the key's usual range");
+  range.range = {-1e15, 1e15};
+  keys.push_back(range);
+  keys.push_back(number("step", "", Range{0.0, 1e15}, of_item(&ExposedKey::step), "between values; 0: continuous"));
+  Key out = items_key<ExposedKey, Level>(
+      "expose", fmt::format("sliders of the run's window, at most {}", kMostSliders), std::move(keys), "key",
+      [](const Level& level) -> const std::vector<ExposedKey>& { return level.simulation.expose; },
+      [](Level& level, std::vector<ExposedKey> list) { level.simulation.expose = std::move(list); });
+  out.most = kMostSliders;
+  return out;
+}
+
 std::vector<Key> simulation_keys() {
   using S = Simulation;
   const auto s = [](auto member) { return at(&Level::simulation, member); };
@@ -787,6 +804,7 @@ std::vector<Key> simulation_keys() {
   keys.push_back(number("soft_step", "s", {kSoftStepRange, {5e-4, 0.05}}, s(&S::soft_step), "step of the soft clock"));
   keys.push_back(vector("gravity", "m/s2", {kGravityRange, {-30.0, 30.0}}, s(&S::gravity),
                         "acceleration of gravity; one number points down (-Y)"));
+  keys.push_back(expose_key());
   return keys;
 }
 
@@ -865,7 +883,7 @@ std::vector<Extension> make_table() {
   table.push_back(extension("environment", "Surroundings of the scene.", &Level::environment, environment_keys()));
   Extension simulation;
   simulation.name = "simulation";
-  simulation.doc = "Clocks and gravity.";
+  simulation.doc = "Clocks, gravity, sliders.";
   simulation.on_scene = true;
   simulation.keys = simulation_keys();
   simulation.present = [](const void*) { return true; };

@@ -31,6 +31,7 @@ enum class KeyType {
 inline constexpr std::size_t kMostPoints = 16;  // of a key of type kPoints
 inline constexpr std::size_t kMostNames = 64;   // of a key of type kNames
 
+inline constexpr std::size_t kMostSliders = 32;  // of the key `expose`
 inline constexpr std::size_t kMostItems = kMostLayers;  // of a key of type kItems
 
 // One key. The owner, passed as void*, is a LevelNode (node extensions) or Level (scene extensions).

@@ -4,6 +4,7 @@
 
 #include "content/keys/extension_table.h"
 #include "content/keys/extensions.h"
+#include "content/keys/sliders.h"
 
 namespace pliant {
 
@@ -44,7 +45,8 @@ Status check_references(const Level& level) {
     if (node.handle)
       if (const Status status = check(node, "handle", node.handle->device); !status) return status;
   }
-  return Done{};
+  const auto sliders = sliders_of(level);
+  return sliders ? Status(Done{}) : sliders.error();
 }
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 // load_level reads it, save_level writes it, spawn turns it into a World.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -97,6 +98,17 @@ struct LevelAnimation {
   std::int32_t source = -1;  // /animations/i of Level::source; -1: new
 };
 
+// A key that the level offers to its user as a slider.
+struct ExposedKey {
+  std::string key;                    // NODE.EXTENSION.KEY
+  std::string name;                   // label; "": from `key`
+  std::array<double, 2> range{0, 0};  // in the key's unit; equal: the key's usual range
+  double step = 0.0;                  // in the key's unit; 0: continuous
+};
+struct LevelSimulation : Simulation {  // PLIANT_simulation
+  std::vector<ExposedKey> expose;
+};
+
 struct LevelEnvironment {  // PLIANT_environment
   std::string panorama;    // .exr, relative to the level
   double intensity = 1.0;  // [1]
@@ -115,7 +127,7 @@ struct Level {
   std::vector<Image> images;
   std::vector<LevelAnimation> animations;
   std::optional<LevelEnvironment> environment;
-  Simulation simulation;         // PLIANT_simulation
+  LevelSimulation simulation;
   std::set<std::string> stated;  // keys set by the file or --set: simulation.soft_step
   std::vector<std::string>
       notes;              // notes on conversions that a user might not expect (collision meshes, skipped points...)

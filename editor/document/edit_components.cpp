@@ -1,5 +1,6 @@
 // Components and their keys.
 #include "content/keys/extension_table.h"
+#include "content/keys/sliders.h"
 #include "content/keys/stated.h"
 #include "editor/document/edit_parts.h"
 
@@ -112,6 +113,8 @@ Result<State> without_component(const State& state, NodeIds ids, const std::stri
     for (const NodeId id : ids)
       if (const DocumentNode* node = next->find(id); node && !node->node.device)
         rename_references(*next, node->node.name, "");
+  for (std::size_t i = 0; next && i < ids.size(); ++i)
+    if (const DocumentNode* node = next->find(ids[i])) forget_exposed(next->simulation, node->node.name, extension);
   return next;
 }
 

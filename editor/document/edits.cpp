@@ -8,6 +8,7 @@
 #include <set>
 
 #include "content/author/edit_nodes.h"
+#include "content/keys/sliders.h"
 #include "editor/document/edit_parts.h"
 
 namespace pliant {
@@ -37,6 +38,7 @@ void rename_references(State& state, const std::string from, const std::string t
       std::replace(changed->node.effect->probes.begin(), changed->node.effect->probes.end(), from, to);
     each = std::move(changed);
   }
+  if (!state.find(from)) rename_exposed(state.simulation, from, to);
 }
 
 namespace {

@@ -65,7 +65,7 @@ struct State {
   std::shared_ptr<const Level> rest;  // images, animations, notes, source; without nodes, meshes and materials
   std::string about;                  // description of the level
   std::optional<LevelEnvironment> environment;
-  Simulation simulation;
+  LevelSimulation simulation;
   std::set<std::string> stated;  // stated keys of the scene, as Level::stated; nodes have their own
   // Paths of devices, by file name relative to the level; unreadable files are absent.
   Scripts scripts;

@@ -178,13 +178,12 @@ bool rows_field(const Key& key, Json& value, std::size_t width, std::size_t leas
 bool items_field(Editor& editor, const Key& key, Json& value) {
   Json next = value.is_array() ? value : Json::array();
   bool changed = false;
-  const Layer usual;
   for (std::size_t i = 0; i < next.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
     for (const Key& of : key.items) {
       Key part = of;
       part.name = fmt::format("{} {} {}", key.name, i + 1, of.name);
-      const Json otherwise = of.get(&usual);
+      const Json otherwise = of.get(key.usual_item);
       Json item = next[i].contains(of.name) ? next[i][of.name] : otherwise;
       if (property_row(fmt::format("{} {}", i + 1, of.name).c_str(), of.doc.c_str(), item != otherwise)) {
         next[i].erase(of.name);
@@ -197,7 +196,9 @@ bool items_field(Editor& editor, const Key& key, Json& value) {
     ImGui::PopID();
   }
   if (next.size() < key.most && ui::button(fmt::format("Add##{}", key.name).c_str())) {
-    next.push_back({{"thickness", usual.thickness}, {"force", 1.0}});
+    Json item = Json::object();
+    if (key.name == "layers") item["force"] = 1.0;  // one of its limits is required
+    next.push_back(std::move(item));
     changed = true;
   }
   if (!next.empty()) {

@@ -1,6 +1,6 @@
 #include "editor/play/live_edits.h"
 
-#include "engine/session/live_keys.h"
+#include "content/keys/live_keys.h"
 
 namespace pliant {
 namespace {

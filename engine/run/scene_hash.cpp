@@ -63,7 +63,8 @@ bool is_newer_default(const Extension& extension, const Key& key, const Json& va
 
 // A probe added for a window's mouse has a special colour; a replay of it does not.
 bool is_not_felt(const Extension& extension, const Key& key) {
-  return (extension.name == "probe" && key.name == "color") || key.name == "error" || key.name == "carries";
+  return (extension.name == "probe" && key.name == "color") || key.name == "error" || key.name == "carries" ||
+         key.name == "expose";
 }
 
 void add_keys(Hash& hash, const Extension& extension, const void* owner, const fs::path& folder) {

@@ -1,5 +1,5 @@
 // Applies parameter changes between two ticks. Runs on the touch clock; nothing here allocates.
-#include "engine/session/session_run.h"
+#include "engine/session/live_edit.h"
 #include "systems/device/devices.h"
 #include "systems/tool/tool_touch_state.h"
 #include "systems/touch/prepare/presence.h"

@@ -7,6 +7,7 @@
 
 #include "components/name_of.h"
 #include "components/soft_body.h"
+#include "content/keys/sliders.h"
 #include "content/level/probe_damage.h"
 #include "engine/choice/model_choice.h"
 #include "engine/run/driver_limits.h"
@@ -118,6 +119,7 @@ Status SessionRun::spawn_world() {
     chosen = true;
   }
   notes = scene.level().notes;
+  if (sliders.empty()) sliders = sliders_of(scene.level()).value();  // checked; a restart keeps their text
   if (const std::optional<Note> note = undamaged_by_bodies(scene.level())) notes.push_back(note->message());
   begin_part(0.4, 0.7);
   auto spawned = spawn_level(scene.level(), &notes);

@@ -21,6 +21,7 @@
 #include "engine/run/pose_replay.h"
 #include "engine/run/recording.h"
 #include "engine/run/runner.h"
+#include "engine/session/live_edit.h"
 #include "engine/session/object_shape.h"
 #include "engine/session/session_history.h"
 #include "engine/session/session_view.h"
@@ -74,33 +75,6 @@ struct EffectorRow {
   std::array<vec3, Reading::kMostContacts> weights{};  // [1] barycentric
 };
 
-// Parameters that change between ticks, all of one kind together, as sent to the touch clock.
-struct SurfaceSetting {
-  DeformableParameters now;
-  Motion motion;
-  ShareKernel kernel;
-};
-struct ProbeSetting {
-  double radius = 0.0;  // [m]
-};
-struct WeightSetting {
-  dvec3 weight{0};  // [N] of a tool without gravity compensation
-};
-// Actions of the owner on hands and objects, other than parameters.
-struct EventEdit {
-  EventKind kind = EventKind::kSet;  // kSet, and the soft clock's: only stamped here
-  double value = 0.0;
-  dvec3 force{0}, torque{0};  // for kHandForce; for kPlace, force is the position [m]
-  dquat rotation{1, 0, 0, 0};
-};
-// A change sent to the touch clock, which reports the tick in which it was applied.
-struct Edit {
-  Entity entity;
-  std::variant<EventEdit, SurfaceSetting, DeviceParameters, ProbeSetting, CouplingSetting, WeightSetting, EffectSetting>
-      now;
-  std::uint32_t number = 0;  // of its event in the current recording; 0: none
-};
-
 Error work_stopped();
 
 struct SessionRun {
@@ -108,6 +82,7 @@ struct SessionRun {
   bool chosen = false;  // the models of objects with an error budget are chosen, once, in `scene`
   World world;
   std::vector<std::string> notes, objects;
+  std::vector<Slider> sliders;
   std::vector<Entity> object_entities;
   std::vector<SessionEffector> effectors;
   // Values set by the owner, by object, by probe or tool. The world's copies belong to the touch clock.
@@ -235,8 +210,5 @@ struct SessionRun {
   void after(Tick tick);
   void idle();
 };
-
-// Does not allocate.
-void apply_edit(World& world, const Edit& edit);
 
 }  // namespace pliant

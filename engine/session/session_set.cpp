@@ -5,86 +5,34 @@
 
 #include "components/varying.h"
 #include "content/level/varying_keys.h"
-#include "engine/session/live_keys.h"
-#include "engine/session/session_change.h"
+#include "engine/session/live_set.h"
 #include "engine/session/session_run.h"
 
 namespace pliant {
 namespace {
 
-// An object, probe or tool by name: its extensions with their current values.
-struct Named {
-  LevelNode node;
-  std::vector<const Extension*> extensions;
-};
-
-NamedKind number_of(const Named& named) {
-  if (named.node.deformable) return NamedKind::kSurface;
-  if (named.node.probe) return NamedKind::kProbe;
-  if (named.node.handle) return NamedKind::kTool;
-  if (named.node.effect) return NamedKind::kEffect;
-  return named.node.soft_body ? NamedKind::kSoftBody : NamedKind::kRigidBody;
-}
-
-// In the order of NamedKind.
-constexpr const char* kKindWords[] = {
-    "a deformable surface", "a soft body", "a rigid body", "a tool", "a probe", "an effect"};
-
-const char* kind_of(const Named& named) {
-  return kKindWords[static_cast<std::size_t>(number_of(named))];
-}
-
-Result<Named> find_named(const SessionRun& p, const std::string& name) {
-  Named named;
+Result<LiveNamed> find_named(const SessionRun& p, const std::string& name) {
+  LiveNamed named;
+  named.name = name;
   if (const auto body = p.bodies.find(name); body != p.bodies.end()) named.node = body->second;
   if (const auto surface = p.surfaces.find(name); surface != p.surfaces.end()) named.node.deformable = surface->second;
   if (const auto device = p.devices.find(name); device != p.devices.end()) {
     named.node.device.emplace();
     static_cast<DeviceParameters&>(*named.node.device) = device->second;
   }
-  for (const Extension& extension : extension_table())
-    if (!extension.on_scene && extension.present(&named.node)) named.extensions.push_back(&extension);
-  if (!named.extensions.empty()) return named;
+  if (!extensions_of(named).empty()) {
+    if (const auto object = p.find_object(name)) named.object = *object;
+    if (const SessionEffector* const hand = p.find_effector(name))
+      named.hand = hand->entity, named.device = hand->device;
+    if (const auto effect = p.effects.find(name); effect != p.effects.end()) named.effect = effect->second;
+    named.several_effects = p.effects.contains(name) && named.effect == kNoEntity;
+    return named;
+  }
   std::vector<std::string> names = p.objects;
   for (const SessionEffector& effector : p.effectors) names.push_back(effector.name);
   for (const auto& [effect, entity] : p.effects) names.push_back(effect);
   return error_at("`" + name + "`",
                   unknown("name", name, "the scene", "its objects, probes, tools and effects", names));
-}
-
-std::vector<std::string> live_keys_of(const Named& named) {
-  std::vector<std::string> keys;
-  for (const Extension* extension : named.extensions)
-    for (const Key& each : extension->keys)
-      if (why_not_live(*extension, each).empty()) keys.push_back(each.name);
-  return keys;
-}
-
-struct Found {
-  const Extension* extension = nullptr;
-  const Key* key = nullptr;
-};
-
-// `live`: an existing key that cannot change is an error with its reason.
-Result<Found> find_named_key(const Named& named, const std::string& name, const std::string& key, bool live) {
-  const std::string where = "`" + name + "`: " + key;
-  for (const Extension* extension : named.extensions) {
-    if (const Key* const found = find_key(*extension, key)) {
-      const std::string why = live ? why_not_live(*extension, *found) : std::string();
-      if (!why.empty()) return Error{where, why};
-      return Found{extension, found};
-    }
-  }
-  const std::vector<std::string> keys = live_keys_of(named);
-  std::string whose;
-  for (const Extension& extension : extension_table())
-    if (find_key(extension, key)) whose += (whose.empty() ? "" : " and ") + ("`" + extension.name + "`");
-  if (!whose.empty())
-    return Error{where, fmt::format("`{}` is {}, and this is a key of {}", name, kind_of(named), whose),
-                 fmt::format("its keys are: {}", fmt::join(keys, ", "))};
-  const std::string near = suggestion(key, keys);
-  return Error{where, fmt::format("is no key of {}", kind_of(named)),
-               near + (near.empty() ? "" : " ") + fmt::format("keys are: {}", fmt::join(keys, ", ")), "name.unknown"};
 }
 
 void keep(SessionRun& p, const std::string& name, const Extension& extension, const LevelNode& node) {
@@ -133,64 +81,29 @@ Status send(SessionRun& p, SessionChange& change, const Note& note) {
   return Done{};
 }
 
-// Notes the value of `key` for the recording: KEY=VALUE with its extension.
-std::uint32_t note_set(SessionRun& p, const std::string& name, const Extension& extension, const Key& key,
-                       const Json& value) {
-  return p.note_event(
-      {0,
-       EventKind::kSet,
-       name,
-       extension.name + "." + key.name + "=" + (value.is_string() ? value.get<std::string>() : value.dump()),
-       0,
-       {}});
-}
-
-// Whether an animation varies what this key of a surface sets.
-bool is_varied(const SessionRun& p, const std::string& name, const Key& key) {
-  const auto object = p.find_object(name);
-  const Varying* const varying = object ? p.world.registry.find<Varying>(*object) : nullptr;
-  const VaryingKey* const varied = find_varying_key(key.name);
-  if (!varying || !varied) return false;
-  for (const auto member : varied->members)
-    for (const ParameterTrack& track : varying->tracks)
-      if (track.member == member) return true;
-  return false;
-}
-
 // `sent` is false if a new world follows, which begins with the value.
 Status set_value(SessionRun& p, const std::string& name, const std::string& key_name, Json value, bool sent = true) {
-  Result<Named> named = find_named(p, name);
+  const Result<LiveNamed> named = find_named(p, name);
   if (!named) return named.error();
-  const Result<Found> found = find_named_key(*named, name, key_name, true);
-  if (!found) return found.error();
-  const Extension* const extension = found->extension;
-  const Key* const key = found->key;
-  const std::string where = "`" + name + "`: " + key_name;
-  if (key->type == KeyType::kFlag && (value == "true" || value == "false")) value = value == "true";
-  if (const std::optional<Note> fault = check_value(*key, value)) return error_at(where, *fault);
-  if (named->node.deformable && is_varied(p, name, *key))
-    return Error{where, "is varied by an animation of the scene", "change its keys, or remove the channel"};
-  const LevelNode before = named->node;
-  if (before.deformable && before.deformable->young > 0.0 && key->name == "stiffness")
-    return Error{where, "follows from its Young's modulus", "set `young` instead"};
-  if (key->name == "stiffness" && stiffness_of_table(before))
-    return Error{where, "follows from the rows of its table", "set another `spring` first"};
-  key->set(&named->node, value);
-  if (const std::optional<Note> fault = extension->settle(&named->node)) return error_at(where, *fault);
-  Result<SessionChange> change = change_of(p, name, where, *extension, *key, named->node);
-  if (!change) return change.error();
+  Result<LiveSet> set = live_set(p.world, *named, key_name, std::move(value));
+  if (!set) return set.error();
   if (sent)
-    if (Status s = send(p, *change, [&] { return note_set(p, name, *extension, *key, value); }); !s) return s;
-  keep(p, name, *extension, named->node);
-  note_settings(p, name, *extension, *key, before, named->node);
+    if (Status s = send(p, set->change,
+                        [&] {
+                          return p.note_event({0, EventKind::kSet, name, set->words(), 0, {}});
+                        });
+        !s)
+      return s;
+  keep(p, name, *set->extension, set->now);
+  note_settings(p, name, *set->extension, *set->key, named->node, set->now);
   return Done{};
 }
 
 // Of a varied key, its value at `time` [s].
 Result<Json> value_of(const SessionRun& p, double time, const std::string& object, const std::string& key) {
-  const Result<Named> named = find_named(p, object);
+  const Result<LiveNamed> named = find_named(p, object);
   if (!named) return named.error();
-  const Result<Found> found = find_named_key(*named, object, key, false);
+  const Result<FoundKey> found = find_named_key(*named, key, false);
   if (!found) return found.error();
   LevelNode now = named->node;
   const auto entity = p.find_object(object);
@@ -302,10 +215,18 @@ Result<std::string> Session::json(const std::string& object, const std::string& 
   return value->dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+const std::vector<Slider>& Session::sliders() const& {
+  return run_->sliders;
+}
+
+std::vector<Slider> Session::sliders() && {
+  return run_->sliders;
+}
+
 Result<NamedKeys> Session::keys(const std::string& name) const {
-  const Result<Named> named = find_named(*run_, name);
+  const Result<LiveNamed> named = find_named(*run_, name);
   if (!named) return named.error();
-  return NamedKeys{number_of(*named), live_keys_of(*named)};
+  return NamedKeys{kind_of(*named), live_keys_of(*named)};
 }
 
 }  // namespace pliant

@@ -32,6 +32,7 @@
 #include "pliant/progress.h"
 #include "pliant/query.h"
 #include "pliant/scene.h"
+#include "pliant/slider.h"
 
 namespace pliant {
 
@@ -195,6 +196,9 @@ class Session {
   Result<double> get(const std::string& object, const std::string& key) const;
   // The same of a key of any type, as JSON: "cubic" in quotes, 800.0, [0.1, 0.2].
   Result<std::string> json(const std::string& object, const std::string& key) const;
+  // What the level offers to its user (its key `expose`), for set() and get().
+  const std::vector<Slider>& sliders() const& PLIANT_LIFETIMEBOUND;
+  std::vector<Slider> sliders() &&;
   // Of an object, probe, tool or effect.
   Result<NamedKeys> keys(const std::string& name) const;
 

@@ -175,6 +175,10 @@ void LevelRun::attach() {
     withheld.after = [this](Tick) { replay_->end_tick(); };
     runner_->attach(std::move(withheld));
   }
+  if (shown_ && !run_.sliders.empty()) {
+    live_.emplace(world_);
+    runner_->attach(live_->tick_part(recorder_));
+  }
   if (devices_.any()) runner_->attach(devices_.tick_part(world_));
   TickPart noted;
   noted.after = [this](Tick tick) {
@@ -195,9 +199,16 @@ void LevelRun::attach() {
 }
 
 void LevelRun::go(std::optional<Prepared>& next) {
-  TouchLoop loop{*runner_,      *journal_,    *keeper_,
-                 *out_,         interrupt_,   ticks_,
-                 frames_.get(), frame_ticks_, replay_ ? &*replay_ : nullptr};
+  TouchLoop loop{*runner_,
+                 *journal_,
+                 *keeper_,
+                 *out_,
+                 interrupt_,
+                 ticks_,
+                 frames_.get(),
+                 frame_ticks_,
+                 replay_ ? &*replay_ : nullptr,
+                 live_ ? &*live_ : nullptr};
   Prepared other;
   ran_ = shown_ ? run_shown(options_, run_, *shown_, loop, devices_, other) : run_headless(options_, loop);
   runner_->stop();  // an exception may have left it running

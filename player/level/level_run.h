@@ -76,6 +76,7 @@ class LevelRun {
   std::unique_ptr<Frames> frames_;
   std::optional<PoseReplay> replay_;
   std::optional<Runner> runner_;
+  std::optional<LiveWorld> live_;  // of a window, if the level has sliders
   std::vector<std::uint64_t> frame_ticks_;
   Ran ran_;
   std::optional<Error> wrong_;

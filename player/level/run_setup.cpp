@@ -9,6 +9,8 @@
 #include "content/device_answers.h"
 #include "content/keys/enum_words.h"
 #include "content/keys/extension_table.h"
+#include "content/keys/sliders.h"
+#include "content/keys/sliders.h"
 #include "content/keys/unused_keys.h"
 #include "content/level/probe_damage.h"
 #include "content/level/spawn_soft.h"
@@ -308,6 +310,9 @@ Outcome prepare_level(const RunOptions& options, bool windowed, Level& level, st
   if (run.replay) level.simulation.touch_rate = run.replay->header.rate;
   if (options.rate > 0.0) level.simulation.touch_rate = options.rate;
   if (Outcome wrong = apply_budget(options, level, run)) return wrong;
+  const auto sliders = sliders_of(level);  // --set may have changed what they set
+  if (!sliders) return failed(sliders.error());
+  run.sliders = *sliders;
   const auto choices = choose_models(level);
   if (!choices) return failed(choices.error());
   for (const ModelChoice& choice : *choices) say(run, choice.sentence());

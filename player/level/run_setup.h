@@ -12,6 +12,7 @@
 #include "engine/run/simulated_hands.h"
 #include "lab/console/exit.h"
 #include "player/level/run_options.h"
+#include "pliant/slider.h"
 #include "runtime/result.h"
 
 namespace pliant {
@@ -37,6 +38,7 @@ struct Prepared {
   World world;
   std::optional<Recording> replay;
   std::vector<Note> notes;
+  std::vector<Slider> sliders;        // of the level
   SimulatedHands hands;               // not connected
   std::filesystem::path file;         // of the level
   std::vector<LevelRequest> refused;  // devices that it requests but may not use without the user's permission

@@ -103,6 +103,8 @@ Ran run_shown(const RunOptions& options, const Prepared& run, Shown& shown, Touc
   WindowSession session{*shown.window, shown.script, loop.runner.world(), loop.runner, loop.journal,
                         loop.keeper,   loop.out,     loop.interrupt};
   if (devices.any()) session.devices = &devices;
+  session.live = loop.live;
+  session.sliders = run.sliders;
   session.level = options.level;
   session.question = question_of(run);
   session.allow = [&run] { return allow_all(run); };

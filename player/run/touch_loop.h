@@ -7,6 +7,7 @@
 #include "engine/run/journal.h"
 #include "engine/run/pose_replay.h"
 #include "engine/run/runner.h"
+#include "engine/session/live_world.h"
 #include "lab/console/interrupt.h"
 #include "lab/files/output_folder.h"
 #include "player/record/keeper.h"
@@ -27,6 +28,7 @@ struct TouchLoop {
   Frames* frames = nullptr;                // null: no pictures
   std::vector<std::uint64_t> frame_ticks;  // ticks after which a picture is taken, ascending
   PoseReplay* replay = nullptr;            // poses for every tick, lockstep only
+  LiveWorld* live = nullptr;               // of a window's sliders
 };
 
 Status run_lockstep(TouchLoop& loop);

@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
-#include "runtime/printable.h"
 #include "systems/safety/safety.h"
 #include "viewer/ui/device_list.h"
 #include "viewer/ui/imgui_pen.h"
@@ -236,11 +234,13 @@ std::span<const Switch> switches() {
 void ProbeHistory::add(const TickRow& row) {
   const auto number = static_cast<std::int64_t>(row.time / kSeconds * static_cast<double>(kBins));
   Bin& bin = bins_[static_cast<std::size_t>(number) % kBins];
-  if (bin.number != number) bin = {number, 0, 0, 0};
+  if (bin.number != number) bin = {number, 0, 0, 0, 0, 0};
   bin.limited = static_cast<std::uint8_t>(bin.limited | row.limited);
   newest_ = number;
   bin.force = std::max(bin.force, static_cast<float>(length(row.reading.force)));
   if (row.reading.in_contact) bin.depth = std::max(bin.depth, static_cast<float>(row.reading.depth));
+  bin.pair_force = static_cast<float>(row.reading.normal_force);
+  bin.pair_depth = row.reading.in_contact ? static_cast<float>(row.reading.depth) : 0.0f;
 }
 
 std::uint8_t ProbeHistory::limited() const {
@@ -321,30 +321,6 @@ void Overlay::draw_devices(const OverlayState& state) {
   ImGui::End();
 }
 
-void Overlay::draw_levels(const OverlayState& state) {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float wide = 200 * scale_, edge = 12 * scale_, devices = state.show_devices ? 304 * scale_ + edge : 0;
-  ImGui::SetNextWindowPos({size.x - edge - devices, edge}, ImGuiCond_Always, {1, 0});
-  ImGui::SetNextWindowSizeConstraints({wide, 0}, {wide, std::max(size.y - 2 * edge, 1.0f)});
-  ImGui::Begin("levels", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
-  {
-    const ui::Scope scope("Levels");
-    if (ui::button("Picture", "Into the run's folder")) level_orders_.picture = true;
-    ImGui::SameLine();
-    if (ui::button("Start anew", "The same level")) level_orders_.open = state.level;
-    ImGui::Separator();
-    for (const std::string& level : state.levels) {
-      const std::string name = printable(std::filesystem::path(level).stem().string());
-      const bool runs = level == state.level || name == state.level;
-      if (ui::selectable((name + "##" + level).c_str(), runs)) level_orders_.open = level;
-      ui::known_as(name);
-    }
-  }
-  ImGui::End();
-}
-
 void Overlay::draw_question(const OverlayState& state) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5f * size.x, 0.4f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
@@ -376,7 +352,7 @@ void Overlay::draw(const OverlayState& state, RenderOptions& options, float tint
   ImGui::NewFrame();
   if (state.figures) draw_panel(state, options, tint);
   if (state.figures && state.show_devices) draw_devices(state);
-  if (state.figures && state.show_levels) draw_levels(state);
+  if (state.figures && state.panel.shown) draw_side_panel(state);
   if (!state.question.empty()) draw_question(state);
   if (state.help) draw_help(state, scale_);
   if (!state.message.empty()) draw_message(state, scale_);

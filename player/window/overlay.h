@@ -14,6 +14,7 @@
 #include "engine/run/journal.h"
 #include "engine/run/soft_clock.h"
 #include "engine/run/touch_clock.h"
+#include "player/window/side_panel.h"
 #include "systems/visual/renderer.h"
 #include "viewer/ui/widgets.h"
 
@@ -28,10 +29,11 @@ class ProbeHistory {
 
   void add(const TickRow& row);
   struct Bin {
-    std::int64_t number = -1;  // index of the bin since the start; another index here means an empty bin
-    float force = 0;           // [N]
-    float depth = 0;           // [m] in contact, else 0
-    std::uint8_t limited = 0;  // 1 << SafetyLimit: limits that acted
+    std::int64_t number = -1;              // index of the bin since the start; another index here means an empty bin
+    float force = 0;                       // [N]
+    float depth = 0;                       // [m] in contact, else 0
+    float pair_force = 0, pair_depth = 0;  // [N] along the normal, [m]: both of the bin's last tick
+    std::uint8_t limited = 0;              // 1 << SafetyLimit: limits that acted
   };
   // `age` 0 is the newest bin, kBins - 1 the oldest; null for an empty bin.
   const Bin* bin(std::size_t age) const;
@@ -73,9 +75,7 @@ struct OverlayState {
   std::string message;  // a temporary message; empty: none
   bool message_is_error = false;
   std::vector<ProbeLine> probes;
-  bool show_levels = false;
-  std::vector<std::string> levels;  // files that the panel offers
-  std::string level;                // the one that runs
+  SidePanel panel;
   bool show_devices = false;
   DevicesView devices;
   std::string stop_keys;              // of the emergency stop
@@ -93,12 +93,6 @@ struct OverlayMouse {
   double wheel = 0;
 };
 
-// Commands from the panel of levels.
-struct LevelOrders {
-  std::string open;  // a level; empty: none
-  bool picture = false;
-};
-
 class Overlay {
  public:
   explicit Overlay(float scale);  // needs the window's context, as does every call
@@ -113,17 +107,18 @@ class Overlay {
             int height, double dt);
   // Commands from the device panel since the last call.
   DeviceOrders take_orders() { return std::exchange(orders_, {}); }
-  LevelOrders take_level_orders() { return std::exchange(level_orders_, {}); }
+  // The same from the side panel.
+  PanelOrders take_panel_orders() { return std::exchange(panel_orders_, {}); }
 
  private:
   void draw_panel(const OverlayState& state, RenderOptions& options, float tint);
   void draw_devices(const OverlayState& state);
-  void draw_levels(const OverlayState& state);
+  void draw_side_panel(const OverlayState& state);
   void draw_question(const OverlayState& state);
   float scale_;
   bool large_ = false;
   DeviceOrders orders_;
-  LevelOrders level_orders_;
+  PanelOrders panel_orders_;
 };
 
 }  // namespace pliant

@@ -95,8 +95,8 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
     if (summary.source == "mouse") mouse_probe_ = i;
     if (session.journal.probes()[i] == hand_.tool()) carried_ = i;
   }
-  state_.level = session.level;
-  state_.levels = levels_to_open(session.level);
+  state_.panel.level = session.level;
+  state_.panel.levels = levels_to_open(session.level);
   state_.stop_keys = session.devices ? session.stop_keys : std::string();
   state_.show_devices = session.devices != nullptr;
   for (const std::string& line : session.question) state_.question.push_back(printable(line));
@@ -106,6 +106,8 @@ WindowLoop::WindowLoop(WindowSession& session, Renderer& renderer)
     probe_at_ = *at;
     add_mouse(session.world, probe_at_);
   }
+  list_hands();
+  list_sliders();
   if (carried_ && hand_.taken_device() == kNoEntity)
     say("drag `" + session.keeper.summaries()[*carried_].name + "` with the left button to move it", false);
 }
@@ -125,7 +127,8 @@ void WindowLoop::point(double dt) {
     probe_at_ = *hand_.update(dt);
   }
   if (pictures_.seconds() < kHungPicture) {
-    s_.world.mouse->samples.write() = {probe_at_, hand_.free(), hand_.taken_device(), hand_.probe_hold()};
+    s_.world.mouse->samples.write() = {probe_at_, hand_.free(), hand_.has_tool() ? hand_.taken_device() : taken_,
+                                       hand_.probe_hold()};
     s_.world.mouse->samples.publish();
   }
   state_.cursor = hand_.has_probe() && pointed_ && !looks_around();
@@ -141,7 +144,12 @@ void WindowLoop::keep() {
   for (const TickRow& row : s_.keeper.latest()) {
     state_.probes[row.probe].history.add(row);
     if (row.probe == carried_) tool_at_ = row.device_position;
+    for (Holdable& each : holdable_)
+      if (row.probe == each.journal) each.at = row.device_position;
+    record_.add(row);
   }
+  if (record_.full()) record();
+  state_.panel.recording = record_.on() ? std::optional(record_.seconds()) : std::nullopt;
 }
 
 // Returns the next requested picture; a slow GPU skips some.
@@ -217,8 +225,7 @@ Status WindowLoop::learn(const PictureDone& done) {
   widgets_ = done.widgets;
   press_widgets();
   if (s_.devices && done.orders.any()) s_.devices->order(done.orders);
-  if (!done.level_orders.open.empty()) open(done.level_orders.open);
-  if (done.level_orders.picture) ++screenshots_;
+  take(done.panel_orders);
   if (done.orders.allow || done.orders.decline) answer_question(done.orders.allow);
   if (!shooting_.empty() && !done.screenshot && is_there(shooting_))
     ++screenshots_;  // another window has taken the name meanwhile

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "player/window/overlay.h"
+#include "player/window/path_record.h"
 #include "player/window/window_picture.h"
 #include "player/window/window_session.h"
 #include "viewer/hand/mouse_hand.h"
@@ -41,6 +42,13 @@ class WindowLoop {
   void open(const std::string& file);  // on a separate thread
   void look_for_opened();
   void say(const std::string& sentence, bool error);
+  void list_hands();
+  void list_sliders();
+  void hold(std::size_t which);  // into holdable_
+  void record();                 // starts, or ends and saves
+  void set_slider(std::size_t which, double value);
+  void undo_slider();
+  void take(const PanelOrders& orders);
   void point(double dt);
   void keep();  // rows of the journal
   PictureOrder order(bool shown);
@@ -62,10 +70,20 @@ class WindowLoop {
   dvec3 probe_at_{0};                                 // [m] target of the probe or tool under the mouse
   dvec3 tool_at_{0};                                  // [m] world, last position of the carried tool's device
   std::optional<std::size_t> mouse_probe_, carried_;  // indices in the journal
-  TouchClock* touch_ = nullptr;                       // null before the start
-  std::vector<ui::Place> widgets_;                    // of the last picture
-  std::string wanted_widget_;                         // to be pressed by a script once it is visible
-  double wanted_since_ = 0.0;                         // [s]
+  struct Holdable {
+    std::size_t journal;  // its index there
+    Entity device;
+    MouseHand hand;  // as prepared before the start
+    dvec3 at{0};     // [m] world, last position of its device
+  };
+  std::vector<Holdable> holdable_;  // probes and tools that the mouse can move
+  Entity taken_ = kNoEntity;        // the device of a probe that was chosen
+  PathRecord record_;
+  std::vector<std::vector<double>> undo_;  // values of all sliders
+  TouchClock* touch_ = nullptr;            // null before the start
+  std::vector<ui::Place> widgets_;         // of the last picture
+  std::string wanted_widget_;              // to be pressed by a script once it is visible
+  double wanted_since_ = 0.0;              // [s]
   Drag drag_ = Drag::kNone;
   MouseButton dragging_ = MouseButton::kLeft;
   bool wants_pull_ = false;                    // the current press was made with Ctrl

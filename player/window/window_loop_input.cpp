@@ -147,11 +147,13 @@ void WindowLoop::key(int key) {
     state_.figures |= state_.show_devices;
   }
   if (id == "view.levels") {
-    state_.show_levels = !state_.show_levels;
-    state_.figures |= state_.show_levels;
+    state_.panel.shown = !state_.panel.shown;
+    state_.figures |= state_.panel.shown;
   }
   if (id == "play.toggle") touch_->pause(!touch_->paused());
   if (id == "play.restart") open(s_.level);
+  if (id == "play.mouse" && !holdable_.empty())
+    hold(state_.panel.holds ? (*state_.panel.holds + 1) % holdable_.size() : 0);
   if (id == "file.screenshot") ++screenshots_;
   if (id == "help.keys") state_.help = !state_.help;
   if (id == "file.close") {

@@ -148,7 +148,7 @@ void WindowPictures::draw() {
                    order_.dt);
     done_.wants_mouse = overlay_->wants_mouse();
     done_.orders = overlay_->take_orders();
-    done_.level_orders = overlay_->take_level_orders();
+    done_.panel_orders = overlay_->take_panel_orders();
     done_.widgets = ui::widgets();
     if (stays)
       done_.screenshot = write_file(order_.screenshot, window_png(order_.width, order_.height), Existing::kRefuse);

@@ -39,7 +39,7 @@ struct PictureDone {
   RenderOptions options;     // as changed by the overlay's switches
   bool wants_mouse = false;  // the mouse is over a panel: the scene ignores it
   DeviceOrders orders;       // commands from the device panel
-  LevelOrders level_orders;  // from the panel of levels
+  PanelOrders panel_orders;
   std::vector<ui::Place> widgets;
   std::optional<PickAnswer> answer;
   std::uint64_t awake_vertices = 0;

@@ -11,6 +11,7 @@
 #include "engine/run/device_links.h"
 #include "engine/run/journal.h"
 #include "engine/run/runner.h"
+#include "engine/session/live_world.h"
 #include "lab/console/interrupt.h"
 #include "lab/files/output_folder.h"
 #include "player/record/keeper.h"
@@ -29,6 +30,8 @@ struct WindowSession {
   OutputFolder& out;
   const Interrupt& interrupt;
   DeviceLinks* devices = nullptr;          // null: no device
+  LiveWorld* live = nullptr;               // null: the level has no sliders
+  std::vector<Slider> sliders;             // of the level
   std::string level;                       // level that `R` opens again
   std::string stop_keys;                   // of the emergency stop, "F9"
   double rate = 1000.0;                    // [Hz]

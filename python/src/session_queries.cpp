@@ -86,6 +86,17 @@ void bind_state(Class& c) {
             return h.with([&](Session& s) { return check(s.keys(name)).live; });
           },
           py::arg("name"), "The parameters of an object, probe, tool or effect that set() changes.")
+      .def_property_readonly(
+          "sliders",
+          [](HeldSession& h) {
+            py::list out;
+            for (const pliant::Slider& s : h.with([](Session& session) { return session.sliders(); }))
+              out.append(py::dict(py::arg("object") = s.object, py::arg("key") = s.key, py::arg("name") = s.name,
+                                  py::arg("unit") = s.unit, py::arg("low") = s.low, py::arg("high") = s.high,
+                                  py::arg("step") = s.step));
+            return out;
+          },
+          "What the level offers to its user (its key `expose`): arguments of set(), a label, bounds, a step.")
       .def(
           "save",
           [](HeldSession& h) {

@@ -12,8 +12,14 @@ namespace {
 void take_over(World& world, Entity taken, MouseInput& mouse) {
   HapticDevice* device = taken == kNoEntity ? nullptr : world.registry.find<HapticDevice>(taken);
   if (!device || device->driver == DriverKind::kMouse) return;
+  for (auto [entity, other] : world.registry.view<HapticDevice>())
+    if (other.driver == DriverKind::kMouse) {  // nothing moves it from now on
+      other.driver = DriverKind::kExternal;
+      other.status = DeviceStatus::kLost;
+    }
   device->driver = DriverKind::kMouse;
   device->path = {};
+  device->status = DeviceStatus::kReady;
   mouse.position = mouse.to = device->position;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "content/files/image.h"
+#include "content/level/script.h"
 #include "tests/player/command.h"
 
 namespace pliant::testing {
@@ -246,6 +247,46 @@ TEST_F(WindowTest, ThePanelOfLevelsOpensAnother) {
     if (fs::exists(folder / "out" / "beside" / "report.json")) break;
   }
   EXPECT_EQ(report("out/beside")["level"], "beside");
+}
+
+// A probe that keeps 2 mm: its force is the stiffness times that, after every change.
+TEST_F(WindowTest, ASliderOfTheLevelIsFeltAtOnceAndUndone) {
+  write_text(folder / "hold.csv", "time_s,x,y,z\n0,0,0.01,0\n0.3,0,-0.002,0\n90,0,-0.002,0\n");
+  const Said said = shown(
+      {"plate.obj", "--probe", "tip=script:hold.csv", "--record", "p.rec", "--set",
+       R"(scene.simulation.expose=[{"key":"plate.deformable.stiffness","name":"Soft","range":[100,920],"step":50}])"},
+      "0.0,key,L\n1.0,click,Sliders/Soft\n2.2,click,Sliders/Undo\n3.4,close,\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const ForcesTable forces = read_forces(folder / "out" / "forces.csv");
+  std::vector<double> levels;  // [N] forces that lasted for 50 ticks
+  int lasted = 0;
+  for (std::size_t i = 1; i < forces.rows.size(); ++i) {
+    if (forces.rows[i].at("probe") != "tip" || forces.number(i, "depth_m") < 0.00199) continue;
+    const double now = forces.number(i, "fn");
+    lasted = std::abs(now - forces.number(i - 1, "fn")) < 1e-6 ? lasted + 1 : 0;
+    if (lasted == 50 && (levels.empty() || std::abs(levels.back() - now) > 1e-3)) levels.push_back(now);
+  }
+  ASSERT_EQ(levels.size(), 3u);
+  EXPECT_NEAR(levels[0], 0.6, 1e-6);
+  EXPECT_NEAR(levels[1], 1.0, 1e-6) << "the middle of the slider, in steps of 50 N/m";
+  EXPECT_NEAR(levels[2], 0.6, 1e-6);
+  const Said again = pliant({"run", "plate.obj", "--replay", "p.rec", "--out", "again", "--frames", "0"});
+  EXPECT_NE(again.err.find("holds 2 changes"), std::string::npos) << again.err;
+}
+
+TEST_F(WindowTest, TheMouseTakesAnotherProbeAndItsPathIsAScript) {
+  write_text(folder / "hold.csv", "time_s,x,y,z\n0,0.03,0.02,0\n90,0.03,0.02,0\n");
+  const Said said = shown({"plate.obj", "--probe", "a=mouse", "--probe", "b=script:hold.csv"},
+                          "0.0,key,Tab\n0.0,move,120 80\n0.3,key,M\n0.6,move,121 81\n0.7,press,\n1.5,release,\n"
+                          "1.6,key,Tab\n1.6,key,L\n1.7,click,Levels/Record\n3.0,click,Levels/Record\n4.0,close,\n");
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_GT(probe("b")["contact_ticks"], 100);
+  EXPECT_GT(probe("b")["max_force_N"], 0.05);
+  EXPECT_EQ(probe("a")["contact_ticks"], 0);
+  const auto path = load_script(folder / "out" / "path-001.csv");
+  ASSERT_TRUE(path.ok()) << path.error().message();
+  EXPECT_GT(path->rows.back().time, 0.5);
+  expect_no_force_at_the_end();
 }
 
 TEST_F(WindowTest, TheSameLevelAnewIsWrittenBesideWhatWasWrittenOfIt) {

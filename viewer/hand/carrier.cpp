@@ -47,6 +47,13 @@ Carrier Carrier::holding(const World& world, Entity tool, dvec3 at) {
   return carrier;
 }
 
+Carrier Carrier::waiting(const World& world, Entity tool, Entity device) {
+  Carrier carrier = holding(world, tool, dvec3(0));
+  carrier.device_ = device;
+  carrier.follows_path_ = true;
+  return carrier;
+}
+
 void Carrier::grab(const dvec3& point, const dvec3& device) {
   held_ = point;
   if (follows_path_) position_ = wanted_ = device;

@@ -21,6 +21,8 @@ class Carrier {
 
   // For this tool, whose device is at `at` [m] world.
   static Carrier holding(const World& world, Entity tool, dvec3 at);
+  // For this tool, whose device follows something else until the mouse takes it.
+  static Carrier waiting(const World& world, Entity tool, Entity device);
 
   Entity tool() const { return tool_; }
   // `point` [m] world, on the tool; `device` [m] world, where its device is.

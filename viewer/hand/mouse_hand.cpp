@@ -21,6 +21,12 @@ void MouseHand::let_go() {
   grip_ = Grip::kNone;
 }
 
+void MouseHand::begin(dvec3 device) {
+  if (!carrier_) return;
+  carrier_->grab(device, device);
+  carrier_->release();
+}
+
 void MouseHand::see(const std::optional<Picked>& seen, const ViewRay& ray) {
   seen_ = seen;
   if (pointer_) pointer_->see(seen, ray);

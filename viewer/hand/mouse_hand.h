@@ -14,7 +14,8 @@ class MouseHand {
 
   void take(Pointer probe);
   void take(Carrier tool);
-  void let_go();  // moves nothing from now on
+  void let_go();             // moves nothing from now on
+  void begin(dvec3 device);  // a tool's device is taken where it is [m] world, before a press
   bool has_probe() const { return pointer_.has_value(); }
   bool has_tool() const { return carrier_.has_value(); }
 

@@ -54,7 +54,8 @@ constexpr KeyRow kKeyRows[] = {
     {"view.figures", "Tab", "hide or show figures"},
     {"help.keys", "F1", "; this page", "F1", "Keys\u2026"},
     {"view.devices", "D", "devices: state, axes, forces, arming"},
-    {"view.levels", "L", "levels to open, picture"},
+    {"view.levels", "L", "sliders, levels, recording"},
+    {"play.mouse", "M", ", the mouse moves the next probe"},
     {"", "Drop a file", "open it"},
     {"file.close", "Esc", "close"},
 };

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "content/keys/extension_table.h"
-#include "engine/session/live_keys.h"
+#include "content/keys/live_keys.h"
 #include "lab/study/hard/hard_case.h"
 #include "pliant/session.h"
 #include "scenes/touch_laws.h"

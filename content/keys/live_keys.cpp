@@ -1,4 +1,4 @@
-#include "engine/session/live_keys.h"
+#include "content/keys/live_keys.h"
 
 namespace pliant {
 namespace {
