@@ -16,15 +16,16 @@ export function gltf(bytes) {
 
 // Relative names of other files in a level.
 export function named(bytes) {
-  const found = new Set();
-  const look = (value) => {
-    if (!value || typeof value !== 'object') return;
+  const found = new Set(),
+    values = [gltf(bytes)];
+  while (values.length) {
+    const value = values.pop();
+    if (!value || typeof value !== 'object') continue;
     for (const [key, each] of Object.entries(value))
-      if (typeof each !== 'string') look(each);
+      if (typeof each !== 'string') values.push(each);
       else if (kNaming.has(key) && /\.\w+$/.test(each) && !/^(data:|[a-z]+:\/\/|\/)/i.test(each))
         found.add(decode(each));
-  };
-  look(gltf(bytes));
+  }
   return [...found];
 }
 
@@ -40,6 +41,24 @@ async function bytesOf(response) {
   return new Uint8Array(await response.arrayBuffer());
 }
 
+function address(source) {
+  try {
+    return new URL(source, globalThis.location?.href);
+  } catch {
+    throw new Error(`${source}: not an address; give one like https://example.org/level.glb`);
+  }
+}
+
+async function answer(url) {
+  try {
+    return await fetch(url);
+  } catch {
+    throw new Error(
+      `${url}: no answer that this page may read; check the address, or its server does not allow other sites (CORS): download it, and drop it here`,
+    );
+  }
+}
+
 // {name, bytes, files}: of a URL, Response, Blob or bytes. `files`: companions by their relative name.
 export async function open(source, { name, files = {} } = {}) {
   if (source instanceof ArrayBuffer) source = new Uint8Array(source);
@@ -50,8 +69,8 @@ export async function open(source, { name, files = {} } = {}) {
       files,
     };
   if (source instanceof Blob) return { name: name ?? source.name ?? 'level.glb', bytes: await bytesOf(source), files };
-  const url = new URL(source, globalThis.location?.href);
-  const response = await fetch(url);
+  const url = address(source),
+    response = await answer(url);
   if (!response.ok) throw new Error(`${url}: the server answers ${response.status}; check the address`);
   const bytes = await bytesOf(response);
   const companions = { ...files };
@@ -59,8 +78,8 @@ export async function open(source, { name, files = {} } = {}) {
     named(bytes)
       .filter((each) => !(each in companions))
       .map(async (each) => {
-        const answer = await fetch(new URL(each.split('/').map(encodeURIComponent).join('/'), url));
-        if (answer.ok) companions[each] = await bytesOf(answer); // otherwise the engine says what is missing
+        const found = await fetch(new URL(each.split('/').map(encodeURIComponent).join('/'), url)).catch(() => null);
+        if (found?.ok) companions[each] = await bytesOf(found); // otherwise the engine says what is missing
       }),
   );
   return { name: name ?? decode(url.pathname.split('/').pop() || 'level.glb'), bytes, files: companions };

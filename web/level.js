@@ -3,8 +3,8 @@ import { gltf } from './files.js';
 
 // {words(name), probes, about}: law and shape of a surface; colours of probes by name; what the level says of itself.
 export function describe(bytes) {
-  const level = gltf(bytes) ?? {},
-    nodes = level.nodes ?? [];
+  const level = gltf(bytes) ?? {}, // of any form: the engine says what is wrong with it
+    nodes = (Array.isArray(level.nodes) ? level.nodes : []).filter((each) => each && typeof each === 'object');
   return {
     words: (name) => ({
       spring: 'linear',

@@ -136,7 +136,9 @@ function opened({ tag, effectors, objects, bounds, view: camera, notes, version 
   if (level.given) $('level').value = level.given;
   else $('level').selectedIndex = -1;
   for (const sentence of notes) console.info(sentence);
-  sliders();
+  const used = sliders(),
+    unused = Object.keys(settings).filter((key) => !used.has(key));
+  if (unused.length) say(`${level.name} does not take these settings: ${unused.join(', ')}.`);
   document.body.dataset.level = level.name;
 }
 
@@ -144,7 +146,8 @@ function opened({ tag, effectors, objects, bounds, view: camera, notes, version 
 
 const rounded = (value) => +value.toPrecision(3);
 function sliders() {
-  const rows = [];
+  const rows = [],
+    used = new Set(); // settings that act here
   const surfaces = level.objects.filter((each) => each.surface),
     bodies = level.objects.filter((each) => each.keys.young > 0 && !each.surface);
   const slide = (key, label, unit, objects, factor = 1) => {
@@ -164,6 +167,7 @@ function sliders() {
     row.append(label, out, input);
     rows.push(row);
     const value = +settings[key] > 0 ? +settings[key] : start;
+    if (value !== start || +settings[key] === start) used.add(key);
     input.value = Math.round(100 * Math.log10(value / start));
     apply(value);
   };
@@ -180,7 +184,7 @@ function sliders() {
     select.onchange = apply;
     row.append(label, select);
     rows.push(row);
-    if (words.includes(settings[key])) ((select.value = settings[key]), apply());
+    if (words.includes(settings[key])) (used.add(key), (select.value = settings[key]), apply());
   };
   if (surfaces[0]?.keys.stiffness) slide('stiffness', 'Stiffness', 'N/m', surfaces);
   if (bodies.length) slide('young', "Young's modulus", 'kPa', bodies, 1e-3);
@@ -190,11 +194,13 @@ function sliders() {
     choose('shape', 'Shape', kShapes, words.shape);
   }
   $('sliders').replaceChildren(...rows);
+  return used;
 }
 
 function link() {
   const at = new URL(location.href);
   if (level?.given) at.searchParams.set('level', level.given);
+  else at.searchParams.delete('level');
   at.hash = new URLSearchParams(settings).toString();
   return at.href;
 }
@@ -349,11 +355,14 @@ $('sound').onclick = ({ currentTarget: button }) => {
 $('share').onclick = async () => {
   const href = link();
   history.replaceState(null, '', href);
+  const holds = level?.given
+    ? 'it holds the level and its settings.'
+    : `it holds the settings alone. ${level?.name ?? 'The level'} is a file of yours: put it on a server, and open it by ?level=ADDRESS.`;
   try {
     await navigator.clipboard.writeText(href);
-    say('The link is copied: it holds the level and its settings.', 3);
+    say(`The link is copied: ${holds}`, level?.given ? 3 : 12);
   } catch {
-    say(`Copy the address of this page: it holds the level and its settings.`, 5);
+    say(`Copy the address of this page: ${holds}`, 12);
   }
 };
 
@@ -377,7 +386,12 @@ async function take(list) {
     main = all.find((each) => /\.(glb|gltf|obj|stl|ply)$/i.test(each.name)) ?? all[0];
   if (!main) return;
   const files = {};
-  for (const each of all) if (each !== main) files[each.name] = new Uint8Array(await each.arrayBuffer());
+  for (const each of all)
+    try {
+      if (each !== main) files[each.name] = new Uint8Array(await each.arrayBuffer());
+    } catch {
+      return told.failed({ sentence: `${each.name}: this browser does not read it; drop files, not folders` });
+    }
   show(main, { files });
 }
 $('open').onclick = () => $('file').click();

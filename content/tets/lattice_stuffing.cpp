@@ -242,7 +242,8 @@ class Stuffer {
            region_(0.25 * (p[0] + p[1] + p[2] + p[3]));
   }
 
-  // Keeps the inner part of a lattice tetrahedron.
+  // Keeps the inner part of a lattice tetrahedron. Calls of node() and node_between() number new nodes, so that they
+  // stand in statements of their own: the order of a call's arguments differs between compilers.
   void clip(const std::array<Place, 4>& corners) {
     Place in[4], on[4], out[4];
     std::size_t ins = 0, ons = 0, outs = 0;
@@ -254,7 +255,9 @@ class Stuffer {
     }
     if (ins == 0 && (ons < 4 || !bridges(corners))) return;
     if (outs == 0) {
-      emit(node(corners[0]), node(corners[1]), node(corners[2]), node(corners[3]));
+      std::array<std::uint32_t, 4> whole;
+      for (std::size_t i = 4; i-- > 0;) whole[i] = node(corners[i]);
+      emit(whole[0], whole[1], whole[2], whole[3]);
     } else if (ins == 1) {
       std::uint32_t rest[3];
       std::size_t n = 0;
@@ -264,8 +267,10 @@ class Stuffer {
     } else if (ins == 3) {
       const bool diagonals[3] = {diagonal_from_first(in[0], in[1], out[0]), diagonal_from_first(in[1], in[2], out[0]),
                                  diagonal_from_first(in[2], in[0], out[0])};
-      prism({node(in[0]), node(in[1]), node(in[2])},
-            {node_between(in[0], out[0]), node_between(in[1], out[0]), node_between(in[2], out[0])}, diagonals);
+      const std::uint32_t b[3] = {node_between(in[0], out[0]), node_between(in[1], out[0]),
+                                  node_between(in[2], out[0])};
+      const std::uint32_t a[3] = {node(in[0]), node(in[1]), node(in[2])};
+      prism(a, b, diagonals);
     } else if (outs == 1) {  // a pyramid over the quadrilateral, its apex on the surface
       const std::uint32_t a = node(in[0]), b = node(in[1]), tip = node(on[0]);
       const std::uint32_t c = node_between(in[0], out[0]), d = node_between(in[1], out[0]);

@@ -257,6 +257,25 @@ const tests = {
     await closed(soft);
   },
 
+  async 'an address that cannot be opened is said, and settings that do not act'() {
+    for (const [level, sentence] of [
+      ['http://127.0.0.1:1/x.glb', /127.0.0.1:1\/x.glb.*CORS/],
+      ['http://', /not an address/],
+      ['missing.glb', /answers 404/],
+    ]) {
+      const page = await opened(`${plain.at}?level=${encodeURIComponent(level)}`);
+      await page.waitForFunction(() => document.body.dataset.failed, null, { timeout: 20000 });
+      const failed = await page.evaluate(() => document.body.dataset.failed);
+      expect(sentence.test(failed), `${level}: the page says "${failed}"`);
+      await page.context().close();
+    }
+    const page = await opened(`${plain.at}?level=minimal#stiffness=soft&sprong=cubic`);
+    await ready(page, /minimal/);
+    const said = await page.locator('#sentence').textContent();
+    expect(/stiffness, sprong/.test(said), `the page says "${said}"`);
+    await closed(page);
+  },
+
   async 'a recording is a forces.csv'() {
     const page = await opened(plain.at);
     await ready(page);
