@@ -35,6 +35,7 @@ double computed_ms() {
 App::App(const EditOptions& options, Window& window) : options_(options), window_(window) {
   std::string note;
   settings = Settings::load(options.config, note);
+  ui::remember_sections(&settings.sections);
   play_.answers = DeviceAnswers::load(options.config);
   host_.emplace(window_);
   set_look();

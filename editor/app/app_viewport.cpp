@@ -4,13 +4,15 @@
 
 #include "editor/app/app.h"
 #include "editor/app/fixed_window.h"
+#include "editor/app/navigation.h"
 #include "viewer/ui/seen.h"
 #include "viewer/ui/widgets.h"
 
 namespace pliant {
 namespace {
 
-constexpr float kClick = 4;  // [point] a press that moves farther is a drag
+constexpr double kZoomClicks = 20.0;  // of the wheel, by a drag over the whole height
+constexpr float kClick = 4;           // [point] a press that moves farther is a drag
 
 vec4 as_vec(const ImVec4& c, float alpha = 1.0f) {
   return {c.x, c.y, c.z, alpha};
@@ -69,16 +71,16 @@ bool App::offer_to_tool(const ViewportInput& in) {
 }
 
 void App::move_camera(const ViewportInput& in, bool active, bool taken) {
-  const bool turns = active && (ImGui::IsMouseDragging(1, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken &&
-                                                                    (in.alt || moved_since_press_) && !in.shift));
-  const bool shifts =
-      active && (ImGui::IsMouseDragging(2, 1.0f) || (ImGui::IsMouseDragging(0, 1.0f) && !taken && in.shift) ||
-                 (ImGui::IsMouseDragging(1, 1.0f) && in.shift));
-  dragging_view_ = turns || shifts;
-  if (shifts)
-    editor.camera.pan(in.dx, in.dy, in.height);
-  else if (turns)
-    editor.camera.orbit(in.dx, in.dy, in.height);
+  ViewDrag drag;
+  drag.left = active && !taken && ImGui::IsMouseDragging(0, 1.0f) && (in.alt || in.shift || moved_since_press_);
+  drag.right = active && ImGui::IsMouseDragging(1, 1.0f);
+  drag.middle = active && ImGui::IsMouseDragging(2, 1.0f);
+  drag.shift = in.shift, drag.control = in.control, drag.alt = in.alt;
+  const ViewMotion motion = view_motion(settings.navigation, drag);
+  dragging_view_ = motion != ViewMotion::kNone;
+  if (motion == ViewMotion::kShift) editor.camera.pan(in.dx, in.dy, in.height);
+  if (motion == ViewMotion::kTurn) editor.camera.orbit(in.dx, in.dy, in.height);
+  if (motion == ViewMotion::kZoom) editor.camera.zoom(-kZoomClicks * in.dy / in.height);
   const float wheel = ImGui::GetIO().MouseWheel;
   if (in.over && wheel != 0 && !taken) editor.camera.zoom(static_cast<double>(wheel));
 }

@@ -67,6 +67,10 @@ Settings Settings::load(const fs::path& folder, std::string& note) {
     for (const Json& file : json["recent"])
       if (file.is_string() && s.recent.size() < kMostRecent) s.recent.push_back(file.get<std::string>());
   s.keys = texts(json, "keys");
+  if (json.contains("navigation") && json["navigation"].is_string()) s.navigation = json["navigation"];
+  if (json.contains("sections") && json["sections"].is_object())
+    for (const auto& [name, open] : json["sections"].items())
+      if (open.is_boolean()) s.sections[name] = open.get<bool>();
   s.presets = texts(json, "presets");
   return s;
 }
@@ -81,6 +85,8 @@ Status Settings::save() const {
                   {"bottom", bottom},
                   {"recent", recent},
                   {"keys", keys},
+                  {"navigation", navigation},
+                  {"sections", sections},
                   {"presets", presets},
                   {"snap", snap},
                   {"snap_move", snap_move},

@@ -22,7 +22,9 @@ struct Settings {
   bool snap = false;
   double snap_move = 0.01, snap_turn = 15.0, snap_scale = 0.1;  // [m], [degrees], [1]
   bool local_axes = false;
-  double autosave = 30.0;  // [s] between copies for recovery
+  std::string navigation;                // of other programs (editor/app/navigation.h); "": the editor's own
+  std::map<std::string, bool> sections;  // those opened or closed otherwise than at first, by address
+  double autosave = 30.0;                // [s] between copies for recovery
 
   // Empty `folder`: the user's. `note` receives a sentence if the file is faulty.
   static Settings load(const std::filesystem::path& folder, std::string& note);

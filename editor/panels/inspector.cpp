@@ -13,6 +13,7 @@
 #include "editor/panels/panels.h"
 #include "editor/panels/place_fields.h"
 #include "editor/panels/property_row.h"
+#include "editor/panels/slider_offer.h"
 #include "editor/viewport/gizmo_math.h"
 #include "runtime/printable.h"
 #include "viewer/ui/widgets.h"
@@ -141,6 +142,7 @@ class InspectorPanel : public Panel {
       editor.apply(what, with_value(editor.state(), ids, extension.name, key.name, next),
                    extension.name + "." + key.name);
     ui::zero_reads("");
+    offer_slider(editor, extension, key, shown);
     if (key.name == "error" && ui::button("Measure models\u2026", "What this budget chooses, and from what"))
       app_.show_panel("Error budget");
     if (const std::optional<Note> doubtful = doubt(key, value)) {

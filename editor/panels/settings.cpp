@@ -1,6 +1,7 @@
 // Appearance of the editor, and the interval of recovery copies.
 #include <fmt/format.h>
 
+#include "editor/app/navigation.h"
 #include "editor/panels/dialog.h"
 #include "editor/panels/panels.h"
 
@@ -14,7 +15,7 @@ class SettingsPanel : public Panel {
   Place place() const override { return Place::kOver; }
 
   void draw(Editor&) override {
-    const Dialog dialog(app_, name(), "Settings", {460, 180});
+    const Dialog dialog(app_, name(), "Settings", {460, 210});
     Settings& s = app_.settings;
     const Settings before = s;
     const auto column = [] { ImGui::SameLine(ui::px(150)); };
@@ -33,13 +34,22 @@ class SettingsPanel : public Panel {
       ImGui::SameLine(0, ui::px(2));
     }
     ImGui::NewLine();
+    ui::label("Mouse", "What moves the view");
+    column();
+    for (const NavigationRow& row : navigation_rows()) {
+      const bool own = &row == navigation_rows().data();
+      if (ui::choice_button(row.name, s.navigation == (own ? "" : row.name), row.hint))
+        s.navigation = own ? "" : row.name;
+      ImGui::SameLine(0, ui::px(2));
+    }
+    ImGui::NewLine();
     ui::label("Copy for recovery",
               "Of what is not saved, beside the file. It is there after a crash or a loss of power.");
     column();
     bool finished = false;
     ui::number("every", s.autosave, 0.1, 3600, "s", false, 110, &finished);
     if (s.light != before.light || s.scale != before.scale) app_.look_changed();
-    if (s.light != before.light || s.scale != before.scale || finished)
+    if (s.light != before.light || s.scale != before.scale || s.navigation != before.navigation || finished)
       if (const Status saved = s.save(); !saved) app_.editor.say(saved.error().message(), Severity::kWarning);
   }
 

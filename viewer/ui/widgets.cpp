@@ -13,6 +13,7 @@ namespace pliant::ui {
 namespace {
 
 std::vector<std::string> g_scopes;
+std::map<std::string, bool>* g_sections = nullptr;
 std::vector<Place> g_now, g_before;
 float g_rows_end = 0.0f;  // [pixel]
 
@@ -277,7 +278,14 @@ bool begin_menu(const char* label, bool enabled) {
   return open;
 }
 
+void remember_sections(std::map<std::string, bool>* opened) {
+  g_sections = opened;
+}
+
 bool section(const char* label, bool open_at_first) {
+  const std::string address = address_of(label);
+  const bool before = g_sections && g_sections->contains(address) ? (*g_sections)[address] : open_at_first;
+  ImGui::SetNextItemOpen(before, ImGuiCond_Once);
   // Subdued: the accent is for selected or active items.
   ImVec4 back = palette().text;
   back.w = 0.05f;
@@ -290,6 +298,12 @@ bool section(const char* label, bool open_at_first) {
   ImGui::PopFont();
   ImGui::PopStyleColor(3);
   known_as(label);
+  if (g_sections && ImGui::IsItemToggledOpen()) {
+    if (open == open_at_first)
+      g_sections->erase(address);
+    else
+      (*g_sections)[address] = open;
+  }
   return open;
 }
 

@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -74,6 +75,8 @@ bool selectable(const char* label, bool selected, ImGuiSelectableFlags flags = 0
 bool menu_item(const char* label, const char* shortcut = nullptr, bool checked = false, bool enabled = true);
 bool begin_menu(const char* label, bool enabled = true);
 bool section(const char* label, bool open_at_first = true);  // a foldable header
+// Where sections that were opened or closed are kept, by address; null: nowhere. It must outlive the widgets.
+void remember_sections(std::map<std::string, bool>* opened);
 void label(const char* text, const char* hint_text = nullptr);
 void dim(const char* text);  // wrapped, in a subdued colour
 void title(const char* text);
