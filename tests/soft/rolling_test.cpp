@@ -68,6 +68,39 @@ TEST(RollingBall, GainsFiveSeventhsOfGravityOnAnIncline) {
     }
 }
 
+// It tips over the edge: no contact lies on a side face beyond its rim.
+TEST(RollingBall, FallsOverAnEdgeWithoutGainingEnergy) {
+  for (const double step : {kPileStep, 1.0 / 240.0})
+    for (const dvec3 speed : {dvec3(0.144, 0, 0.144), dvec3(0.072, 0, 0.072), dvec3(0.216, 0, 0)}) {
+      SCOPED_TRACE(testing::Message() << "step " << step << ", speed " << speed.x);
+      scenes::ToolStage stage(step);
+      RigidBody rough;
+      rough.friction_static = rough.friction_sliding = 0.8;
+      RigidBody plate = rough;
+      plate.fixed = true;
+      stage.add_rigid(scenes::box(dvec3(0.4, 0.02, 0.4), dvec3(0, -0.01, 0)), plate, {});
+      constexpr double kRadius = 0.025;
+      Primitive sphere = icosphere(2);
+      for (vec3& x : sphere.position) x *= float(kRadius);
+      const Entity entity = stage.add_rigid(sphere, rough, Pose{dvec3(0.15, kRadius, 0), kUpright});
+      stage.world.simulation.gravity = dvec3(0, -9.81, 0);
+      stage.prepare();
+      auto& ball = dynamic_cast<RigidState&>(stage.body(entity));
+      ball.set_velocity(speed, dvec3(speed.z, 0, -speed.x) / kRadius);
+      const auto energy = [&] {
+        const Vector v = ball.velocity();
+        const double inertia = ball.mass().inertia[2][2] / ball.mass().mass;
+        return 9.81 * ball.centre().y + 0.5 * v.head<3>().squaredNorm() + 0.5 * inertia * v.tail<3>().squaredNorm();
+      };
+      const double begin = energy();
+      for (int i = 0; i < int(std::lround(1.2 / step)); ++i) {
+        stage.step();
+        ASSERT_LT(energy(), 1.02 * begin) << "at x = " << ball.centre().x;
+      }
+      EXPECT_LT(ball.centre().y, 0.0) << "it has fallen";
+    }
+}
+
 // [m] that a block slides down in a second, once the plane has been raised to this slope.
 double slid(double young, double mu_static, double mu_sliding, double slope) {
   scenes::ToolStage stage(kPileStep);

@@ -23,7 +23,7 @@ constexpr double kCouplingWide = 0.02;     // [m] of the bar, and the handle's l
 constexpr double kCouplingYoung = 2e4;     // [Pa]
 constexpr double kCouplingBeta = 2e-3;     // [s] damping of its stiffness
 constexpr double kCouplingPush = 0.1;      // [m/s] of its end
-constexpr double kGrows = 1.02;            // [1] of the second half over the first that still counts as stable
+constexpr double kStable = 1.02;            // [1] of the second half over the first that still counts as stable
 constexpr double kCouplingDiverged = 1e3;  // [1] of the tissue's own swing
 constexpr double kResolved = 1e-6;         // [1] smaller differences are drawn as this
 const Handle6 kHand;                       // its spring and damper hold the handle
@@ -91,7 +91,7 @@ std::vector<double> steps_of(const Whole& of, bool staggered, Eigen::VectorXd v,
     out.push_back(x[n - 6 + 1]);
     if (!(x.cwiseAbs().maxCoeff() < kCouplingDiverged)) return {};
   }
-  if (!(half[1] <= kGrows * half[0])) return {};
+  if (!(half[1] <= kStable * half[0])) return {};
   return out;
 }
 
