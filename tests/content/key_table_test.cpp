@@ -75,6 +75,7 @@ Json other_value(const Key& key, const Json& other) {
       Json::array({{{"share", 0.5}, {"time", 0.25}}}),
       Json::array({{{"name", "a"}, {"pressure", 9.0}, {"bulk", 8.0}}}),
       Json::parse(R"([{"name": "a", "box": {"min": [0.0, 0.0, 0.0], "max": [0.5, 1.0, 2.0]}}])"),
+      Json::parse(R"([{"key": "a", "name": "b", "range": [1.0, 2.0], "step": 0.5}])"),
       {{"min", {0, 0, 0}}, {"max", {0.5, 1, 2}}},
       Json::array({"some text"}),
       !key.choices ? Json() : Json(key.choices().front()),
