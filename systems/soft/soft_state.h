@@ -76,6 +76,7 @@ struct SoftState {
   Delassus delassus;
   ContactProblem problem;
   SweepReport report;
+  int unsettled = 0;  // successive steps whose contacts did not converge with all penetrations undone
   SoftTally tally;
   SoftTimes times;
   std::uint64_t steps = 0;                                   // done

@@ -17,6 +17,8 @@ constexpr SweepLimits kSweeps{.sweeps = 200, .tolerance = 1e-6, .newtons = 60};
 constexpr double kShortOf = 0.9;     // [1] of the motion up to a crossing
 constexpr double kLeastPart = 0.02;  // [1] of a step: a shorter remainder does not become a part
 
+// Successive steps without convergence after which bodies count as wedged: an impact takes fewer.
+constexpr int kWedgedAfter = 20;
 // Steps between two attempts to push bodies out of each other that were wedged in the last one: an attempt that fails
 // costs several steps.
 constexpr std::uint64_t kAttempts = 30;
@@ -155,17 +157,19 @@ void solve_contacts(World& world, Tick tick) {
   if (!world.soft) return;
   SoftState& soft = *world.soft;
   const std::uint64_t begin = now_ns();
-  const bool wedged = soft.report.left_inside && soft.steps % kAttempts != 0;
-  const double undone = wedged ? 0.0 : soft.undone_in(tick.dt);
+  const bool wedged = soft.unsettled >= kWedgedAfter;
+  const double undone =
+      wedged && soft.report.left_inside && soft.steps % kAttempts != 0 ? 0.0 : soft.undone_in(tick.dt);
   build_problem(soft.bodies, soft.contacts, tick.dt, undone, soft.delassus, soft.problem);
   soft.times.delassus = ms_since(begin);
   const std::uint64_t built = now_ns();
-  Crossings left;
+  Crossings crossings;
   soft.report = solve_and_apply(soft.bodies, *soft.proximity, tick.dt, undone, kSweeps, soft.delassus, soft.contacts,
-                                soft.problem, &left, &soft.joints);
+                                soft.problem, &crossings, &soft.joints, wedged);
+  soft.unsettled = soft.report.settled && !soft.report.left_inside ? 0 : soft.unsettled + 1;
   soft.joints.measure(soft.bodies, soft.contacts, tick);
   soft.tally.fed += energy_given(soft.bodies, soft.contacts);
-  stop_before(soft, left, tick.dt);
+  stop_before(soft, crossings, tick.dt);
   soft.times.sweeps = ms_since(built);
   soft.tally.unconverged += soft.settled && !soft.report.settled;
   soft.settled = soft.settled && soft.report.settled;

@@ -225,15 +225,17 @@ void pass_first_stage(const std::vector<std::unique_ptr<Body>>& bodies, double T
 
 // Bodies that are wedged between others cannot all be pushed out of them: no impulses are enough, and they grow with
 // every sweep. Then no penetration is undone, and `beta` is 0 from here on: resting is always possible. Not with
-// joints: grips would sink in.
+// joints or tissue, which yield: grips would sink in.
 SweepReport solve_undoing(const std::vector<std::unique_ptr<Body>>& bodies, double T, const SweepLimits& limits,
                           const Delassus& delassus, const std::vector<ContactPoint>& contacts, ContactProblem& problem,
                           double& beta) {
   const SweepReport report = solve(problem, limits);
   const auto is_deep = [](const ContactPoint& c) { return c.depth > 0.0; };
-  const auto is_joint = [](const ContactPoint& c) { return c.hold.joint >= 0; };
+  const auto yields = [&](const ContactPoint& c) {
+    return c.hold.joint >= 0 || bodies[c.body_a]->as_tissue() || bodies[c.body_b]->as_tissue();
+  };
   if (report.settled || !(beta > 0.0) || std::none_of(contacts.begin(), contacts.end(), is_deep) ||
-      std::any_of(contacts.begin(), contacts.end(), is_joint))
+      std::any_of(contacts.begin(), contacts.end(), yields))
     return report;
   beta = 0.0;
   find_bias(bodies, contacts, T, beta, delassus, problem);
@@ -314,11 +316,12 @@ void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& con
 SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
                             double beta, const SweepLimits& limits, Delassus& delassus,
                             std::vector<ContactPoint>& contacts, ContactProblem& problem, Crossings* left,
-                            Joints* joints) {
+                            Joints* joints, bool wedged) {
   problem.own.clear();
   const double free_energy = joints ? joints->kinetic_energy(bodies) : 0.0;
   pass_first_stage(bodies, T, beta, limits, delassus, contacts, problem);
-  SweepReport report = solve_undoing(bodies, T, limits, delassus, contacts, problem, beta);
+  SweepReport report =
+      wedged ? solve_undoing(bodies, T, limits, delassus, contacts, problem, beta) : solve(problem, limits);
   const auto solve_anew = [&] {
     build_problem(bodies, contacts, T, beta, delassus, problem);
     pass_first_stage(bodies, T, beta, limits, delassus, contacts, problem);

@@ -46,10 +46,11 @@ void keep_impulses(const ContactProblem& problem, std::vector<ContactPoint>& con
 // (Proximity::look_again); before, they were extrapolated from the last step. In the level `hand` this reduces the
 // error of the 1 kHz force by a third; another repetition changes little. Later sweeps are warm-started; a contact
 // without prediction keeps its law. `joints`: those among the contacts break beyond their strength
-// (Joints::snap), or are corrected to the step's end (Joints::look_again).
+// (Joints::snap), or are corrected to the step's end (Joints::look_again). `wedged`: penetrations that cannot be undone
+// are left.
 SweepReport solve_and_apply(const std::vector<std::unique_ptr<Body>>& bodies, Proximity& proximity, double T,
                             double beta, const SweepLimits& limits, Delassus& delassus,
                             std::vector<ContactPoint>& contacts, ContactProblem& problem, Crossings* left = nullptr,
-                            Joints* joints = nullptr);
+                            Joints* joints = nullptr, bool wedged = false);
 
 }  // namespace pliant
