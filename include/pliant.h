@@ -269,7 +269,7 @@ PLIANT_API pliant_status pliant_session_set_values(pliant_session* session, cons
                                                    const double* values, size_t count);
 PLIANT_API pliant_status pliant_session_get(pliant_session* session, const char* object, const char* key, double* out);
 
-// What the level offers to its user: the arguments of pliant_session_set, a label, and bounds in the key's unit. Text is
+// Sliders that the level offers: the arguments of pliant_session_set, a label, and bounds in the key's unit. Text is
 // valid until the session is destroyed.
 typedef struct pliant_slider {
   uint32_t size;

@@ -45,7 +45,7 @@ Solid grasp_palm() {
 
 void add_hand_part(LevelNode& node) {
   node.rigid_body = RigidBody{};
-  node.rigid_body->density = 300.0;  // hollow: the hand feels little of its inertia
+  node.rigid_body->density = 540.0;  // hollow: the hand feels little of its inertia
   node.rigid_body->friction_static = 0.9;
   node.rigid_body->friction_sliding = 0.8;
 }
@@ -58,6 +58,7 @@ void add_finger(Level& level, int number, const LevelNode& palm, std::int32_t ma
   LevelNode& node = add_shape(level, name, grasp_finger(), box, 0.0034, material);
   node.local = {hinge, quat(around)};
   add_hand_part(node);
+  node.rigid_body->density = 200.0;
   LevelNode& joint = add_node(level, "joint_" + std::string(1, "abc"[number]));
   joint.local = {hinge, quat(around * glm::angleAxis(glm::radians(90.0), dvec3(1, 0, 0)))};
   joint.joint = Joint{};
@@ -80,7 +81,7 @@ struct GraspMoment {
 // Down over the ball, closes, up by 20 cm, over and back, down, opens, up.
 std::vector<GraspMoment> grasp_moments() {
   const dvec3 low(0, kGraspBall, 0), high(0, kGraspBall + 0.20, 0), above(0, kGraspBall + 0.03, 0);
-  return {{0.0, above, 0, 0},  {0.7, low, 0, 0},    {0.9, low, 0, 0},   {1.5, low, 0, 1},  {2.7, high, 0, 1},
+  return {{0.0, above, 0, 0},  {0.85, low, 0, 0},   {0.9, low, 0, 0},   {1.5, low, 0, 1},  {2.7, high, 0, 1},
           {4.0, high, 180, 1}, {4.6, high, 180, 1}, {5.9, high, 0, 1},  {7.1, low, 0, 1},  {7.3, low, 0, 1},
           {7.8, low, 0, 0},    {8.0, low, 0, 0},    {8.8, above, 0, 0}, {9.0, above, 0, 0}};
 }
@@ -110,6 +111,7 @@ Level grasp() {
   Level level;
   level.name = "grasp";
   level.about = "A hand with three fingers closes on a soft ball, lifts it, turns it over, and puts it down.";
+  level.simulation.soft_step = 0.01;  // [s] at 1/60 some steps of the turn do not converge
   const std::int32_t stone = add_material(level, "stone", kStone, 0.7f),
                      steel = add_material(level, "steel", kSteel, 0.3f),
                      skin = add_material(level, "skin", kSkin, 0.45f);

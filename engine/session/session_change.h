@@ -14,7 +14,7 @@ struct SessionChange {
   std::vector<ParameterEdit> soft;
 };
 
-// What a name of a prepared world means, and its extensions with the values that its owner set last. Without a device,
+// The meaning of a name of a prepared world, and its extensions with the values that its owner set last. Without a device,
 // an object and so on, that entity is kNoEntity.
 struct LiveNamed {
   std::string name;

@@ -196,7 +196,7 @@ class Session {
   Result<double> get(const std::string& object, const std::string& key) const;
   // The same of a key of any type, as JSON: "cubic" in quotes, 800.0, [0.1, 0.2].
   Result<std::string> json(const std::string& object, const std::string& key) const;
-  // What the level offers to its user (its key `expose`), for set() and get().
+  // Sliders that the level offers (its key `expose`), for set() and get().
   const std::vector<Slider>& sliders() const& PLIANT_LIFETIMEBOUND;
   std::vector<Slider> sliders() &&;
   // Of an object, probe, tool or effect.

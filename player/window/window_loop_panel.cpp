@@ -1,4 +1,4 @@
-// What the side panel of a window orders: sliders, the probe that the mouse moves, a path to record.
+// Orders of a window's side panel: sliders, the probe that the mouse moves, a path to record.
 #include <fmt/format.h>
 
 #include "components/name_of.h"

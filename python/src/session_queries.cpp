@@ -96,7 +96,7 @@ void bind_state(Class& c) {
                                   py::arg("step") = s.step));
             return out;
           },
-          "What the level offers to its user (its key `expose`): arguments of set(), a label, bounds, a step.")
+          "Sliders that the level offers (its key `expose`): arguments of set(), a label, bounds, a step.")
       .def(
           "save",
           [](HeldSession& h) {

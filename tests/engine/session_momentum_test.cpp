@@ -1,4 +1,4 @@
-// What a hand gives a free body is what the body has: Newton's third law over the exchange of touch tick and soft step.
+// A free body has the momentum that the hand gave it: Newton's third law over the exchange of touch tick and soft step.
 #include <gtest/gtest.h>
 
 #include "tests/engine/session_rig.h"

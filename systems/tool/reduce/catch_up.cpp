@@ -13,7 +13,7 @@ constexpr double kRidge = 1e-9;     // [1] of the largest compliance: redundant 
 constexpr double kOwedSteps = 2.0;  // [1] of bodies as heavy as the hand; over fewer the handle leaves a heavy one
 constexpr double kMassless = 1e-2;  // [1] of the modes' inertia
 
-// [1/kg] `W` of motion almost without inertia. What moves follows the handle's displacement, and no force accelerates
+// [1/kg] `W` of motion almost without inertia. It follows the handle's displacement, and no force accelerates
 // it: nothing would take it back, and a load below a light tool would fly instead of hang.
 Eigen::MatrixXd quasi_static(const CondensedContacts& c, const Eigen::MatrixXd& W, double T) {
   Eigen::MatrixXd out = W;
