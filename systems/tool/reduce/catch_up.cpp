@@ -9,25 +9,26 @@ namespace pliant {
 namespace {
 
 constexpr SweepLimits kAgain{100, 1e-4, 0};
+constexpr double kFree = 1e-6;      // [1] (T omega)^2 of motion without elastic force
 constexpr double kRidge = 1e-9;     // [1] of the largest compliance: redundant contacts
 constexpr double kOwedSteps = 2.0;  // [1] of bodies as heavy as the hand; over fewer the handle leaves a heavy one
-constexpr double kMassless = 1e-2;  // [1] of the modes' inertia
+constexpr double kMassless = 1e-2;  // [1] of such motion's inertia
 
-// [1/kg] `W` of motion almost without inertia. It follows the handle's displacement, and no force accelerates
-// it: nothing would take it back, and a load below a light tool would fly instead of hang.
+// [1/kg] `W` with bodies that move freely almost without inertia. They follow the handle's displacement, and no force
+// accelerates them: nothing would take it back, and a load below a light tool would fly instead of hang.
 Eigen::MatrixXd quasi_static(const CondensedContacts& c, const Eigen::MatrixXd& W, double T) {
   Eigen::MatrixXd out = W;
   const Eigen::Index rows = 3 * c.count;
   for (Eigen::Index k = 0; k < c.modes; ++k) {
+    if (T * T * c.frequency2[k] > kFree) continue;
     const auto mode = c.from_modes.col(k).head(rows);
-    const double rest = T * c.damping[k] + T * T * c.frequency2[k];
-    out.topLeftCorner(rows, rows) += (1 / (kMassless + rest) - 1 / (1.0 + rest)) * mode * mode.transpose();
+    out.topLeftCorner(rows, rows) += (1 / kMassless - 1) / (1.0 + T * c.damping[k]) * mode * mode.transpose();
   }
   return out;
 }
 
-// Of what resists a displacement `left` of the handle, the part of bodies that move freely: by their inertia. Whatever
-// contacts are loaded: the hand is also owed what it gave in contacts that the step found open.
+// Of what resists a displacement `left` of the handle, the part of bodies that move freely: by their inertia. Of
+// open contacts too: the hand is also owed what it gave in contacts that the step found open.
 void set_owed(const Eigen::MatrixXd& W, const Eigen::MatrixXd& free, const Vector6& left, const Matrix6& impedance,
               HandleModel& model) {
   const CondensedContacts& c = model.contacts;
@@ -96,9 +97,10 @@ void solve_again(const CondensedContacts& model, const Eigen::MatrixXd& W, const
 void move_along(const Vector6& left, const Vector& change, double T, HandleModel& model) {
   CondensedContacts& c = model.contacts;
   const Eigen::Index modes = c.modes, rows = 3 * c.count;
-  const auto share =
-      (kMassless + T * c.damping.head(modes).array() + T * T * c.frequency2.head(modes).array()).inverse();
-  const Vector q = T * share.matrix().cwiseProduct(c.from_modes.topLeftCorner(rows, modes).transpose() * change);
+  const auto share = (1.0 + T * c.damping.head(modes).array() + T * T * c.frequency2.head(modes).array()).inverse();
+  const Vector rate = share.matrix().cwiseProduct(c.from_modes.topLeftCorner(rows, modes).transpose() * change);
+  const Vector q = T * rate;
+  c.rate.head(modes) += (T * T * c.frequency2.head(modes).array() > kFree).select(rate, 0.0).matrix();
   c.tissue_force -= c.tissue_stiffness * left + c.modal_stiffness.topRows(modes).transpose() * q;
   c.load.head(modes) -= c.frequency2.head(modes).cwiseProduct(q) + c.modal_stiffness.topRows(modes) * left;
 }
