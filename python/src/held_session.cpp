@@ -11,6 +11,7 @@ namespace {
 std::atomic<unsigned> g_process{0};  // number of forks behind this process
 const int g_counts_forks = pthread_atfork(nullptr, nullptr, [] { ++g_process; });
 
+std::atomic<std::thread::id> g_ending;  // the thread that ends the program; valid once g_ends
 std::atomic<bool> g_ends{false};
 
 std::mutex g_mutex;  // guards the list
@@ -20,6 +21,11 @@ std::vector<std::weak_ptr<HeldSession>>& all_sessions() {
 }
 
 }  // namespace
+
+WithoutGil::~WithoutGil() {
+  while (g_ends && std::this_thread::get_id() != g_ending.load()) std::this_thread::sleep_for(std::chrono::hours(1));
+  PyEval_RestoreThread(state_);
+}
 
 void check_end() {
   if (g_ends) throw Failure(pliant::Error{"Session", "is closed: the program ends", "", "session.closed"});
@@ -38,7 +44,7 @@ std::shared_ptr<HeldSession> HeldSession::open(const pliant::Scene& scene) {
   auto held = std::make_shared<HeldSession>();
   bool stopped = false;
   {
-    const py::gil_scoped_release without_gil;
+    const WithoutGil without_gil;
     auto opened = pliant::Session::open(scene, [&](double, const std::string&) {
       stopped = stopped || interrupted();
       return !stopped;
@@ -106,7 +112,7 @@ void HeldSession::may_call() const {
 
 void HeldSession::close() {
   if (is_of_parent() || owner_ == std::this_thread::get_id()) may_call();
-  const py::gil_scoped_release without_gil;
+  const WithoutGil without_gil;
   const std::lock_guard window_lock(window_mutex_);
   if (window_) window_->end();
   const std::lock_guard lock(mutex_);
@@ -185,7 +191,7 @@ void HeldSession::ensure_pictures() {
 
 pliant::Picture HeldSession::picture(const std::optional<pliant::PictureView>& view, int width, int height) {
   may_call();
-  const py::gil_scoped_release without_gil;
+  const WithoutGil without_gil;
   const Lock lock(*this);
   ensure_pictures();
   return worker_->run([&] { return check(pictures_->picture(view ? *view : pictures_->view(), width, height)); });
@@ -193,13 +199,14 @@ pliant::Picture HeldSession::picture(const std::optional<pliant::PictureView>& v
 
 pliant::PictureView HeldSession::view() {
   may_call();
-  const py::gil_scoped_release without_gil;
+  const WithoutGil without_gil;
   const Lock lock(*this);
   ensure_pictures();
   return worker_->run([&] { return pictures_->view(); });
 }
 
 void close_all_sessions() {
+  g_ending = std::this_thread::get_id();
   g_ends = true;
   std::vector<std::shared_ptr<HeldSession>> open;
   {

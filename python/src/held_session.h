@@ -30,6 +30,19 @@
 
 namespace pliant_python {
 
+// Releases the GIL for its lifetime. Once the program ends, a thread of its own stays in the destructor until the
+// process is gone: there Python would end it by unwinding, which a destructor must not let through.
+class WithoutGil {
+ public:
+  WithoutGil() : state_(PyEval_SaveThread()) {}
+  WithoutGil(const WithoutGil&) = delete;
+  WithoutGil& operator=(const WithoutGil&) = delete;
+  ~WithoutGil();
+
+ private:
+  PyThreadState* state_;
+};
+
 // The vertices of one object, float32; arrays in Python point into it, so it is never resized.
 struct Vertices {
   std::vector<pliant::vec3> at;
@@ -86,7 +99,7 @@ class HeldSession {
   template <class Call>
   auto with(Call&& call) {
     may_call();
-    const py::gil_scoped_release without_gil;
+    const WithoutGil without_gil;
     const Lock lock(*this);
     return call(*session_);
   }
@@ -94,7 +107,7 @@ class HeldSession {
   template <class Call>
   auto look(Call&& call) {
     may_call();
-    const py::gil_scoped_release without_gil;
+    const WithoutGil without_gil;
     const Lock lock(*this);
     return on_picture_thread([&] { return call(*session_); });
   }
@@ -102,7 +115,7 @@ class HeldSession {
   template <class Call>
   auto advance(Call&& call) {
     may_call();
-    const py::gil_scoped_release without_gil;
+    const WithoutGil without_gil;
     const Lock lock(*this);
     struct Refresh {
       HeldSession& of;
