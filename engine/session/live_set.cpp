@@ -70,7 +70,7 @@ Result<FoundKey> find_named_key(const LiveNamed& named, const std::string& key, 
     return Error{where, fmt::format("`{}` is {}, and this is a key of {}", named.name, words_of_kind(named), whose),
                  fmt::format("its keys are: {}", fmt::join(keys, ", "))};
   const std::string near = suggestion(key, keys);
-  return Error{where, fmt::format("is no key of {}", words_of_kind(named)),
+  return Error{where, fmt::format("unknown key of {}", words_of_kind(named)),
                near + (near.empty() ? "" : " ") + fmt::format("keys are: {}", fmt::join(keys, ", ")), "name.unknown"};
 }
 

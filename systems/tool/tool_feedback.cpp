@@ -49,6 +49,7 @@ Vector6 displacement(const RigidMotion& from, const RigidMotion& to) {
 // From the next tick on. The wrench continues from its last value; the difference to the new description fades.
 void use(ToolTouchState& tool, ToolForce force) {
   tool.used = force;
+  if (force != ToolForce::kContacts) tool.owed.setZero();  // other descriptions have no bodies of their own
   tool.joins = true;
   tool.settling = 0;
 }
@@ -74,12 +75,14 @@ void adopt(ToolTouchState& tool, const HandleModel& model) {
   }
   tool.displacement = displacement(model.handle, tool.handle);
   tool.contacts.start(model.contacts);
-  tool.owed += model.soft_step * model.owed;
-  tool.owed_left = std::max(1.0, model.owed_steps * model.soft_step / model.contacts.tick);
   tool.late = 0;
   // A contact without compliance has no linear model: it would keep the handle wherever it was first met, and pull.
   const bool yields = tool.wanted != ToolForce::kLinear || !has_stiff(model.contacts);
   use(tool, yields ? tool.wanted : ToolForce::kContacts);
+  if (tool.used == ToolForce::kContacts && model.owed.allFinite()) {
+    tool.owed += model.soft_step * model.owed;
+    tool.owed_left = std::max(1.0, model.owed_steps * model.soft_step / model.contacts.tick);
+  }
   // A transfer no longer than a tick would begin anew with every model and keep the force constant.
   if (kJoinShare * model.soft_step <= model.contacts.tick) {
     tool.joins = false;
